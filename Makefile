@@ -3,7 +3,7 @@
 #   make                build/gicgen, build/gicrun, build/gicsweep and build/gicbench
 #   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
 #   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way;
-#                       PARTS="drive rhs": some of drive compare rhs batch scenes)
+#                       PARTS="drive rhs": some of drive compare rhs batch scenes precision)
 #   make tables         what `make bench` measured, into README.md and tests/bench/README.md
 #   make pictures       the picture of README.md's first model
 #   make test           every test
@@ -11,6 +11,9 @@
 #   make generated      generated/*.c and *.h from models/*.veh, and models/veh.schema.json
 #   make debug          the same programs with the sanitizers, in build/debug/
 #   make fuzz           build/fuzz/check/fuzz, the readers under clang's libFuzzer (tests/fuzz/fuzz.c)
+#   make format-check   are sources as clang-format (.clang-format) writes them?
+#   make lint           clang-tidy on the C (.clang-tidy), shellcheck on the scripts (.shellcheckrc)
+#   make coverage       what the tests of tests/quick.txt, or TESTS="test_read ...", reach: build/coverage/index.html
 #   make deps           install the packages that all of this needs (Debian)
 #   make install        into $(DESTDIR)$(PREFIX): programs, runtime core, models, manuals; make uninstall removes them
 #   make clean
@@ -25,8 +28,8 @@ WERROR :=
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
-COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime $(CFLAGS) -MMD -MP
-# of host programs; gicgen needs libyaml alone, what it emits nothing
+COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime -I$(BUILD) $(CFLAGS) -MMD -MP
+# of host programs; gicgen needs libyaml and minizip, what it emits nothing
 LIBRARIES := -lyaml -lgsl -lgslcblas -lklu -ltcc -lm -ldl
 # of the plug-in that the engine gcp2 loads, where it is there: by the name for linking, or as programs load it
 MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&1 && echo there),$(firstword \
@@ -39,42 +42,44 @@ define newline
 
 endef
 
+# folders of `make debug` and its like within this one, which another make may be filling
+other_builds := $(patsubst %,-path $(BUILD)/% -prune -o,debug fuzz coverage)
+
 models := $(basename $(notdir $(wildcard models/*.veh)))
-generator := $(filter-out generator/main.c generator/embed.c,$(wildcard generator/*.c))
-benchmark := $(wildcard runtime/bench_*.c)
-sweep := runtime/gicsweep.c $(wildcard runtime/sweep_*.c)
-runtime := $(filter-out runtime/gicrun.c runtime/gicbench.c $(benchmark) $(sweep),$(wildcard runtime/*.c))
+# programs are generator/*.c and runtime/run/gicrun.c; all other files stand in folders, whose order is that of
+# tests/layers.txt, and go into one archive, from which a program takes what it uses
+programs_of_folders := $(wildcard generator/*.c) runtime/run/gicrun.c $(wildcard runtime/sweep/*.c runtime/bench/*.c \
+    runtime/plugin/*.c)
+sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
-embedded := $(sort $(wildcard templates/*)) runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h
+embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h
 
-generator_objects := $(generator:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
-runtime_objects := $(runtime:%.c=$(BUILD)/%.o)
-# what gicgen reads scenes with
-scene_objects := $(patsubst %,$(BUILD)/runtime/%.o,scene scene_course scene_driver scene_facts scene_fit scene_outputs scene_rest scene_rig \
-    scene_road scene_road_file driver spline csv descriptor process gic_runtime gic_road)
-# what gicgen checks its blocks with
-checking_objects := $(patsubst %,$(BUILD)/runtime/%.o,world applied rolling tires driveline interpreted_outputs accelerate \
-    equations topology dense)
+objects := $(sources:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
+archive := $(BUILD)/gicgen.a
 
-.PHONY: all test test-programs list-tests stress demo bench tables pictures generated debug fuzz deps install uninstall clean
+.PHONY: all test format-check lint coverage test-programs list-tests stress demo bench tables pictures generated debug fuzz deps install uninstall clean
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-# gicrun looks for it there, beside programs or beside their folder: runtime/mumps_load.c
+# gicrun looks for it there, beside programs or beside their folder: runtime/compare/mumps_load.c
 plugin := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so)
 
 all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin)
 
-$(BUILD)/gicgen: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(generator_objects)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
+$(archive): $(objects)
+	rm -f $@
+	$(AR) rcs $@ $^
 
-$(BUILD)/gicrun: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(generator_objects)
+$(BUILD)/gicgen: $(BUILD)/generator/gicgen.o $(archive)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
+
+$(BUILD)/gicrun: $(BUILD)/runtime/run/gicrun.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/gicsweep: $(sweep:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
+$(BUILD)/gicsweep: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/sweep/*.c)) $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/gicbench: $(BUILD)/runtime/gicbench.o $(benchmark:%.c=$(BUILD)/%.o) $(runtime_objects) $(generator_objects)
+$(BUILD)/gicbench: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/bench/*.c)) $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fPIC
@@ -83,27 +88,26 @@ $(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(MUMPS)
 
-# gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/plant.h
-planting := $(patsubst %,generator/%.o,plant formulation lanes narrow rows motion loads pack_vectors)
+# gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/base/plant.h
+planting := $(shell grep -rlE --include='*.c' '"(base/plant|vehicle/plant_stores)\.h"' generator)
+planted_objects := $(planting:%.c=$(BUILD)/planted/%.o)
 $(BUILD)/planted/%.o: %.c
 	@mkdir -p $(@D)
 	$(COMPILE) -DGICGEN_PLANT -c -o $@ $<
 
-planted_objects := $(filter-out $(planting:%=$(BUILD)/%),$(generator_objects)) $(planting:%=$(BUILD)/planted/%)
-
-$(BUILD)/check/gicgen_planted: $(BUILD)/generator/main.o $(scene_objects) $(checking_objects) $(planted_objects)
+$(BUILD)/check/gicgen_planted: $(BUILD)/generator/gicgen.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lm
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
 
-$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/gicrun.o $(runtime_objects) $(planted_objects)
+$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/run/gicrun.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the page says how the interpreted engines were compiled
-$(BUILD)/runtime/bench_machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
+$(BUILD)/runtime/bench/machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
 
 # it shows what the processor can do: fused, and in lanes only where it says so
-$(BUILD)/runtime/bench_limit.o: COMPILE += -O2 -ffp-contract=fast -fno-tree-vectorize -fno-tree-slp-vectorize
+$(BUILD)/runtime/bench/peak.o: COMPILE += -O2 -ffp-contract=fast -fno-tree-vectorize -fno-tree-slp-vectorize
 
 $(BUILD)/embed: $(BUILD)/generator/embed.o
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
@@ -114,6 +118,13 @@ $(BUILD)/embedded.c: $(BUILD)/embed $(embedded)
 $(BUILD)/embedded.o: $(BUILD)/embedded.c
 	$(COMPILE) -c -o $@ $<
 
+# the tape's recovery has the loop of generated code, with macros for what that inserts
+$(BUILD)/templates/recovery_loop.c: templates/recovery_loop.c.in
+	@mkdir -p $(@D)
+	sed -e '/^\/\*-/d' -e 's,/\* @\([a-z]*\)@ \*/,INSERT_\1,' $< > $@
+
+$(BUILD)/runtime/tape/recover.o: $(BUILD)/templates/recovery_loop.c
+
 # the runtime core and the roads go into other people's programs and stay C99
 $(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o: STANDARD := -std=c99
 
@@ -123,28 +134,25 @@ $(BUILD)/%.o: %.c
 
 # an object that was compiled with a warning is made again where warnings are errors
 ifneq ($(WERROR),)
-$(shell find $(BUILD) -name '*.o.warned' 2>/dev/null | while read -r file; do rm -f "$$file" "$${file%.warned}"; done)
+$(shell find $(BUILD) $(other_builds) -name '*.o.warned' -size +0 -print 2>/dev/null | while read -r file; do rm -f "$$file" "$${file%.warned}"; done)
 endif
 
-# ---- tests: each tests/test_*.c is a program of its own, the other tests/*.c are tools of tests/test_*.sh
+# ---- tests: each tests/unit/*.c is a program of its own, tests/tools/*.c are tools of tests/system/*.sh
 
-tested := $(BUILD)/check/tested.a
 reference := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/reference/main.c,$(wildcard tests/reference/*.c)))
-programs := $(basename $(notdir $(wildcard tests/*.c)))
+programs := $(basename $(notdir $(wildcard tests/unit/*.c tests/tools/*.c)))
 attacking := $(basename $(notdir $(wildcard tests/stress/*.c)))
 planted := gicrun_wrong_pose gicrun_wrong_velocity gicrun_wrong_acceleration gicrun_wrong_rate
-variants := test_runtime_float test_runtime_fast test_dual_float test_road_float test_road_fast
+variants := test_runtime_float test_runtime_fast test_dual_float test_gears_float test_road_float test_road_fast
 
 test-programs: all $(addprefix $(BUILD)/check/,$(programs) $(variants) $(attacking) $(planted) reference reference_long \
     gicgen_planted gicrun_planted)
 
-# an archive, for a test takes what it tests and no more
-$(tested): $(generator_objects) $(runtime_objects)
-	@mkdir -p $(@D)
-	rm -f $@
-	$(AR) rcs $@ $^
+# headers of tests/reference and tests/random
+$(BUILD)/tests/unit/%.o $(BUILD)/tests/tools/%.o: COMPILE += -Itests
 
-$(BUILD)/check/test_%: $(BUILD)/tests/test_%.o $(tested)
+# of the archive a test takes what it tests and no more
+$(BUILD)/check/test_%: $(BUILD)/tests/unit/test_%.o $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBRARIES)
 
@@ -154,7 +162,7 @@ $(BUILD)/check/test_topology: LIBRARIES += $(MUMPS)
 $(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 
 # what checks the generator shares no code with it
-$(BUILD)/check/test_reference $(BUILD)/check/test_reference_mechanisms: $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+$(BUILD)/check/test_reference $(BUILD)/check/test_reference_mechanisms: $(BUILD)/check/%: $(BUILD)/tests/unit/%.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lquadmath -lm
 
@@ -171,40 +179,41 @@ $(BUILD)/long/%.o: %.c
 	@mkdir -p $(@D)
 	$(COMPILE) -DREFERENCE_LONG -c -o $@ $<
 
-$(addprefix $(BUILD)/check/,states agree single): $(BUILD)/check/%: $(BUILD)/tests/%.o $(reference)
+$(addprefix $(BUILD)/check/,states agree single): $(BUILD)/check/%: $(BUILD)/tests/tools/%.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lquadmath -lm -ldl
 
-$(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/random_vehicle.c $(wildcard tests/random/*.c) \
+$(BUILD)/check/random_vehicle: $(patsubst %.c,$(BUILD)/%.o,tests/tools/random_vehicle.c $(wildcard tests/random/*.c) \
     tests/reference/support.c)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 # libFuzzer calls it; sanitizers see the ends of blocks from static libraries too
 wrapped := exit malloc calloc realloc free strdup pool_alloc pool_grow file_read
-$(BUILD)/check/fuzz: $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(tested)
+$(BUILD)/check/fuzz: $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/fuzz/*.c)) $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -fsanitize=fuzzer $(LDFLAGS) $(wrapped:%=-Wl,--wrap=%) -o $@ $^ \
 	    -l:libyaml.a -l:libgsl.a -l:libgslcblas.a $(LIBRARIES)
 
-$(BUILD)/check/deny_exec: $(BUILD)/tests/deny_exec.o
+$(BUILD)/check/deny_exec: $(BUILD)/tests/tools/deny_exec.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
 
-$(BUILD)/check/quad_linear: $(BUILD)/tests/quad_linear.o $(reference)
+$(BUILD)/check/quad_linear: $(BUILD)/tests/tools/quad_linear.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas -lquadmath -lm
 
-$(BUILD)/check/compare_dump $(BUILD)/check/linearized: $(BUILD)/check/%: $(BUILD)/tests/%.o $(tested)
+$(addprefix $(BUILD)/check/,compare_dump linearized event_errors): $(BUILD)/check/%: $(BUILD)/tests/tools/%.o $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the runtime core and the roads in the other ways that users build them
 $(BUILD)/check/%_float: VARIANT := -DGIC_FLOAT
 $(BUILD)/check/%_fast: VARIANT := -ffast-math
-$(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/test_runtime.c runtime/gic_runtime.c
-$(BUILD)/check/test_dual_float: tests/test_dual.c runtime/gic_runtime.c
-$(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/test_road.c runtime/gic_road.c \
+$(BUILD)/check/test_runtime_float $(BUILD)/check/test_runtime_fast: tests/unit/test_runtime.c runtime/gic_runtime.c
+$(BUILD)/check/test_dual_float: tests/unit/test_dual.c runtime/gic_runtime.c
+$(BUILD)/check/test_gears_float: tests/unit/test_gears.c runtime/gic_runtime.c
+$(BUILD)/check/test_road_float $(BUILD)/check/test_road_fast: tests/unit/test_road.c runtime/gic_road.c \
     runtime/gic_runtime.c
 $(addprefix $(BUILD)/check/,$(variants)):
 	@mkdir -p $(@D)
@@ -213,19 +222,20 @@ $(addprefix $(BUILD)/check/,$(variants)):
 # gicrun with errors planted in what the engines tcc and tape compute, which checks must find: in a number of the motion of
 # every subset's first body (pose 0 to 11, accelerations from 18, unit velocities from 24), in a rate
 
-planting := jit tape_recover tape_engine
+spoiled := $(shell grep -rl --include='*.c' GIC_PLANT_ runtime)
 $(BUILD)/check/gicrun_wrong_pose: PLANT := -DGIC_PLANT_MOTION=1
 $(BUILD)/check/gicrun_wrong_velocity: PLANT := -DGIC_PLANT_MOTION=24
 $(BUILD)/check/gicrun_wrong_acceleration: PLANT := -DGIC_PLANT_MOTION=18
 $(BUILD)/check/gicrun_wrong_rate: PLANT := -DGIC_PLANT_RATE=1
-$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/gicrun.o $(tested) $(planting:%=runtime/%.c)
+$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/run/gicrun.o $(archive) $(spoiled)
 	@mkdir -p $@.o
-	for file in $(planting); do $(COMPILE) $(PLANT) -c -o $@.o/$$file.o runtime/$$file.c || exit 1; done
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/gicrun.o $(planting:%=$@.o/%.o) $(tested) $(LIBRARIES)
+	for file in $(spoiled); do $(COMPILE) $(PLANT) -c -o $@.o/$$(basename $$file .c).o $$file || exit 1; done
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/run/gicrun.o $(patsubst %.c,$@.o/%.o,$(notdir $(spoiled))) \
+	    $(archive) $(LIBRARIES)
 
 # ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
 
-$(attacking:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/stress/%.o $(tested)
+$(attacking:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/stress/%.o $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
@@ -256,11 +266,11 @@ $(code)/%.c: models/hmmwv.veh $(parts) $(BUILD)/gicgen
 $(code)/%.o: $(code)/%.c
 	$(COMPILE) -c -o $@ $<
 
-$(driving:%=$(BUILD)/tests/%.o): $(BUILD)/%.o: %.c $(driven:%=$(code)/%.c)
+$(driving:%=$(BUILD)/tests/unit/%.o): $(BUILD)/%.o: %.c $(driven:%=$(code)/%.c)
 	@mkdir -p $(@D)
 	$(COMPILE) -I$(code) -c -o $@ $<
 
-$(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/%.o $(driven:%=$(code)/%.o) \
+$(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/unit/%.o $(driven:%=$(code)/%.o) \
     $(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
@@ -274,11 +284,11 @@ $(batched:%=$(code)/%_batch.c): $(code)/%_batch.c: $(code)/%.c
 # vectors are passed between functions of one file alone, so that an older gcc's way to do it is no matter
 $(batched:%=$(code)/%_batch.o): WARNINGS += -Wno-psabi
 
-$(BUILD)/tests/test_batch.o: tests/test_batch.c $(batched:%=$(code)/%_batch.c)
+$(BUILD)/tests/unit/test_batch.o: tests/unit/test_batch.c $(batched:%=$(code)/%_batch.c)
 	@mkdir -p $(@D)
 	$(COMPILE) -I$(code) -c -o $@ $<
 
-$(BUILD)/check/test_batch: $(BUILD)/tests/test_batch.o $(batched:%=$(code)/%.o) $(batched:%=$(code)/%_batch.o) \
+$(BUILD)/check/test_batch: $(BUILD)/tests/unit/test_batch.o $(batched:%=$(code)/%.o) $(batched:%=$(code)/%_batch.o) \
     $(BUILD)/runtime/gic_runtime.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
@@ -309,13 +319,17 @@ compared := hmmwv/paper_run hmmwv/rough_road hmmwv/suspension_rig quarter_car/qu
     $(addprefix hmmwv_vehicle/,straight constant_steer cruise coasting parked full_run)
 
 # QUICK=1: fewer repetitions and settings; PARTS: some of these
-PARTS := drive rhs batch scenes compare
+PARTS := drive rhs batch scenes precision compare
 measured_drive := --drive -o $(BUILD)/bench/full_run models/hmmwv_vehicle.veh models/scenes/full_run.scene
 measured_compare := -o $(BUILD)/bench models/hmmwv.veh models/scenes/paper_run.scene models/scenes/spin.scene
 measured_rhs := --rhs -o $(BUILD)/bench/rhs models/hmmwv.veh models/scenes/paper_run.scene
 measured_batch := --batch 64 -o $(BUILD)/bench/batch models/hmmwv.veh models/scenes/paper_run.scene
 measured_scenes := --scenes -o $(BUILD)/bench/scenes $(foreach run,$(compared), \
     models/$(patsubst %/,%.veh,$(dir $(run))) models/scenes/$(notdir $(run)).scene)
+
+measured_precision := --precision -o $(BUILD)/bench/precision \
+    models/hmmwv_vehicle.veh $(patsubst %,models/scenes/%.scene,full_run acceleration_braking lane_change step_steer) \
+    models/hmmwv_tires.veh $(patsubst %,models/scenes/%.scene,tires_brake tires_jump)
 
 # one part after another, the first page last, which links to the others; and how long each took, beside how many other
 # programs
@@ -347,14 +361,36 @@ fuzz:
 	$(MAKE) BUILD=$(BUILD)/fuzz WARNINGS= CC=clang CFLAGS="-O1 -g -fsanitize=address,undefined,fuzzer-no-link \
 	    -fno-sanitize-recover=all -fno-omit-frame-pointer" $(BUILD)/fuzz/check/fuzz
 
+c_files = $(shell find generator runtime tests -name '*.[ch]')
+format-check:
+	clang-format --dry-run -Werror $(c_files)
+
+# of what programs are made of; gcc's warnings are errors in tests/run.sh, so that clang's are not asked for
+lint: $(patsubst %.in,$(BUILD)/%,$(wildcard templates/recovery_loop.c.in))
+	shellcheck $(shell find tests runtime .ci -name '*.sh') .ci/run
+	find generator runtime -name '*.c' | xargs -n 8 -P $(shell nproc) sh -c 'clang-tidy --quiet --warnings-as-errors="*" "$$@" \
+	    -- $(STANDARD) -w -Igenerator -Iruntime -I$(BUILD) -DGICBENCH_FLAGS=\"\" 2>/dev/null' sh
+
+# of generator and runtime, and of the generated code that tests drive directly; the last but two lines say how much. What
+# a signal ends writes no counts.
+TESTS := quick
+coverage:
+	@command -v gcovr >/dev/null || { echo "gcovr is missing: apt-get install gcovr" >&2; exit 1; }
+	$(MAKE) BUILD=$(BUILD)/coverage CFLAGS="-O0 -g --coverage -fprofile-update=atomic" test-programs
+	find $(BUILD)/coverage -name '*.gcda' -delete
+	-BUILD=$(BUILD)/coverage sh tests/run.sh $(TESTS)
+	for part in generator runtime $(BUILD)/coverage/check/code; do \
+	    echo "== $$part"; gcovr --gcov-ignore-parse-errors -r . -f "$$part/" --print-summary $(BUILD)/coverage 2>&1 | grep '^[a-z]*: ' || exit 1; done
+	gcovr --gcov-ignore-parse-errors -r . -f generator/ -f runtime/ --html-details $(BUILD)/coverage/index.html $(BUILD)/coverage
+
 deps:
 	sh tests/install.sh test
 
 # ---- installing
 
-manuals := generator/gicgen.1 runtime/gicrun.1 runtime/gicsweep.1 runtime/gicbench.1
+manuals := $(wildcard generator/*.1 runtime/*/*.1)
 installed_models := $(wildcard models/*.* models/parts/*.* models/tutorial/*.* models/roads/*.* models/tires/*.* models/scenes/*.*)
-version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/gicgen.h)
+version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/base/version.h)
 # a place may have blanks in it, so only the shell takes it apart
 export DESTDIR PREFIX
 
@@ -373,10 +409,10 @@ $(BUILD)/install/libgic_runtime.a: $(core)
 	$(AR) rcs $@ $^
 
 install: all $(BUILD)/install/libgic_runtime.a
-	BUILD=$(BUILD) VERSION=$(version) PLUGIN=$(plugin) sh runtime/install.sh $(manuals) $(installed_models)
+	BUILD=$(BUILD) VERSION=$(version) PLUGIN=$(plugin) sh runtime/host/install.sh $(manuals) $(installed_models)
 
 uninstall:
-	sh runtime/install.sh --remove
+	sh runtime/host/install.sh --remove
 
 clean:
 	rm -rf $(BUILD)
@@ -384,4 +420,4 @@ clean:
 # made by the compiler, not by a rule
 %.d: ;
 
--include $(shell test -d $(BUILD) && find $(BUILD) -name '*.d')
+-include $(shell test -d $(BUILD) && find $(BUILD) $(other_builds) -name '*.d' -print)

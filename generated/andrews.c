@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0x57ae4b93
+#if ANDREWS_H != 0x9cf0ba2f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -112,16 +112,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -141,10 +142,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -169,10 +186,101 @@ typedef struct andrews_links {
     gic_real x[ANDREWS_DEPENDENCE_ROOM], rate[ANDREWS_DEPENDENCE_ROOM], change[ANDREWS_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[ANDREWS_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[ANDREWS_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } andrews_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef ANDREWS_LAYOUT_NAMES
+#define ANDREWS_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    ANDREWS_C_X = 0,
+    ANDREWS_C_Y = 1,
+    ANDREWS_C_Z = 2,
+    ANDREWS_A_XX = 3,
+    ANDREWS_A_XY = 4,
+    ANDREWS_A_XZ = 5,
+    ANDREWS_A_YX = 6,
+    ANDREWS_A_YY = 7,
+    ANDREWS_A_YZ = 8,
+    ANDREWS_A_ZX = 9,
+    ANDREWS_A_ZY = 10,
+    ANDREWS_A_ZZ = 11,
+    ANDREWS_OMEGA_X = 12,
+    ANDREWS_OMEGA_Y = 13,
+    ANDREWS_OMEGA_Z = 14,
+    ANDREWS_VELOCITY_X = 15,
+    ANDREWS_VELOCITY_Y = 16,
+    ANDREWS_VELOCITY_Z = 17,
+    ANDREWS_ALPHA_X = 18,
+    ANDREWS_ALPHA_Y = 19,
+    ANDREWS_ALPHA_Z = 20,
+    ANDREWS_ACCELERATION_X = 21,
+    ANDREWS_ACCELERATION_Y = 22,
+    ANDREWS_ACCELERATION_Z = 23,
+    ANDREWS_S = 24, /* unit velocities, 6 numbers a coordinate */
+    ANDREWS_I_FIRST_X = 0,
+    ANDREWS_I_FIRST_Y = 1,
+    ANDREWS_I_FIRST_Z = 2,
+    ANDREWS_I_SECOND_XX = 3,
+    ANDREWS_I_SECOND_YY = 4,
+    ANDREWS_I_SECOND_ZZ = 5,
+    ANDREWS_I_SECOND_XY = 6,
+    ANDREWS_I_SECOND_XZ = 7,
+    ANDREWS_I_SECOND_YZ = 8,
+    ANDREWS_I_FORCE_X = 9,
+    ANDREWS_I_FORCE_Y = 10,
+    ANDREWS_I_FORCE_Z = 11,
+    ANDREWS_I_MOMENT_X = 12,
+    ANDREWS_I_MOMENT_Y = 13,
+    ANDREWS_I_MOMENT_Z = 14,
+    ANDREWS_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    ANDREWS_MOTION_K1 = 0,
+    ANDREWS_MOTION_K2 = 30,
+    ANDREWS_MOTION_K3 = 60,
+    ANDREWS_MOTION_K4 = 120,
+    ANDREWS_MOTION_K5 = 90,
+    ANDREWS_MOTION_K6 = 180,
+    ANDREWS_MOTION_K7 = 150,
+    ANDREWS_INERTIA_K1 = 0,
+    ANDREWS_INERTIA_K2 = 23,
+    ANDREWS_INERTIA_K5 = 46,
+    ANDREWS_INERTIA_K7 = 69,
+    ANDREWS_SUBSET_K1 = 0,
+    ANDREWS_SUBSET_K2 = 1,
+    ANDREWS_SUBSET_K5 = 2,
+    ANDREWS_SUBSET_K7 = 3,
+    ANDREWS_X_BETA = 0,
+    ANDREWS_Q_X = 0,
+    ANDREWS_Q_Y = 1,
+    ANDREWS_Q_Z = 2,
+    ANDREWS_Q_P0 = 3,
+    ANDREWS_Q_P1 = 4,
+    ANDREWS_Q_P2 = 5,
+    ANDREWS_Q_P3 = 6,
+    ANDREWS_POSE_GROUND = 0,
+    ANDREWS_POSE_K1 = 7,
+    ANDREWS_POSE_K2 = 14,
+    ANDREWS_POSE_K3 = 21,
+    ANDREWS_POSE_K4 = 28,
+    ANDREWS_POSE_K5 = 35,
+    ANDREWS_POSE_K6 = 42,
+    ANDREWS_POSE_K7 = 49,
+    ANDREWS_UNKNOWN_OF_BETA = 0,
+    ANDREWS_ENERGY_RATE = 0,
+    ANDREWS_ENERGY_POWER = 1,
+    ANDREWS_ENERGY_MAGNITUDES = 2,
+    ANDREWS_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real andrews_k_K1[1][1] = {
     { /* K1 */
@@ -186,37 +294,40 @@ static const gic_real andrews_k_K1[1][1] = {
 static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* beta */
     const gic_real *const rate = links->rate;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
-        const gic_real t2 = rate[0];
-        motion[14] = t2;
+        const gic_real omega_z = rate[0];
+        motion[ANDREWS_OMEGA_Z] = omega_z;
         const gic_real t3 = GIC_COS(t1);
         const gic_real t4 = GIC_SIN(t1);
+        /* pose, in closed form */
         const gic_real t5 = R(0.9980963022073495) * t3;
-        const gic_real t6 = t5 - R(-0.061674723509842204) * t4;
-        motion[3] = t6;
+        const gic_real a_xx = t5 - R(-0.061674723509842204) * t4;
+        motion[ANDREWS_A_XX] = a_xx;
         const gic_real t7 = R(0.9980963022073495) * t4;
-        const gic_real t8 = t5 + R(0.061674723509842204) * t4;
-        motion[7] = t8;
-        const gic_real t9 = R(0.061674723509842204) * t3 - t7;
-        motion[4] = t9;
-        const gic_real t10 = t7 + R(-0.061674723509842204) * t3;
-        motion[6] = t10;
-        const gic_real t11 = t9 * R(-6.776263578034403e-21) + t6 * R(0.00092);
-        const gic_real t12 = t8 * R(-6.776263578034403e-21) + t10 * R(0.00092);
-        const gic_real t13 = R(0.04325) * t11;
-        inertia[16] = t13;
-        const gic_real t14 = t12 * (R(0.04325) * (t2 * (t2 * t11))) - t11 * (R(0.04325) * (t2 * (t2 * t12)));
-        inertia[21] = t14;
+        const gic_real a_yy = t5 + R(0.061674723509842204) * t4;
+        motion[ANDREWS_A_YY] = a_yy;
+        const gic_real a_xy = R(0.061674723509842204) * t3 - t7;
+        motion[ANDREWS_A_XY] = a_xy;
+        const gic_real a_yx = t7 + R(-0.061674723509842204) * t3;
+        motion[ANDREWS_A_YX] = a_yx;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t11 = a_xy * R(-6.776263578034403e-21) + a_xx * R(0.00092);
+        const gic_real t12 = a_yy * R(-6.776263578034403e-21) + a_yx * R(0.00092);
+        const gic_real along_0_force_y = R(0.04325) * t11;
+        inertia[ANDREWS_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real along_0_bias = t12 * (R(0.04325) * (omega_z * (omega_z * t11))) - t11 * (R(0.04325) * (omega_z *
+            (omega_z * t12)));
+        inertia[ANDREWS_I_COORDINATE + 6] = along_0_bias;
         const gic_real t15 = R(0.04325) * t12;
-        const gic_real t16 = t12 * t15 + (R(2.194e-06) + t11 * t13);
-        inertia[20] = t16;
-        inertia[22] = t16;
-        const gic_real t17 = -t15;
-        inertia[15] = t17;
+        const gic_real along_0_moment_z = t12 * t15 + (R(2.194e-06) + t11 * along_0_force_y);
+        inertia[ANDREWS_I_COORDINATE + 5] = along_0_moment_z;
+        inertia[ANDREWS_I_COORDINATE + 7] = along_0_moment_z;
+        const gic_real along_0_force_x = -t15;
+        inertia[ANDREWS_I_COORDINATE + 0] = along_0_force_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -230,28 +341,35 @@ static int andrews_solve_K1(andrews *self, const gic_real *GIC_RESTRICT k, const
 static GIC_COLD void andrews_residual_K1(const gic_real *GIC_RESTRICT k, const andrews_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* beta */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = x[0] - R(-0.06171389001427645);
         const gic_real t2 = GIC_COS(t1);
-        const gic_real t3 = R(0.061674723509842204) * motion[7] + R(0.9980963022073495) * motion[6];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = R(0.061674723509842204) * motion[ANDREWS_A_YY] + R(0.9980963022073495) *
+            motion[ANDREWS_A_YX];
         const gic_real t4 = GIC_SIN(t1);
-        const gic_real t5 = R(0.061674723509842204) * motion[4] + R(0.9980963022073495) * motion[3];
+        const gic_real t5 = R(0.061674723509842204) * motion[ANDREWS_A_XY] + R(0.9980963022073495) *
+            motion[ANDREWS_A_XX];
         const gic_real t6 = t4 * t3 + t2 * t5;
         const gic_real t7 = GIC_FABS(t2 * t3 - t4 * t5) + (GIC_FABS(t6) - t6);
-        const gic_real t8 = t7 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
-        const gic_real t10 = t9 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
-        const gic_real t11 = GIC_FABS(motion[14]);
+        const gic_real t8 = t7 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YX] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XX] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(motion[ANDREWS_A_YY] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_XY] - R(1.0));
+        const gic_real t10 = t9 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XY]) + GIC_FABS(motion[ANDREWS_A_XX] * motion[ANDREWS_A_YY] - motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_YX] - R(1.0));
+        const gic_real t11 = GIC_FABS(motion[ANDREWS_OMEGA_Z]);
         const gic_real t12 = (R(1.0) + GIC_FABS(-t6)) * GIC_FABS(rate[0]);
-        const gic_real t13 = t5 * motion[14];
-        const gic_real t14 = t3 * motion[14];
+        const gic_real t13 = t5 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t14 = t3 * motion[ANDREWS_OMEGA_Z];
         const gic_real t15 = rate[0] * (t4 * t13 - t2 * t14);
-        const gic_real t16 = t4 * (motion[14] * t13) - t2 * (motion[14] * t14) - (t15 + t15);
+        const gic_real t16 = t4 * (motion[ANDREWS_OMEGA_Z] * t13) - t2 * (motion[ANDREWS_OMEGA_Z] * t14) - (t15 + t15);
         const gic_real t17 = GIC_FABS(t16) / (R(1e-30) + (t11 * t11 + t12 * t12));
-        const gic_real t18 = GIC_FABS(motion[14] - rate[0]) / (R(1e-30) + (t11 + t12)) + t17;
+        const gic_real t18 = GIC_FABS(motion[ANDREWS_OMEGA_Z] - rate[0]) / (R(1e-30) + (t11 + t12)) + t17;
         worst[0] = t10;
         worst[1] = t18;
     }
@@ -286,16 +404,18 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     if (!links->cold) {
         /* predict: the old pose moved by its unit velocities times the change of the coordinates */
         {
+            /* constraint equations at the poses, and their derivative */
             const gic_real t1 = change[0] * s[2];
             const gic_real t2 = t1 * R(0.5);
             const gic_real t3 = change[0] * s[1];
             const gic_real t4 = t3 * R(0.5);
             const gic_real t5 = change[0] * s[0];
             const gic_real t6 = t5 * R(0.5);
-            const gic_real t7 = q[3] - (q[6] * t2 + (q[5] * t4 + q[4] * t6));
-            const gic_real t8 = q[6] + (q[5] * t6 - q[4] * t4 + q[3] * t2);
-            const gic_real t9 = q[5] + (q[4] * t2 - q[6] * t6 + q[3] * t4);
-            const gic_real t10 = q[4] + (q[6] * t4 - q[5] * t2 + q[3] * t6);
+            const gic_real t7 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P3] * t2 + (q[ANDREWS_Q_P2] * t4 + q[ANDREWS_Q_P1] *
+                t6));
+            const gic_real t8 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P2] * t6 - q[ANDREWS_Q_P1] * t4 + q[ANDREWS_Q_P0] * t2);
+            const gic_real t9 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t2 - q[ANDREWS_Q_P3] * t6 + q[ANDREWS_Q_P0] * t4);
+            const gic_real t10 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P3] * t4 - q[ANDREWS_Q_P2] * t2 + q[ANDREWS_Q_P0] * t6);
             const gic_real t11 = t8 * t8 + (t9 * t9 + t10 * t10) + t7 * t7;
             const gic_real t12 = R(1.5) - R(0.5) * t11;
             const gic_real t13 = change[0] * s[8];
@@ -304,10 +424,14 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t16 = t15 * R(0.5);
             const gic_real t17 = change[0] * s[6];
             const gic_real t18 = t17 * R(0.5);
-            const gic_real t19 = q[10] - (q[13] * t14 + (q[12] * t16 + q[11] * t18));
-            const gic_real t20 = q[13] + (q[12] * t18 - q[11] * t16 + q[10] * t14);
-            const gic_real t21 = q[12] + (q[11] * t14 - q[13] * t18 + q[10] * t16);
-            const gic_real t22 = q[11] + (q[13] * t16 - q[12] * t14 + q[10] * t18);
+            const gic_real t19 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P3] * t14 + (q[7 + ANDREWS_Q_P2] * t16 +
+                q[7 + ANDREWS_Q_P1] * t18));
+            const gic_real t20 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P2] * t18 - q[7 + ANDREWS_Q_P1] * t16 +
+                q[7 + ANDREWS_Q_P0] * t14);
+            const gic_real t21 = q[7 + ANDREWS_Q_P2] + (q[7 + ANDREWS_Q_P1] * t14 - q[7 + ANDREWS_Q_P3] * t18 +
+                q[7 + ANDREWS_Q_P0] * t16);
+            const gic_real t22 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P3] * t16 - q[7 + ANDREWS_Q_P2] * t14 +
+                q[7 + ANDREWS_Q_P0] * t18);
             const gic_real t23 = t20 * t20 + (t21 * t21 + t22 * t22) + t19 * t19;
             const gic_real t24 = R(1.5) - R(0.5) * t23;
             const gic_real t25 = t1 * t1 + (t3 * t3 + t5 * t5) + (t13 * t13 + (t15 * t15 + t17 * t17));
@@ -319,42 +443,44 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t31 = t22 * t24;
             const gic_real t32 = t21 * t24;
             const gic_real t33 = t20 * t24;
-            q[3] = t26;
-            q[4] = t27;
-            q[5] = t28;
-            q[6] = t29;
-            q[10] = t30;
-            q[11] = t31;
-            q[12] = t32;
-            q[13] = t33;
+            q[ANDREWS_Q_P0] = t26;
+            q[ANDREWS_Q_P1] = t27;
+            q[ANDREWS_Q_P2] = t28;
+            q[ANDREWS_Q_P3] = t29;
+            q[7 + ANDREWS_Q_P0] = t30;
+            q[7 + ANDREWS_Q_P1] = t31;
+            q[7 + ANDREWS_Q_P2] = t32;
+            q[7 + ANDREWS_Q_P3] = t33;
             reach = t25;
         }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding;
-         * not at all where the prediction, which is off by about the square of the way, is that good */
-        for (i = 0; i < GIC_CHORDS && (i || R(4.0) * reach * reach > enough); ++i) {
+        /* correct with the old factors until what a further correction would change is rounding */
+        for (i = 0; i < GIC_CHORDS && (i || !GIC_PREDICTED(reach, enough)); ++i) {
             {
-                const gic_real t1 = q[5] + q[5];
-                const gic_real t2 = q[6] + q[6];
-                const gic_real t3 = q[11] + q[11];
-                const gic_real t4 = q[13] + q[13];
-                const gic_real t5 = q[4] + q[4];
-                const gic_real t6 = q[12] + q[12];
-                const gic_real t7 = q[3] * t1;
-                const gic_real t8 = R(0.006999999999999999) * m0[3] + R(-0.027999999999999997) * (R(1.0) - (q[5] * t1 + q[6] * t2));
-                const gic_real t9 = q[13] * t4;
-                const gic_real t10 = q[12] * t3;
-                const gic_real t11 = q[10] * t4;
-                const gic_real t12 = R(0.006999999999999999) * m0[6] + R(-0.027999999999999997) * (q[5] * t5 + q[3] * t2);
-                const gic_real t13 = R(1.0) - (q[11] * t3 + t9);
-                const gic_real t14 = R(1.0) - (q[12] * t6 + t9);
+                const gic_real t1 = q[ANDREWS_Q_P2] + q[ANDREWS_Q_P2];
+                const gic_real t2 = q[ANDREWS_Q_P3] + q[ANDREWS_Q_P3];
+                const gic_real t3 = q[7 + ANDREWS_Q_P1] + q[7 + ANDREWS_Q_P1];
+                const gic_real t4 = q[7 + ANDREWS_Q_P3] + q[7 + ANDREWS_Q_P3];
+                const gic_real t5 = q[ANDREWS_Q_P1] + q[ANDREWS_Q_P1];
+                const gic_real t6 = q[7 + ANDREWS_Q_P2] + q[7 + ANDREWS_Q_P2];
+                const gic_real t7 = q[ANDREWS_Q_P0] * t1;
+                /* constraint equations at the poses, and their derivative */
+                const gic_real t8 = R(0.006999999999999999) * m0[ANDREWS_A_XX] + R(-0.027999999999999997) * (R(1.0) -
+                    (q[ANDREWS_Q_P2] * t1 + q[ANDREWS_Q_P3] * t2));
+                const gic_real t9 = q[7 + ANDREWS_Q_P3] * t4;
+                const gic_real t10 = q[7 + ANDREWS_Q_P2] * t3;
+                const gic_real t11 = q[7 + ANDREWS_Q_P0] * t4;
+                const gic_real t12 = R(0.006999999999999999) * m0[ANDREWS_A_YX] + R(-0.027999999999999997) *
+                    (q[ANDREWS_Q_P2] * t5 + q[ANDREWS_Q_P0] * t2);
+                const gic_real t13 = R(1.0) - (q[7 + ANDREWS_Q_P1] * t3 + t9);
+                const gic_real t14 = R(1.0) - (q[7 + ANDREWS_Q_P2] * t6 + t9);
                 const gic_real t15 = t10 - t11;
                 const gic_real t16 = t10 + t11;
-                const gic_real t17 = q[4] * t2;
-                const gic_real t18 = q[13] * t6;
-                const gic_real t19 = q[10] * t3;
-                const gic_real t20 = q[11] * t4;
-                const gic_real t21 = q[10] * t6;
-                const gic_real t22 = q[6] * t1 - q[3] * t5;
+                const gic_real t17 = q[ANDREWS_Q_P1] * t2;
+                const gic_real t18 = q[7 + ANDREWS_Q_P3] * t6;
+                const gic_real t19 = q[7 + ANDREWS_Q_P0] * t3;
+                const gic_real t20 = q[7 + ANDREWS_Q_P1] * t4;
+                const gic_real t21 = q[7 + ANDREWS_Q_P0] * t6;
+                const gic_real t22 = q[ANDREWS_Q_P3] * t1 - q[ANDREWS_Q_P0] * t5;
                 const gic_real t23 = t17 + t7;
                 const gic_real t24 = t18 + t19;
                 const gic_real t25 = t18 - t19;
@@ -363,28 +489,40 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t28 = t8 - (R(-0.03635) + R(-0.03500000000000001) * t15);
                 const gic_real t29 = t12 - (R(0.03273) + R(-0.03500000000000001) * t13);
                 const gic_real t30 = R(-0.027999999999999997) * (t17 - t7) - R(-0.03500000000000001) * t24;
+                /* pose: the last correction */
                 const gic_real t31 = t22 * R(0.5);
                 const gic_real t32 = t23 * R(0.5);
                 const gic_real t33 = t25 * R(0.5);
                 const gic_real t34 = t27 * R(0.5);
-                const gic_real t35 = (R(-0.43971364724701895) * t13 + R(0.898138023036952) * t16) * t29 + (R(-0.43971364724701895) * t15 + R(0.898138023036952) * t14) * t28;
-                const gic_real t36 = (R(0.8981380230369522) * t13 + R(0.43971364724701906) * t16) * t29 + (R(0.8981380230369522) * t15 + R(0.43971364724701906) * t14) * t28;
+                const gic_real t35 = (R(-0.43971364724701895) * t13 + R(0.898138023036952) * t16) * t29 +
+                    (R(-0.43971364724701895) * t15 + R(0.898138023036952) * t14) * t28;
+                const gic_real t36 = (R(0.8981380230369522) * t13 + R(0.43971364724701906) * t16) * t29 +
+                    (R(0.8981380230369522) * t15 + R(0.43971364724701906) * t14) * t28;
                 const gic_real t37 = (R(-0.43971364724701895) * t24 + R(0.898138023036952) * t26) * t30 + t35;
                 const gic_real t38 = (R(0.8981380230369522) * t24 + R(0.43971364724701906) * t26) * t30 + t36;
+                /* what the bodies add to the inertia and to the equations of motion */
                 const gic_real t39 = t37 * f[6] - t38 * f[7];
                 const gic_real t40 = t37 * f[2] + t38 * f[3];
                 const gic_real t41 = R(0.5) * t39;
                 const gic_real t42 = R(0.5) * t40;
                 const gic_real t43 = t23 * t23 + t22 * t22 + t39 * t39 + (t27 * t27 + t25 * t25 + t40 * t40);
                 step = t43;
-                const gic_real t44 = q[5] + (q[4] * t41 - q[6] * t31 - q[3] * t32);
-                const gic_real t45 = q[4] + (q[3] * t31 - (q[6] * t32 + q[5] * t41));
-                const gic_real t46 = q[12] - (q[10] * t34 + (q[13] * t33 + q[11] * t42));
-                const gic_real t47 = q[11] + (q[10] * t33 + (q[12] * t42 - q[13] * t34));
-                const gic_real t48 = q[6] + (q[4] * t32 + q[5] * t31 + q[3] * t41);
-                const gic_real t49 = q[13] + (q[11] * t34 + q[12] * t33 - q[10] * t42);
-                const gic_real t50 = q[3] - (q[4] * t31 - q[5] * t32 + q[6] * t41);
-                const gic_real t51 = q[10] - (q[11] * t33 - q[12] * t34 - q[13] * t42);
+                const gic_real t44 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t41 - q[ANDREWS_Q_P3] * t31 -
+                    q[ANDREWS_Q_P0] * t32);
+                const gic_real t45 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P0] * t31 - (q[ANDREWS_Q_P3] * t32 +
+                    q[ANDREWS_Q_P2] * t41));
+                const gic_real t46 = q[7 + ANDREWS_Q_P2] - (q[7 + ANDREWS_Q_P0] * t34 + (q[7 + ANDREWS_Q_P3] * t33 +
+                    q[7 + ANDREWS_Q_P1] * t42));
+                const gic_real t47 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P0] * t33 + (q[7 + ANDREWS_Q_P2] * t42 -
+                    q[7 + ANDREWS_Q_P3] * t34));
+                const gic_real t48 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P1] * t32 + q[ANDREWS_Q_P2] * t31 +
+                    q[ANDREWS_Q_P0] * t41);
+                const gic_real t49 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P1] * t34 + q[7 + ANDREWS_Q_P2] * t33 -
+                    q[7 + ANDREWS_Q_P0] * t42);
+                const gic_real t50 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P1] * t31 - q[ANDREWS_Q_P2] * t32 +
+                    q[ANDREWS_Q_P3] * t41);
+                const gic_real t51 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P1] * t33 - q[7 + ANDREWS_Q_P2] * t34 -
+                    q[7 + ANDREWS_Q_P3] * t42);
                 const gic_real t52 = t48 * t48 + (t44 * t44 + t45 * t45) + t50 * t50;
                 const gic_real t53 = t49 * t49 + (t46 * t46 + t47 * t47) + t51 * t51;
                 const gic_real t54 = R(1.5) - R(0.5) * t52;
@@ -397,19 +535,19 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t61 = t47 * t55;
                 const gic_real t62 = t46 * t55;
                 const gic_real t63 = t49 * t55;
-                q[3] = t56;
-                q[4] = t57;
-                q[5] = t58;
-                q[6] = t59;
-                q[10] = t60;
-                q[11] = t61;
-                q[12] = t62;
-                q[13] = t63;
+                q[ANDREWS_Q_P0] = t56;
+                q[ANDREWS_Q_P1] = t57;
+                q[ANDREWS_Q_P2] = t58;
+                q[ANDREWS_Q_P3] = t59;
+                q[7 + ANDREWS_Q_P0] = t60;
+                q[7 + ANDREWS_Q_P1] = t61;
+                q[7 + ANDREWS_Q_P2] = t62;
+                q[7 + ANDREWS_Q_P3] = t63;
             }
             ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
+            if (!GIC_LEADS_ON(step))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
+            if (GIC_CORRECTED(step, GIC_MAX(reach, step), enough))
                 break;
             ++self->head.late_count;
         }
@@ -417,42 +555,42 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
     for (i = 0; i < GIC_PASSES; ++i) {
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
-            const gic_real t1 = q[11] + q[11];
-            const gic_real t2 = q[5] + q[5];
-            const gic_real t3 = q[13] + q[13];
-            const gic_real t4 = q[6] + q[6];
-            const gic_real t5 = q[12] + q[12];
-            const gic_real t6 = q[4] + q[4];
-            const gic_real t7 = R(0.006999999999999999) * m0[6];
-            motion[1] = t7;
-            const gic_real t8 = R(0.006999999999999999) * m0[3];
-            motion[0] = t8;
-            motion[28] = t8;
-            start[18] = t8;
-            const gic_real t9 = q[11] * t1;
-            const gic_real t10 = q[5] * t2;
-            const gic_real t11 = q[13] * t3;
-            const gic_real t12 = q[12] * t1;
-            const gic_real t13 = q[12] * t5;
-            const gic_real t14 = q[10] * t3;
-            const gic_real t15 = R(-0.027999999999999997) * (q[5] * t6 + q[3] * t4);
-            const gic_real t16 = R(-0.027999999999999997) * (R(1.0) - (t10 + q[6] * t4));
+            const gic_real t1 = q[7 + ANDREWS_Q_P1] + q[7 + ANDREWS_Q_P1];
+            const gic_real t2 = q[ANDREWS_Q_P2] + q[ANDREWS_Q_P2];
+            const gic_real t3 = q[7 + ANDREWS_Q_P3] + q[7 + ANDREWS_Q_P3];
+            const gic_real t4 = q[ANDREWS_Q_P3] + q[ANDREWS_Q_P3];
+            const gic_real t5 = q[7 + ANDREWS_Q_P2] + q[7 + ANDREWS_Q_P2];
+            const gic_real t6 = q[ANDREWS_Q_P1] + q[ANDREWS_Q_P1];
+            const gic_real c_y = R(0.006999999999999999) * m0[ANDREWS_A_YX];
+            motion[ANDREWS_C_Y] = c_y;
+            const gic_real c_x = R(0.006999999999999999) * m0[ANDREWS_A_XX];
+            motion[ANDREWS_C_X] = c_x;
+            motion[ANDREWS_S + 4] = c_x;
+            start[18] = c_x;
+            const gic_real t9 = q[7 + ANDREWS_Q_P1] * t1;
+            const gic_real t10 = q[ANDREWS_Q_P2] * t2;
+            const gic_real t11 = q[7 + ANDREWS_Q_P3] * t3;
+            const gic_real t12 = q[7 + ANDREWS_Q_P2] * t1;
+            const gic_real t13 = q[7 + ANDREWS_Q_P2] * t5;
+            const gic_real t14 = q[7 + ANDREWS_Q_P0] * t3;
+            const gic_real t15 = R(-0.027999999999999997) * (q[ANDREWS_Q_P2] * t6 + q[ANDREWS_Q_P0] * t4);
+            const gic_real t16 = R(-0.027999999999999997) * (R(1.0) - (t10 + q[ANDREWS_Q_P3] * t4));
             if (!(R(1.0) - (t9 + t13) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
-            if (!(R(1.0) - (q[4] * t6 + t10) > R(0.0)))
+            if (!(R(1.0) - (q[ANDREWS_Q_P1] * t6 + t10) > R(0.0)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t17 = R(1.0) - (t9 + t11);
             const gic_real t18 = t12 - t14;
             const gic_real t19 = R(1.0) - (t13 + t11);
             const gic_real t20 = t12 + t14;
-            const gic_real t21 = q[13] * t5;
-            const gic_real t22 = q[10] * t1;
-            const gic_real t23 = q[11] * t3;
-            const gic_real t24 = q[10] * t5;
+            const gic_real t21 = q[7 + ANDREWS_Q_P3] * t5;
+            const gic_real t22 = q[7 + ANDREWS_Q_P0] * t1;
+            const gic_real t23 = q[7 + ANDREWS_Q_P1] * t3;
+            const gic_real t24 = q[7 + ANDREWS_Q_P0] * t5;
             const gic_real t25 = R(-0.03500000000000001) * t18;
-            const gic_real t26 = q[4] * t4;
-            const gic_real t27 = q[3] * t2;
-            const gic_real t28 = q[6] * t2 - q[3] * t6;
+            const gic_real t26 = q[ANDREWS_Q_P1] * t4;
+            const gic_real t27 = q[ANDREWS_Q_P0] * t2;
+            const gic_real t28 = q[ANDREWS_Q_P3] * t2 - q[ANDREWS_Q_P0] * t6;
             const gic_real t29 = R(-0.03500000000000001) * t17;
             const gic_real t30 = R(0.8981380230369522) * t17 + R(0.43971364724701906) * t20;
             start[31] = t30;
@@ -462,8 +600,9 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             start[26] = t32;
             const gic_real t33 = R(-0.43971364724701895) * t17 + R(0.898138023036952) * t20;
             start[27] = t33;
-            const gic_real t34 = t7 + t15 - (R(0.03273) + t29);
-            const gic_real t35 = t8 + t16 - (R(-0.03635) + t25);
+            /* constraint equations at the poses, and their derivative */
+            const gic_real t34 = c_y + t15 - (R(0.03273) + t29);
+            const gic_real t35 = c_x + t16 - (R(-0.03635) + t25);
             const gic_real t36 = t21 + t22;
             const gic_real t37 = t30 * t16 - t31 * t15;
             const gic_real t38 = t15 * t32;
@@ -475,30 +614,34 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t44 = t29 * t32 - t25 * t33 + (t32 * t34 - t33 * t35);
             const gic_real t45 = t31 * t29 - t30 * t25 + (t31 * t34 - t30 * t35);
             const gic_real t46 = t23 + t24;
+            /* pose: the last correction */
             const gic_real t47 = t28 * R(0.5);
             const gic_real t48 = t40 * R(0.5);
             const gic_real t49 = t43 * R(0.5);
-            const gic_real t50 = t31 * t7 - t30 * t8;
-            const gic_real t51 = (R(-0.43971364724701895) * t36 + R(0.898138023036952) * t39) * t42 + (t33 * t34 + t32 * t35);
-            const gic_real t52 = (R(0.8981380230369522) * t36 + R(0.43971364724701906) * t39) * t42 + (t30 * t34 + t31 * t35);
+            /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+            const gic_real t50 = t31 * c_y - t30 * c_x;
+            const gic_real t51 = (R(-0.43971364724701895) * t36 + R(0.898138023036952) * t39) * t42 + (t33 * t34 + t32 *
+                t35);
+            const gic_real t52 = (R(0.8981380230369522) * t36 + R(0.43971364724701906) * t39) * t42 + (t30 * t34 + t31 *
+                t35);
             const gic_real t53 = t37 * t44 - (t41 - t38) * t45;
             const gic_real t54 = t46 * R(0.5);
-            const gic_real t55 = t7 * t32 - t8 * t33;
-            const gic_real t56 = rate[0] * t7;
-            const gic_real t57 = rate[0] * t8;
-            motion[16] = t57;
-            const gic_real t58 = m0[14] * (m0[14] * t8);
-            const gic_real t59 = m0[14] * (m0[14] * t7);
-            const gic_real t60 = -t7;
-            motion[27] = t60;
-            start[17] = t60;
-            const gic_real t61 = -t56;
-            motion[15] = t61;
+            const gic_real t55 = c_y * t32 - c_x * t33;
+            const gic_real t56 = rate[0] * c_y;
+            const gic_real velocity_y = rate[0] * c_x;
+            motion[ANDREWS_VELOCITY_Y] = velocity_y;
+            const gic_real t58 = m0[ANDREWS_OMEGA_Z] * (m0[ANDREWS_OMEGA_Z] * c_x);
+            const gic_real t59 = m0[ANDREWS_OMEGA_Z] * (m0[ANDREWS_OMEGA_Z] * c_y);
+            const gic_real s_0_3 = -c_y;
+            motion[ANDREWS_S + 3] = s_0_3;
+            start[17] = s_0_3;
+            const gic_real velocity_x = -t56;
+            motion[ANDREWS_VELOCITY_X] = velocity_x;
             const gic_real t62 = R(1.0) / t53;
-            const gic_real t63 = -t58;
-            motion[21] = t63;
-            const gic_real t64 = -t59;
-            motion[22] = t64;
+            const gic_real acceleration_x = -t58;
+            motion[ANDREWS_ACCELERATION_X] = acceleration_x;
+            const gic_real acceleration_y = -t59;
+            motion[ANDREWS_ACCELERATION_Y] = acceleration_y;
             const gic_real t65 = (t38 - t41) * t62;
             start[29] = t65;
             const gic_real t66 = t44 * t62;
@@ -508,53 +651,63 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t68 = t37 * t62;
             start[28] = t68;
             const gic_real t69 = t51 * t67 - t52 * t66;
-            const gic_real t70 = t66 * t50 - t67 * t55;
-            motion[26] = t70;
-            start[16] = t70;
+            const gic_real s_0_2 = t66 * t50 - t67 * t55;
+            motion[ANDREWS_S + 2] = s_0_2;
+            start[16] = s_0_2;
             const gic_real t71 = t51 * t68 + t52 * t65;
-            const gic_real t72 = t68 * t55 + t65 * t50;
-            motion[56] = t72;
-            start[22] = t72;
+            const gic_real s_0_2_2 = t68 * t55 + t65 * t50;
+            motion[30 + ANDREWS_S + 2] = s_0_2_2;
+            start[22] = s_0_2_2;
             const gic_real t73 = R(0.5) * t69;
-            const gic_real t74 = rate[0] * t70;
-            motion[14] = t74;
-            const gic_real t75 = t70 * R(4.41e-07);
+            const gic_real omega_z = rate[0] * s_0_2;
+            motion[ANDREWS_OMEGA_Z] = omega_z;
+            /* what the bodies add to the inertia and to the equations of motion */
+            const gic_real t75 = s_0_2 * R(4.41e-07);
             const gic_real t76 = R(0.5) * t71;
             const gic_real t77 = t69 * t69 + (t40 * t40 + t28 * t28) + (t71 * t71 + (t46 * t46 + t43 * t43));
             step = t77;
-            const gic_real t78 = q[5] + (q[4] * t73 - q[6] * t47 - q[3] * t48);
-            const gic_real t79 = q[4] + (q[3] * t47 - (q[5] * t73 + q[6] * t48));
-            const gic_real t80 = q[12] - (q[13] * t49 + q[11] * t76 + q[10] * t54);
-            const gic_real t81 = q[11] + (q[12] * t76 - q[13] * t54 + q[10] * t49);
-            const gic_real t82 = q[6] + (q[4] * t48 + q[5] * t47 + q[3] * t73);
-            const gic_real t83 = q[13] + (q[11] * t54 + q[12] * t49 - q[10] * t76);
-            const gic_real t84 = q[3] - (q[6] * t73 + (q[4] * t47 - q[5] * t48));
-            const gic_real t85 = q[10] - (q[11] * t49 - q[12] * t54 - q[13] * t76);
-            const gic_real t86 = rate[0] * t72;
-            motion[44] = t86;
-            const gic_real t87 = t16 * t74;
-            const gic_real t88 = t15 * t74;
-            const gic_real t89 = t72 * R(5.255e-06);
-            const gic_real t90 = t25 * t86;
-            const gic_real t91 = t29 * t86;
-            const gic_real t92 = t31 * t86;
-            const gic_real t93 = t30 * t86;
-            const gic_real t94 = t32 * t86;
-            const gic_real t95 = t33 * t86;
-            const gic_real t96 = t53 * R(586.9076113243804) - (GIC_FABS(t74) + GIC_FABS(t86)) * ahead[0];
+            const gic_real t78 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t73 - q[ANDREWS_Q_P3] * t47 - q[ANDREWS_Q_P0] *
+                t48);
+            const gic_real t79 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P0] * t47 - (q[ANDREWS_Q_P2] * t73 + q[ANDREWS_Q_P3] *
+                t48));
+            const gic_real t80 = q[7 + ANDREWS_Q_P2] - (q[7 + ANDREWS_Q_P3] * t49 + q[7 + ANDREWS_Q_P1] * t76 +
+                q[7 + ANDREWS_Q_P0] * t54);
+            const gic_real t81 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P2] * t76 - q[7 + ANDREWS_Q_P3] * t54 +
+                q[7 + ANDREWS_Q_P0] * t49);
+            const gic_real t82 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P1] * t48 + q[ANDREWS_Q_P2] * t47 + q[ANDREWS_Q_P0] *
+                t73);
+            const gic_real t83 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P1] * t54 + q[7 + ANDREWS_Q_P2] * t49 -
+                q[7 + ANDREWS_Q_P0] * t76);
+            const gic_real t84 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P3] * t73 + (q[ANDREWS_Q_P1] * t47 - q[ANDREWS_Q_P2] *
+                t48));
+            const gic_real t85 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P1] * t49 - q[7 + ANDREWS_Q_P2] * t54 -
+                q[7 + ANDREWS_Q_P3] * t76);
+            const gic_real omega_z_2 = rate[0] * s_0_2_2;
+            motion[30 + ANDREWS_OMEGA_Z] = omega_z_2;
+            /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+            const gic_real t87 = t16 * omega_z;
+            const gic_real t88 = t15 * omega_z;
+            const gic_real t89 = s_0_2_2 * R(5.255e-06);
+            const gic_real t90 = t25 * omega_z_2;
+            const gic_real t91 = t29 * omega_z_2;
+            const gic_real t92 = t31 * omega_z_2;
+            const gic_real t93 = t30 * omega_z_2;
+            const gic_real t94 = t32 * omega_z_2;
+            const gic_real t95 = t33 * omega_z_2;
+            const gic_real t96 = t53 * R(586.9076113243804) - (GIC_FABS(omega_z) + GIC_FABS(omega_z_2)) * ahead[0];
             const gic_real t97 = t82 * t82 + (t78 * t78 + t79 * t79) + t84 * t84;
             const gic_real t98 = t83 * t83 + (t80 * t80 + t81 * t81) + t85 * t85;
-            const gic_real t99 = t57 + t87 - t90;
+            const gic_real t99 = velocity_y + t87 - t90;
             const gic_real t100 = t91 - (t56 + t88);
-            const gic_real t101 = t86 * t91 - t74 * t88;
+            const gic_real t101 = omega_z_2 * t91 - omega_z * t88;
             if (!(t96 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
-            const gic_real t102 = t86 * t90 - t74 * t87;
+            const gic_real t102 = omega_z_2 * t90 - omega_z * t87;
             const gic_real t103 = R(1.5) - R(0.5) * t97;
             const gic_real t104 = t92 * t99 - t93 * t100;
-            const gic_real t105 = t30 * t101 + t31 * t102 - (t34 * (t86 * t93) + t35 * (t86 * t92));
+            const gic_real t105 = t30 * t101 + t31 * t102 - (t34 * (omega_z_2 * t93) + t35 * (omega_z_2 * t92));
             const gic_real t106 = R(1.5) - R(0.5) * t98;
-            const gic_real t107 = t33 * t101 + t32 * t102 - (t34 * (t86 * t95) + t35 * (t86 * t94));
+            const gic_real t107 = t33 * t101 + t32 * t102 - (t34 * (omega_z_2 * t95) + t35 * (omega_z_2 * t94));
             const gic_real t108 = t99 * t94 - t100 * t95;
             const gic_real t109 = t78 * t103;
             const gic_real t110 = t82 * t103;
@@ -571,68 +724,69 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t121 = t110 * t117;
             const gic_real t122 = t114 + t114;
             const gic_real t123 = t32 * t58 - (t108 + t108 + t107) + t33 * t59;
-            const gic_real t124 = R(1.0) - (t109 * (t109 + t109) + t121);
-            motion[3] = t124;
+            const gic_real a_xx = R(1.0) - (t109 * (t109 + t109) + t121);
+            motion[ANDREWS_A_XX] = a_xx;
             const gic_real t125 = t113 * t119;
             const gic_real t126 = t109 * t122;
             const gic_real t127 = t115 * t117;
             const gic_real t128 = t112 * t120;
             const gic_real t129 = t116 * t119;
-            const gic_real t130 = R(1.0) - (t114 * t122 + t121);
-            motion[7] = t130;
-            const gic_real t131 = R(1.0) - (t112 * (t112 + t112) + t125);
-            motion[33] = t131;
-            const gic_real t132 = R(1.0) - (t111 * t120 + t125);
-            motion[37] = t132;
-            const gic_real t133 = t126 + t127;
-            motion[6] = t133;
-            const gic_real t134 = t128 - t129;
-            motion[34] = t134;
-            const gic_real t135 = t128 + t129;
-            motion[36] = t135;
-            const gic_real t136 = t126 - t127;
-            motion[4] = t136;
-            const gic_real t137 = t66 * t118 - t67 * t123;
-            motion[20] = t137;
-            const gic_real t138 = t133 * R(-0.0115);
-            const gic_real t139 = t68 * t123 + t65 * t118;
-            motion[50] = t139;
-            const gic_real t140 = t124 * R(-0.0115);
-            const gic_real t141 = t7 + t70 * t138;
-            const gic_real t142 = t132 * R(-0.018740000000000003) + t135 * R(0.010430000000000002);
-            const gic_real t143 = R(0.00365) * (t137 * t140 - t74 * (t74 * t138) - t59);
-            const gic_real t144 = t134 * R(-0.018740000000000003) + t131 * R(0.010430000000000002);
-            const gic_real t145 = R(0.00365) * (t58 + (t74 * (t74 * t140) + t137 * t138));
-            const gic_real t146 = t8 + t70 * t140;
-            const gic_real t147 = t72 * t142;
+            const gic_real a_yy = R(1.0) - (t114 * t122 + t121);
+            motion[ANDREWS_A_YY] = a_yy;
+            const gic_real a_xx_2 = R(1.0) - (t112 * (t112 + t112) + t125);
+            motion[30 + ANDREWS_A_XX] = a_xx_2;
+            const gic_real a_yy_2 = R(1.0) - (t111 * t120 + t125);
+            motion[30 + ANDREWS_A_YY] = a_yy_2;
+            const gic_real a_yx = t126 + t127;
+            motion[ANDREWS_A_YX] = a_yx;
+            const gic_real a_xy_2 = t128 - t129;
+            motion[30 + ANDREWS_A_XY] = a_xy_2;
+            const gic_real a_yx_2 = t128 + t129;
+            motion[30 + ANDREWS_A_YX] = a_yx_2;
+            const gic_real a_xy = t126 - t127;
+            motion[ANDREWS_A_XY] = a_xy;
+            const gic_real alpha_z = t66 * t118 - t67 * t123;
+            motion[ANDREWS_ALPHA_Z] = alpha_z;
+            const gic_real t138 = a_yx * R(-0.0115);
+            const gic_real alpha_z_2 = t68 * t123 + t65 * t118;
+            motion[30 + ANDREWS_ALPHA_Z] = alpha_z_2;
+            const gic_real t140 = a_xx * R(-0.0115);
+            const gic_real t141 = c_y + s_0_2 * t138;
+            const gic_real t142 = a_yy_2 * R(-0.018740000000000003) + a_yx_2 * R(0.010430000000000002);
+            const gic_real t143 = R(0.00365) * (alpha_z * t140 - omega_z * (omega_z * t138) - t59);
+            const gic_real t144 = a_xy_2 * R(-0.018740000000000003) + a_xx_2 * R(0.010430000000000002);
+            const gic_real t145 = R(0.00365) * (t58 + (omega_z * (omega_z * t140) + alpha_z * t138));
+            const gic_real t146 = c_x + s_0_2 * t140;
+            const gic_real t147 = s_0_2_2 * t142;
             const gic_real t148 = R(0.00365) * t141;
-            const gic_real t149 = t72 * t144;
-            const gic_real t150 = R(0.02373) * (t86 * (t86 * t144) + t139 * t142) * t147;
-            const gic_real t151 = R(0.02373) * (t139 * t144 - t86 * (t86 * t142)) * t149;
+            const gic_real t149 = s_0_2_2 * t144;
+            const gic_real t150 = R(0.02373) * (omega_z_2 * (omega_z_2 * t144) + alpha_z_2 * t142) * t147;
+            const gic_real t151 = R(0.02373) * (alpha_z_2 * t144 - omega_z_2 * (omega_z_2 * t142)) * t149;
             const gic_real t152 = R(0.02373) * t147;
             const gic_real t153 = R(0.00365) * t146;
             const gic_real t154 = R(0.02373) * t149;
-            const gic_real t155 = -(t148 + t152);
-            inertia[15] = t155;
-            const gic_real t156 = t75 + ((t7 + t138) * t148 + (t8 + t140) * t153);
+            const gic_real along_0_force_x = -(t148 + t152);
+            inertia[ANDREWS_I_COORDINATE + 0] = along_0_force_x;
+            const gic_real t156 = t75 + ((c_y + t138) * t148 + (c_x + t140) * t153);
             const gic_real t157 = t89 + ((R(0.03273) + t142) * t152 + (R(-0.03635) + t144) * t154);
-            const gic_real t158 = t70 * (t137 * R(4.41e-07)) + (t143 * t146 + t145 * t141);
-            const gic_real t159 = t70 * t75 + (t146 * t153 + t141 * t148) + (t72 * t89 + (t149 * t154 + t147 * t152));
-            inertia[22] = t159;
-            const gic_real t160 = t153 + t154;
-            inertia[16] = t160;
-            const gic_real t161 = t158 + (t72 * (t139 * R(5.255e-06)) + (t151 + t150));
-            inertia[21] = t161;
-            const gic_real t162 = t156 + t157;
-            inertia[20] = t162;
-            q[3] = t115;
-            q[4] = t114;
-            q[5] = t109;
-            q[6] = t110;
-            q[10] = t116;
-            q[11] = t111;
-            q[12] = t112;
-            q[13] = t113;
+            const gic_real t158 = s_0_2 * (alpha_z * R(4.41e-07)) + (t143 * t146 + t145 * t141);
+            const gic_real mass_0 = s_0_2 * t75 + (t146 * t153 + t141 * t148) + (s_0_2_2 * t89 + (t149 * t154 + t147 *
+                t152));
+            inertia[ANDREWS_I_COORDINATE + 7] = mass_0;
+            const gic_real along_0_force_y = t153 + t154;
+            inertia[ANDREWS_I_COORDINATE + 1] = along_0_force_y;
+            const gic_real along_0_bias = t158 + (s_0_2_2 * (alpha_z_2 * R(5.255e-06)) + (t151 + t150));
+            inertia[ANDREWS_I_COORDINATE + 6] = along_0_bias;
+            const gic_real along_0_moment_z = t156 + t157;
+            inertia[ANDREWS_I_COORDINATE + 5] = along_0_moment_z;
+            q[ANDREWS_Q_P0] = t115;
+            q[ANDREWS_Q_P1] = t114;
+            q[ANDREWS_Q_P2] = t109;
+            q[ANDREWS_Q_P3] = t110;
+            q[7 + ANDREWS_Q_P0] = t116;
+            q[7 + ANDREWS_Q_P1] = t111;
+            q[7 + ANDREWS_Q_P2] = t112;
+            q[7 + ANDREWS_Q_P3] = t113;
             start[14] = R(0.0);
             start[15] = R(0.0);
             start[19] = R(0.0);
@@ -646,10 +800,9 @@ static int andrews_solve_K2_K3(andrews *self, const gic_real *GIC_RESTRICT k, co
         motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
         ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+        if (!GIC_LEADS_ON(step))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
+        if (GIC_IS_ENOUGH(step, enough) || GIC_IS_ROUNDING(step, before, enough)) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -672,66 +825,94 @@ static GIC_COLD void andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, cons
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.006999999999999999) * m0[3];
-        const gic_real t2 = R(0.006999999999999999) * m0[6];
-        const gic_real t3 = GIC_FABS((motion[0] - t1) * R(28.571428571428562)) + GIC_FABS((motion[1] - t2) * R(28.571428571428562));
-        const gic_real t4 = R(-0.027999999999999997) * motion[6];
-        const gic_real t5 = R(-0.03500000000000001) * motion[37];
-        const gic_real t6 = motion[1] + t4 - (R(0.03273) + t5);
-        const gic_real t7 = R(-0.43971364724701895) * motion[37] + R(0.898138023036952) * motion[36];
-        const gic_real t8 = R(-0.027999999999999997) * motion[3];
-        const gic_real t9 = R(-0.03500000000000001) * motion[34];
-        const gic_real t10 = motion[0] + t8 - (R(-0.03635) + t9);
-        const gic_real t11 = R(-0.43971364724701895) * motion[34] + R(0.898138023036952) * motion[33];
+        const gic_real t1 = R(0.006999999999999999) * m0[ANDREWS_A_XX];
+        const gic_real t2 = R(0.006999999999999999) * m0[ANDREWS_A_YX];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS((motion[ANDREWS_C_X] - t1) * R(28.571428571428562)) +
+            GIC_FABS((motion[ANDREWS_C_Y] - t2) * R(28.571428571428562));
+        const gic_real t4 = R(-0.027999999999999997) * motion[ANDREWS_A_YX];
+        const gic_real t5 = R(-0.03500000000000001) * motion[30 + ANDREWS_A_YY];
+        const gic_real t6 = motion[ANDREWS_C_Y] + t4 - (R(0.03273) + t5);
+        const gic_real t7 = R(-0.43971364724701895) * motion[30 + ANDREWS_A_YY] + R(0.898138023036952) *
+            motion[30 + ANDREWS_A_YX];
+        const gic_real t8 = R(-0.027999999999999997) * motion[ANDREWS_A_XX];
+        const gic_real t9 = R(-0.03500000000000001) * motion[30 + ANDREWS_A_XY];
+        const gic_real t10 = motion[ANDREWS_C_X] + t8 - (R(-0.03635) + t9);
+        const gic_real t11 = R(-0.43971364724701895) * motion[30 + ANDREWS_A_XY] + R(0.898138023036952) *
+            motion[30 + ANDREWS_A_XX];
         const gic_real t12 = t3 + GIC_FABS((t6 * t7 + t10 * t11) * R(28.57142857142856));
-        const gic_real t13 = R(0.8981380230369522) * motion[37] + R(0.43971364724701906) * motion[36];
-        const gic_real t14 = R(0.8981380230369522) * motion[34] + R(0.43971364724701906) * motion[33];
+        const gic_real t13 = R(0.8981380230369522) * motion[30 + ANDREWS_A_YY] + R(0.43971364724701906) *
+            motion[30 + ANDREWS_A_YX];
+        const gic_real t14 = R(0.8981380230369522) * motion[30 + ANDREWS_A_XY] + R(0.43971364724701906) *
+            motion[30 + ANDREWS_A_XX];
         const gic_real t15 = t12 + GIC_FABS((t13 * t6 + t14 * t10) * R(28.57142857142855));
-        const gic_real t16 = t15 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
-        const gic_real t17 = t16 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
-        const gic_real t18 = t17 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
-        const gic_real t19 = t18 + GIC_FABS(motion[36] * motion[36] + motion[33] * motion[33] - R(1.0));
-        const gic_real t20 = t19 + GIC_FABS(motion[37] * motion[37] + motion[34] * motion[34] - R(1.0));
-        const gic_real t21 = t20 + GIC_FABS(motion[36] * motion[37] + motion[33] * motion[34]) + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - R(1.0));
-        const gic_real t22 = GIC_FABS(R(28.571428571428562) * (t2 + motion[27])) + GIC_FABS(R(28.571428571428562) * (motion[28] - t1));
+        const gic_real t16 = t15 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YX] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XX] - R(1.0));
+        const gic_real t17 = t16 + GIC_FABS(motion[ANDREWS_A_YY] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_XY] - R(1.0));
+        const gic_real t18 = t17 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XY]) + GIC_FABS(motion[ANDREWS_A_XX] * motion[ANDREWS_A_YY] - motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_YX] - R(1.0));
+        const gic_real t19 = t18 + GIC_FABS(motion[30 + ANDREWS_A_YX] * motion[30 + ANDREWS_A_YX] +
+            motion[30 + ANDREWS_A_XX] * motion[30 + ANDREWS_A_XX] - R(1.0));
+        const gic_real t20 = t19 + GIC_FABS(motion[30 + ANDREWS_A_YY] * motion[30 + ANDREWS_A_YY] +
+            motion[30 + ANDREWS_A_XY] * motion[30 + ANDREWS_A_XY] - R(1.0));
+        const gic_real t21 = t20 + GIC_FABS(motion[30 + ANDREWS_A_YX] * motion[30 + ANDREWS_A_YY] +
+            motion[30 + ANDREWS_A_XX] * motion[30 + ANDREWS_A_XY]) + GIC_FABS(motion[30 + ANDREWS_A_XX] *
+            motion[30 + ANDREWS_A_YY] - motion[30 + ANDREWS_A_XY] * motion[30 + ANDREWS_A_YX] - R(1.0));
+        const gic_real t22 = GIC_FABS(R(28.571428571428562) * (t2 + motion[ANDREWS_S + 3])) +
+            GIC_FABS(R(28.571428571428562) * (motion[ANDREWS_S + 4] - t1));
         const gic_real t23 = t5 * t11 - t9 * t7 + (t6 * t11 - t10 * t7);
-        const gic_real t24 = t23 * motion[56] + (t8 * t7 - t4 * t11) * motion[26];
-        const gic_real t25 = GIC_FABS(R(28.57142857142856) * (t24 + t11 * motion[27] + t7 * motion[28]));
+        const gic_real t24 = t23 * motion[30 + ANDREWS_S + 2] + (t8 * t7 - t4 * t11) * motion[ANDREWS_S + 2];
+        const gic_real t25 = GIC_FABS(R(28.57142857142856) * (t24 + t11 * motion[ANDREWS_S + 3] + t7 *
+            motion[ANDREWS_S + 4]));
         const gic_real t26 = t14 * t5 - t13 * t9 + (t14 * t6 - t13 * t10);
-        const gic_real t27 = t26 * motion[56] + (t13 * t8 - t14 * t4) * motion[26];
-        const gic_real t28 = GIC_FABS(R(28.57142857142855) * (t27 + t14 * motion[27] + t13 * motion[28]));
-        const gic_real t29 = R(28.571428571428562) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28])) + GIC_FABS(motion[26]);
-        const gic_real t30 = R(1.0) + (t29 + GIC_FABS(motion[56]));
-        const gic_real t31 = GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(R(28.571428571428562) * (motion[15] - rate[0] * motion[27]));
-        const gic_real t32 = t31 + GIC_FABS(R(28.571428571428562) * (motion[16] - rate[0] * motion[28])) + GIC_FABS(motion[44] - rate[0] * motion[56]);
-        const gic_real t33 = R(28.571428571428562) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]));
-        const gic_real t34 = GIC_FABS(motion[14]);
-        const gic_real t35 = GIC_FABS(motion[44]);
+        const gic_real t27 = t26 * motion[30 + ANDREWS_S + 2] + (t13 * t8 - t14 * t4) * motion[ANDREWS_S + 2];
+        const gic_real t28 = GIC_FABS(R(28.57142857142855) * (t27 + t14 * motion[ANDREWS_S + 3] + t13 *
+            motion[ANDREWS_S + 4]));
+        const gic_real t29 = R(28.571428571428562) * (GIC_FABS(motion[ANDREWS_S + 3]) +
+            GIC_FABS(motion[ANDREWS_S + 4])) + GIC_FABS(motion[ANDREWS_S + 2]);
+        const gic_real t30 = R(1.0) + (t29 + GIC_FABS(motion[30 + ANDREWS_S + 2]));
+        const gic_real t31 = GIC_FABS(motion[ANDREWS_OMEGA_Z] - rate[0] * motion[ANDREWS_S + 2]) +
+            GIC_FABS(R(28.571428571428562) * (motion[ANDREWS_VELOCITY_X] - rate[0] * motion[ANDREWS_S + 3]));
+        const gic_real t32 = t31 + GIC_FABS(R(28.571428571428562) * (motion[ANDREWS_VELOCITY_Y] - rate[0] *
+            motion[ANDREWS_S + 4])) + GIC_FABS(motion[30 + ANDREWS_OMEGA_Z] - rate[0] * motion[30 + ANDREWS_S + 2]);
+        const gic_real t33 = R(28.571428571428562) * (GIC_FABS(motion[ANDREWS_VELOCITY_X]) +
+            GIC_FABS(motion[ANDREWS_VELOCITY_Y]));
+        const gic_real t34 = GIC_FABS(motion[ANDREWS_OMEGA_Z]);
+        const gic_real t35 = GIC_FABS(motion[30 + ANDREWS_OMEGA_Z]);
         const gic_real t36 = t30 * GIC_FABS(rate[0]);
         const gic_real t37 = (t22 + t25 + t28) / (t30 + R(1e-30)) + t32 / (R(1e-30) + (t33 + t34 + t35 + t36));
-        const gic_real t38 = GIC_FABS(R(28.571428571428562) * (m0[14] * (m0[14] * t1) + motion[21])) + GIC_FABS(R(28.571428571428562) * (m0[14] * (m0[14] * t2) + motion[22]));
-        const gic_real t39 = t8 * motion[14];
-        const gic_real t40 = t9 * motion[44];
-        const gic_real t41 = motion[16] + t39 - t40;
-        const gic_real t42 = t11 * motion[44];
-        const gic_real t43 = t5 * motion[44];
-        const gic_real t44 = t4 * motion[14];
-        const gic_real t45 = t43 + (motion[15] - t44);
-        const gic_real t46 = t7 * motion[44];
+        const gic_real t38 = GIC_FABS(R(28.571428571428562) * (m0[ANDREWS_OMEGA_Z] * (m0[ANDREWS_OMEGA_Z] * t1) +
+            motion[ANDREWS_ACCELERATION_X])) + GIC_FABS(R(28.571428571428562) * (m0[ANDREWS_OMEGA_Z] *
+            (m0[ANDREWS_OMEGA_Z] * t2) + motion[ANDREWS_ACCELERATION_Y]));
+        const gic_real t39 = t8 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t40 = t9 * motion[30 + ANDREWS_OMEGA_Z];
+        const gic_real t41 = motion[ANDREWS_VELOCITY_Y] + t39 - t40;
+        const gic_real t42 = t11 * motion[30 + ANDREWS_OMEGA_Z];
+        const gic_real t43 = t5 * motion[30 + ANDREWS_OMEGA_Z];
+        const gic_real t44 = t4 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t45 = t43 + (motion[ANDREWS_VELOCITY_X] - t44);
+        const gic_real t46 = t7 * motion[30 + ANDREWS_OMEGA_Z];
         const gic_real t47 = t41 * t42 - t45 * t46;
-        const gic_real t48 = t6 * (t11 * motion[50] - motion[44] * t46) - t10 * (motion[44] * t42 + t7 * motion[50]);
-        const gic_real t49 = motion[22] + (t8 * motion[20] - motion[14] * t44) - (t9 * motion[50] - motion[44] * t43);
-        const gic_real t50 = motion[44] * t40 + t5 * motion[50] + (motion[21] - (motion[14] * t39 + t4 * motion[20]));
+        const gic_real t48 = t6 * (t11 * motion[30 + ANDREWS_ALPHA_Z] - motion[30 + ANDREWS_OMEGA_Z] * t46) - t10 *
+            (motion[30 + ANDREWS_OMEGA_Z] * t42 + t7 * motion[30 + ANDREWS_ALPHA_Z]);
+        const gic_real t49 = motion[ANDREWS_ACCELERATION_Y] + (t8 * motion[ANDREWS_ALPHA_Z] - motion[ANDREWS_OMEGA_Z] *
+            t44) - (t9 * motion[30 + ANDREWS_ALPHA_Z] - motion[30 + ANDREWS_OMEGA_Z] * t43);
+        const gic_real t50 = motion[30 + ANDREWS_OMEGA_Z] * t40 + t5 * motion[30 + ANDREWS_ALPHA_Z] +
+            (motion[ANDREWS_ACCELERATION_X] - (motion[ANDREWS_OMEGA_Z] * t39 + t4 * motion[ANDREWS_ALPHA_Z]));
         const gic_real t51 = t47 + t47 + (t48 + (t7 * t49 + t11 * t50));
-        const gic_real t52 = t14 * motion[44];
-        const gic_real t53 = t13 * motion[44];
+        const gic_real t52 = t14 * motion[30 + ANDREWS_OMEGA_Z];
+        const gic_real t53 = t13 * motion[30 + ANDREWS_OMEGA_Z];
         const gic_real t54 = t52 * t41 - t53 * t45;
-        const gic_real t55 = t6 * (t14 * motion[50] - motion[44] * t53) - t10 * (motion[44] * t52 + t13 * motion[50]);
+        const gic_real t55 = t6 * (t14 * motion[30 + ANDREWS_ALPHA_Z] - motion[30 + ANDREWS_OMEGA_Z] * t53) - t10 *
+            (motion[30 + ANDREWS_OMEGA_Z] * t52 + t13 * motion[30 + ANDREWS_ALPHA_Z]);
         const gic_real t56 = t54 + t54 + (t55 + (t13 * t49 + t14 * t50));
         const gic_real t57 = t38 + GIC_FABS(t51 * R(28.57142857142856)) + GIC_FABS(t56 * R(28.57142857142855));
-        const gic_real t58 = R(28.571428571428562) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22])) + GIC_FABS(motion[20]);
-        const gic_real t59 = t33 * t33 + t34 * t34 + t58 + (t35 * t35 + GIC_FABS(motion[50]));
-        const gic_real t60 = GIC_FABS(m0[14]);
+        const gic_real t58 = R(28.571428571428562) * (GIC_FABS(motion[ANDREWS_ACCELERATION_X]) +
+            GIC_FABS(motion[ANDREWS_ACCELERATION_Y])) + GIC_FABS(motion[ANDREWS_ALPHA_Z]);
+        const gic_real t59 = t33 * t33 + t34 * t34 + t58 + (t35 * t35 + GIC_FABS(motion[30 + ANDREWS_ALPHA_Z]));
+        const gic_real t60 = GIC_FABS(m0[ANDREWS_OMEGA_Z]);
         const gic_real t61 = t57 / (R(1e-30) + (t59 + t60 * t60 + t36 * t36));
         const gic_real t62 = t37 + t61;
         worst[0] = t21;
@@ -739,6 +920,25 @@ static GIC_COLD void andrews_residual_K2_K3(const gic_real *GIC_RESTRICT k, cons
     }
 }
 
+/* Columns, with the names of K5:
+ *    0  meet_K4.point_b_y
+ *    1  meet_K4.point_b_x
+ *    2  hinge_K4.point_a_y
+ *    3  hinge_K4.point_a_x
+ *    4  pivot_K5.side_b_y
+ *    5  pivot_K5.side_b_x
+ *    6  pivot_K5.third_b_y
+ *    7  pivot_K5.third_b_x
+ *    8  K5.J_xx
+ *    9  scale of the determinant
+ *   10  K5.com_y
+ *   11  K5.com_x
+ *   12  K5.mass
+ *   13  K4.com_y
+ *   14  K4.com_x
+ *   15  scale of hinge_K4
+ *   16  scale of hinge_K4
+ */
 static const gic_real andrews_k_K5_K4[2][17] = {
     { /* K5 */
         R(-0.019999999999999997), R(0.0), R(0.0), R(0.04000000000000001),
@@ -779,16 +979,18 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     if (!links->cold) {
         /* predict: the old pose moved by its unit velocities times the change of the coordinates */
         {
+            /* constraint equations at the poses, and their derivative */
             const gic_real t1 = change[0] * s[2];
             const gic_real t2 = t1 * R(0.5);
             const gic_real t3 = change[0] * s[1];
             const gic_real t4 = t3 * R(0.5);
             const gic_real t5 = change[0] * s[0];
             const gic_real t6 = t5 * R(0.5);
-            const gic_real t7 = q[3] - (q[6] * t2 + (q[5] * t4 + q[4] * t6));
-            const gic_real t8 = q[6] + (q[5] * t6 - q[4] * t4 + q[3] * t2);
-            const gic_real t9 = q[5] + (q[4] * t2 - q[6] * t6 + q[3] * t4);
-            const gic_real t10 = q[4] + (q[6] * t4 - q[5] * t2 + q[3] * t6);
+            const gic_real t7 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P3] * t2 + (q[ANDREWS_Q_P2] * t4 + q[ANDREWS_Q_P1] *
+                t6));
+            const gic_real t8 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P2] * t6 - q[ANDREWS_Q_P1] * t4 + q[ANDREWS_Q_P0] * t2);
+            const gic_real t9 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t2 - q[ANDREWS_Q_P3] * t6 + q[ANDREWS_Q_P0] * t4);
+            const gic_real t10 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P3] * t4 - q[ANDREWS_Q_P2] * t2 + q[ANDREWS_Q_P0] * t6);
             const gic_real t11 = t8 * t8 + (t9 * t9 + t10 * t10) + t7 * t7;
             const gic_real t12 = R(1.5) - R(0.5) * t11;
             const gic_real t13 = change[0] * s[9];
@@ -800,10 +1002,14 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t19 = t18 * R(0.5);
             const gic_real t20 = change[0] * s[6];
             const gic_real t21 = t20 * R(0.5);
-            const gic_real t22 = q[10] - (q[13] * t17 + (q[12] * t19 + q[11] * t21));
-            const gic_real t23 = q[13] + (q[12] * t21 - q[11] * t19 + q[10] * t17);
-            const gic_real t24 = q[12] + (q[11] * t17 - q[13] * t21 + q[10] * t19);
-            const gic_real t25 = q[11] + (q[13] * t19 - q[12] * t17 + q[10] * t21);
+            const gic_real t22 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P3] * t17 + (q[7 + ANDREWS_Q_P2] * t19 +
+                q[7 + ANDREWS_Q_P1] * t21));
+            const gic_real t23 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P2] * t21 - q[7 + ANDREWS_Q_P1] * t19 +
+                q[7 + ANDREWS_Q_P0] * t17);
+            const gic_real t24 = q[7 + ANDREWS_Q_P2] + (q[7 + ANDREWS_Q_P1] * t17 - q[7 + ANDREWS_Q_P3] * t21 +
+                q[7 + ANDREWS_Q_P0] * t19);
+            const gic_real t25 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P3] * t19 - q[7 + ANDREWS_Q_P2] * t17 +
+                q[7 + ANDREWS_Q_P0] * t21);
             const gic_real t26 = t23 * t23 + (t24 * t24 + t25 * t25) + t22 * t22;
             const gic_real t27 = R(1.5) - R(0.5) * t26;
             const gic_real t28 = t1 * t1 + (t3 * t3 + t5 * t5) + (t16 * t16 + (t18 * t18 + t20 * t20));
@@ -812,82 +1018,89 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t31 = t10 * t12;
             const gic_real t32 = t9 * t12;
             const gic_real t33 = t8 * t12;
-            const gic_real t34 = q[7] + t13;
-            const gic_real t35 = q[8] + t14;
-            const gic_real t36 = q[9] + t15;
+            const gic_real t34 = q[7 + ANDREWS_Q_X] + t13;
+            const gic_real t35 = q[7 + ANDREWS_Q_Y] + t14;
+            const gic_real t36 = q[7 + ANDREWS_Q_Z] + t15;
             const gic_real t37 = t22 * t27;
             const gic_real t38 = t25 * t27;
             const gic_real t39 = t24 * t27;
             const gic_real t40 = t23 * t27;
             const gic_real t41 = t28 + t29;
-            q[3] = t30;
-            q[4] = t31;
-            q[5] = t32;
-            q[6] = t33;
-            q[7] = t34;
-            q[8] = t35;
-            q[9] = t36;
-            q[10] = t37;
-            q[11] = t38;
-            q[12] = t39;
-            q[13] = t40;
+            q[ANDREWS_Q_P0] = t30;
+            q[ANDREWS_Q_P1] = t31;
+            q[ANDREWS_Q_P2] = t32;
+            q[ANDREWS_Q_P3] = t33;
+            q[7 + ANDREWS_Q_X] = t34;
+            q[7 + ANDREWS_Q_Y] = t35;
+            q[7 + ANDREWS_Q_Z] = t36;
+            q[7 + ANDREWS_Q_P0] = t37;
+            q[7 + ANDREWS_Q_P1] = t38;
+            q[7 + ANDREWS_Q_P2] = t39;
+            q[7 + ANDREWS_Q_P3] = t40;
             reach = t41;
         }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding;
-         * not at all where the prediction, which is off by about the square of the way, is that good */
-        for (i = 0; i < GIC_CHORDS && (i || R(4.0) * reach * reach > enough); ++i) {
+        /* correct with the old factors until what a further correction would change is rounding */
+        for (i = 0; i < GIC_CHORDS && (i || !GIC_PREDICTED(reach, enough)); ++i) {
             {
-                const gic_real t1 = q[5] + q[5];
-                const gic_real t2 = q[4] + q[4];
-                const gic_real t3 = q[6] + q[6];
-                const gic_real t4 = q[11] + q[11];
-                const gic_real t5 = q[13] + q[13];
-                const gic_real t6 = q[12] + q[12];
-                const gic_real t7 = q[6] * t1;
-                const gic_real t8 = q[5] * t2;
-                const gic_real t9 = q[6] * t3;
-                const gic_real t10 = q[3] * t3;
-                const gic_real t11 = q[11] * t4;
-                const gic_real t12 = q[13] * t5;
-                const gic_real t13 = q[12] * t6;
-                const gic_real t14 = q[12] * t4;
-                const gic_real t15 = q[10] * t5;
-                const gic_real t16 = q[13] * t6 - q[10] * t4;
-                const gic_real t17 = R(1.0) - (q[5] * t1 + t9);
-                const gic_real t18 = R(1.0) - (q[4] * t2 + t9);
+                const gic_real t1 = q[ANDREWS_Q_P2] + q[ANDREWS_Q_P2];
+                const gic_real t2 = q[ANDREWS_Q_P1] + q[ANDREWS_Q_P1];
+                const gic_real t3 = q[ANDREWS_Q_P3] + q[ANDREWS_Q_P3];
+                const gic_real t4 = q[7 + ANDREWS_Q_P1] + q[7 + ANDREWS_Q_P1];
+                const gic_real t5 = q[7 + ANDREWS_Q_P3] + q[7 + ANDREWS_Q_P3];
+                const gic_real t6 = q[7 + ANDREWS_Q_P2] + q[7 + ANDREWS_Q_P2];
+                const gic_real t7 = q[ANDREWS_Q_P3] * t1;
+                const gic_real t8 = q[ANDREWS_Q_P2] * t2;
+                const gic_real t9 = q[ANDREWS_Q_P3] * t3;
+                const gic_real t10 = q[ANDREWS_Q_P0] * t3;
+                const gic_real t11 = q[7 + ANDREWS_Q_P1] * t4;
+                const gic_real t12 = q[7 + ANDREWS_Q_P3] * t5;
+                const gic_real t13 = q[7 + ANDREWS_Q_P2] * t6;
+                const gic_real t14 = q[7 + ANDREWS_Q_P2] * t4;
+                const gic_real t15 = q[7 + ANDREWS_Q_P0] * t5;
+                const gic_real t16 = q[7 + ANDREWS_Q_P3] * t6 - q[7 + ANDREWS_Q_P0] * t4;
+                const gic_real t17 = R(1.0) - (q[ANDREWS_Q_P2] * t1 + t9);
+                const gic_real t18 = R(1.0) - (q[ANDREWS_Q_P1] * t2 + t9);
                 const gic_real t19 = t8 - t10;
                 const gic_real t20 = t8 + t10;
                 const gic_real t21 = k[0] * (R(1.0) - (t11 + t12)) + k[1] * (t14 + t15);
                 const gic_real t22 = k[0] * (t14 - t15) + k[1] * (R(1.0) - (t13 + t12));
-                const gic_real t23 = q[11] * t5 + q[10] * t6;
+                const gic_real t23 = q[7 + ANDREWS_Q_P1] * t5 + q[7 + ANDREWS_Q_P0] * t6;
                 const gic_real t24 = R(1.0) - (t11 + t13);
-                const gic_real t25 = R(-0.06934) + (k[2] * t19 + k[3] * t17) - q[7];
-                const gic_real t26 = R(-0.00227) + (k[2] * t18 + k[3] * t20) - q[8];
-                const gic_real t27 = q[3] * t2;
+                /* pose: the last correction */
+                const gic_real t25 = R(-0.06934) + (k[2] * t19 + k[3] * t17) - q[7 + ANDREWS_Q_X];
+                const gic_real t26 = R(-0.00227) + (k[2] * t18 + k[3] * t20) - q[7 + ANDREWS_Q_Y];
+                const gic_real t27 = q[ANDREWS_Q_P0] * t2;
                 const gic_real t28 = t16 * (k[4] * t18 + k[5] * t20) + t23 * (k[4] * t19 + k[5] * t17);
                 const gic_real t29 = t16 * (k[6] * t18 + k[7] * t20) + t23 * (k[6] * t19 + k[7] * t17);
-                const gic_real t30 = q[8] + t21 - (R(-0.03500000000000001) * m0[7] + R(0.03273));
-                const gic_real t31 = q[7] + t22 - (R(-0.03500000000000001) * m0[4] + R(-0.03635));
-                const gic_real t32 = q[4] * t3;
-                const gic_real t33 = q[3] * t1;
+                const gic_real t30 = q[7 + ANDREWS_Q_Y] + t21 - (R(-0.03500000000000001) * m0[ANDREWS_A_YY] +
+                    R(0.03273));
+                const gic_real t31 = q[7 + ANDREWS_Q_X] + t22 - (R(-0.03500000000000001) * m0[ANDREWS_A_XY] +
+                    R(-0.03635));
+                const gic_real t32 = q[ANDREWS_Q_P1] * t3;
+                const gic_real t33 = q[ANDREWS_Q_P0] * t1;
                 const gic_real t34 = t7 + t27;
                 const gic_real t35 = t27 - t7;
                 const gic_real t36 = t7 - t27;
                 const gic_real t37 = t32 - t33;
                 const gic_real t38 = t32 + t33;
                 const gic_real t39 = t36 * R(0.5);
+                /* what the bodies add to the inertia and to the equations of motion */
                 const gic_real t40 = t24 * (k[4] * t34 + k[5] * t37) + t28 + t38 * f[2];
-                const gic_real t41 = (R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6]) * t30 + (R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3]) * t31;
-                const gic_real t42 = (R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6]) * t30 + (R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3]) * t31;
+                const gic_real t41 = (R(-0.43971364724701895) * m0[ANDREWS_A_YY] + R(0.898138023036952) *
+                    m0[ANDREWS_A_YX]) * t30 + (R(-0.43971364724701895) * m0[ANDREWS_A_XY] + R(0.898138023036952) *
+                    m0[ANDREWS_A_XX]) * t31;
+                const gic_real t42 = (R(0.8981380230369522) * m0[ANDREWS_A_YY] + R(0.43971364724701906) *
+                    m0[ANDREWS_A_YX]) * t30 + (R(0.8981380230369522) * m0[ANDREWS_A_XY] + R(0.43971364724701906) *
+                    m0[ANDREWS_A_XX]) * t31;
                 const gic_real t43 = t24 * (k[6] * t34 + k[7] * t37) + t29 + t38 * f[8];
                 const gic_real t44 = t38 * R(0.5);
-                const gic_real t45 = k[2] * t34 + k[3] * t37 - q[9] + t38 * f[0];
+                const gic_real t45 = k[2] * t34 + k[3] * t37 - q[7 + ANDREWS_Q_Z] + t38 * f[0];
                 const gic_real t46 = t41 + t25 * f[14] + t26 * f[15];
                 const gic_real t47 = R(0.03125) * (t35 * f[3] - t40);
                 const gic_real t48 = t42 + t25 * f[20] + t26 * f[21];
                 const gic_real t49 = R(0.03125) * (t35 * f[9] - t43);
                 const gic_real t50 = t45 - t35 * f[1];
-                const gic_real t51 = q[9] + t50;
+                const gic_real t51 = q[7 + ANDREWS_Q_Z] + t50;
                 const gic_real t52 = f[4] * t47 + f[10] * t49 - f[16] * t46 - f[22] * t48;
                 const gic_real t53 = f[26] * t52;
                 const gic_real t54 = t46 + f[16] * t53;
@@ -902,15 +1115,19 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t63 = R(0.5) * t61;
                 const gic_real t64 = t25 - f[1] * t61;
                 const gic_real t65 = t26 + f[0] * t61;
-                const gic_real t66 = q[5] + (q[4] * t63 - q[6] * t39 - q[3] * t44);
-                const gic_real t67 = q[4] + (q[3] * t39 - (q[6] * t44 + q[5] * t63));
-                const gic_real t68 = q[6] + (q[4] * t44 + q[5] * t39 + q[3] * t63);
-                const gic_real t69 = q[3] - (q[4] * t39 - q[5] * t44 + q[6] * t63);
+                const gic_real t66 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t63 - q[ANDREWS_Q_P3] * t39 -
+                    q[ANDREWS_Q_P0] * t44);
+                const gic_real t67 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P0] * t39 - (q[ANDREWS_Q_P3] * t44 +
+                    q[ANDREWS_Q_P2] * t63));
+                const gic_real t68 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P1] * t44 + q[ANDREWS_Q_P2] * t39 +
+                    q[ANDREWS_Q_P0] * t63);
+                const gic_real t69 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P1] * t39 - q[ANDREWS_Q_P2] * t44 +
+                    q[ANDREWS_Q_P3] * t63);
                 const gic_real t70 = t55 - f[11] * t57 - f[12] * t62 - f[13] * t61;
                 const gic_real t71 = R(0.5) * t62;
                 const gic_real t72 = R(624.9999999999998) * (t50 * t50 + (t65 * t65 + t64 * t64));
-                const gic_real t73 = q[7] + t64;
-                const gic_real t74 = q[8] + t65;
+                const gic_real t73 = q[7 + ANDREWS_Q_X] + t64;
+                const gic_real t74 = q[7 + ANDREWS_Q_Y] + t65;
                 const gic_real t75 = t68 * t68 + (t66 * t66 + t67 * t67) + t69 * t69;
                 const gic_real t76 = f[27] * t70;
                 const gic_real t77 = t47 - f[4] * t53 - f[5] * t76 - f[6] * t62;
@@ -923,10 +1140,14 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t84 = t68 * t79;
                 const gic_real t85 = R(0.5) * t80;
                 const gic_real t86 = t38 * t38 + t36 * t36 + t61 * t61 + (t80 * t80 + (t76 * t76 + t62 * t62));
-                const gic_real t87 = q[12] + (q[11] * t85 - q[13] * t71 + q[10] * t78);
-                const gic_real t88 = q[11] + (q[13] * t78 - q[12] * t85 + q[10] * t71);
-                const gic_real t89 = q[13] + (q[12] * t71 - q[11] * t78 + q[10] * t85);
-                const gic_real t90 = q[10] - (q[13] * t85 + (q[12] * t78 + q[11] * t71));
+                const gic_real t87 = q[7 + ANDREWS_Q_P2] + (q[7 + ANDREWS_Q_P1] * t85 - q[7 + ANDREWS_Q_P3] * t71 +
+                    q[7 + ANDREWS_Q_P0] * t78);
+                const gic_real t88 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P3] * t78 - q[7 + ANDREWS_Q_P2] * t85 +
+                    q[7 + ANDREWS_Q_P0] * t71);
+                const gic_real t89 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P2] * t71 - q[7 + ANDREWS_Q_P1] * t78 +
+                    q[7 + ANDREWS_Q_P0] * t85);
+                const gic_real t90 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P3] * t85 + (q[7 + ANDREWS_Q_P2] * t78 +
+                    q[7 + ANDREWS_Q_P1] * t71));
                 const gic_real t91 = t86 + t72;
                 step = t91;
                 const gic_real t92 = t89 * t89 + (t87 * t87 + t88 * t88) + t90 * t90;
@@ -935,22 +1156,22 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 const gic_real t95 = t88 * t93;
                 const gic_real t96 = t87 * t93;
                 const gic_real t97 = t89 * t93;
-                q[3] = t81;
-                q[4] = t82;
-                q[5] = t83;
-                q[6] = t84;
-                q[7] = t73;
-                q[8] = t74;
-                q[9] = t51;
-                q[10] = t94;
-                q[11] = t95;
-                q[12] = t96;
-                q[13] = t97;
+                q[ANDREWS_Q_P0] = t81;
+                q[ANDREWS_Q_P1] = t82;
+                q[ANDREWS_Q_P2] = t83;
+                q[ANDREWS_Q_P3] = t84;
+                q[7 + ANDREWS_Q_X] = t73;
+                q[7 + ANDREWS_Q_Y] = t74;
+                q[7 + ANDREWS_Q_Z] = t51;
+                q[7 + ANDREWS_Q_P0] = t94;
+                q[7 + ANDREWS_Q_P1] = t95;
+                q[7 + ANDREWS_Q_P2] = t96;
+                q[7 + ANDREWS_Q_P3] = t97;
             }
             ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
+            if (!GIC_LEADS_ON(step))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
+            if (GIC_CORRECTED(step, GIC_MAX(reach, step), enough))
                 break;
             ++self->head.late_count;
         }
@@ -958,36 +1179,36 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
     for (i = 0; i < GIC_PASSES; ++i) {
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[5] + q[5];
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[11] + q[11];
-            const gic_real t5 = q[12] + q[12];
-            const gic_real t6 = q[13] + q[13];
-            const gic_real t7 = R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6];
+            const gic_real t1 = q[ANDREWS_Q_P1] + q[ANDREWS_Q_P1];
+            const gic_real t2 = q[ANDREWS_Q_P2] + q[ANDREWS_Q_P2];
+            const gic_real t3 = q[ANDREWS_Q_P3] + q[ANDREWS_Q_P3];
+            const gic_real t4 = q[7 + ANDREWS_Q_P1] + q[7 + ANDREWS_Q_P1];
+            const gic_real t5 = q[7 + ANDREWS_Q_P2] + q[7 + ANDREWS_Q_P2];
+            const gic_real t6 = q[7 + ANDREWS_Q_P3] + q[7 + ANDREWS_Q_P3];
+            const gic_real t7 = R(-0.43971364724701895) * m0[ANDREWS_A_YY] + R(0.898138023036952) * m0[ANDREWS_A_YX];
             start[41] = t7;
-            const gic_real t8 = q[4] * t1;
-            const gic_real t9 = q[5] * t2;
-            const gic_real t10 = q[6] * t3;
-            const gic_real t11 = q[5] * t1;
-            const gic_real t12 = q[3] * t3;
-            const gic_real t13 = q[11] * t4;
-            const gic_real t14 = q[12] * t5;
-            const gic_real t15 = q[13] * t6;
-            const gic_real t16 = q[13] * t5;
-            const gic_real t17 = q[10] * t4;
+            const gic_real t8 = q[ANDREWS_Q_P1] * t1;
+            const gic_real t9 = q[ANDREWS_Q_P2] * t2;
+            const gic_real t10 = q[ANDREWS_Q_P3] * t3;
+            const gic_real t11 = q[ANDREWS_Q_P2] * t1;
+            const gic_real t12 = q[ANDREWS_Q_P0] * t3;
+            const gic_real t13 = q[7 + ANDREWS_Q_P1] * t4;
+            const gic_real t14 = q[7 + ANDREWS_Q_P2] * t5;
+            const gic_real t15 = q[7 + ANDREWS_Q_P3] * t6;
+            const gic_real t16 = q[7 + ANDREWS_Q_P3] * t5;
+            const gic_real t17 = q[7 + ANDREWS_Q_P0] * t4;
             const gic_real t18 = R(1.0) - (t8 + t10);
             const gic_real t19 = R(1.0) - (t9 + t10);
             const gic_real t20 = t11 + t12;
             const gic_real t21 = t11 - t12;
-            const gic_real t22 = q[11] * t6;
-            const gic_real t23 = q[10] * t5;
-            const gic_real t24 = q[12] * t4;
-            const gic_real t25 = q[10] * t6;
+            const gic_real t22 = q[7 + ANDREWS_Q_P1] * t6;
+            const gic_real t23 = q[7 + ANDREWS_Q_P0] * t5;
+            const gic_real t24 = q[7 + ANDREWS_Q_P2] * t4;
+            const gic_real t25 = q[7 + ANDREWS_Q_P0] * t6;
             const gic_real t26 = t16 - t17;
-            const gic_real t27 = R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3];
+            const gic_real t27 = R(-0.43971364724701895) * m0[ANDREWS_A_XY] + R(0.898138023036952) * m0[ANDREWS_A_XX];
             start[40] = t27;
-            const gic_real t28 = R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6];
+            const gic_real t28 = R(0.8981380230369522) * m0[ANDREWS_A_YY] + R(0.43971364724701906) * m0[ANDREWS_A_YX];
             start[47] = t28;
             const gic_real t29 = k[4] * t18 + k[5] * t20;
             const gic_real t30 = k[4] * t21 + k[5] * t19;
@@ -998,7 +1219,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t35 = t22 + t23;
             const gic_real t36 = t26 * t30;
             const gic_real t37 = t26 * t32;
-            const gic_real t38 = R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3];
+            const gic_real t38 = R(0.8981380230369522) * m0[ANDREWS_A_XY] + R(0.43971364724701906) * m0[ANDREWS_A_XX];
             start[46] = t38;
             const gic_real t39 = R(1.0) - (t13 + t14);
             const gic_real t40 = t35 * t29;
@@ -1006,6 +1227,7 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t42 = k[0] * (t16 + t17) + k[1] * (t22 - t23);
             const gic_real t43 = k[2] * t21 + k[3] * t19;
             start[26] = t43;
+            /* constraint equations at the poses, and their derivative */
             const gic_real t44 = (t40 - t36) * R(0.03125);
             const gic_real t45 = (t41 - t37) * R(0.03125);
             start[36] = t45;
@@ -1034,19 +1256,20 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t61 = (t36 - t40) * R(0.03125);
             const gic_real t62 = t44 * t44 + t45 * t45 + t50 * t50 + t51 * t51;
             const gic_real t63 = (t37 - t41) * R(0.03125);
-            const gic_real t64 = R(-0.03500000000000001) * m0[7];
-            const gic_real t65 = R(-0.03500000000000001) * m0[4];
+            const gic_real t64 = R(-0.03500000000000001) * m0[ANDREWS_A_YY];
+            const gic_real t65 = R(-0.03500000000000001) * m0[ANDREWS_A_XY];
             const gic_real t66 = t43 * t7 - t60 * t27;
             const gic_real t67 = t43 * t28 - t60 * t38;
-            const gic_real t68 = q[8] + t34 - (t64 + R(0.03273));
-            const gic_real t69 = q[7] + t33 - (t65 + R(-0.03635));
-            const gic_real t70 = q[6] * t2;
-            const gic_real t71 = q[3] * t1;
-            const gic_real t72 = q[4] * t3;
-            const gic_real t73 = q[3] * t2;
-            const gic_real t74 = R(-0.06934) + t43 - q[7];
-            const gic_real t75 = R(-0.00227) + t60 - q[8];
-            const gic_real t76 = m0[14] * t65;
+            const gic_real t68 = q[7 + ANDREWS_Q_Y] + t34 - (t64 + R(0.03273));
+            const gic_real t69 = q[7 + ANDREWS_Q_X] + t33 - (t65 + R(-0.03635));
+            const gic_real t70 = q[ANDREWS_Q_P3] * t2;
+            const gic_real t71 = q[ANDREWS_Q_P0] * t1;
+            const gic_real t72 = q[ANDREWS_Q_P1] * t3;
+            const gic_real t73 = q[ANDREWS_Q_P0] * t2;
+            /* pose: the last correction */
+            const gic_real t74 = R(-0.06934) + t43 - q[7 + ANDREWS_Q_X];
+            const gic_real t75 = R(-0.00227) + t60 - q[7 + ANDREWS_Q_Y];
+            const gic_real t76 = m0[ANDREWS_OMEGA_Z] * t65;
             const gic_real t77 = t70 + t71;
             const gic_real t78 = t71 - t70;
             const gic_real t79 = t72 - t73;
@@ -1055,22 +1278,25 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t82 = t64 * t38 - t65 * t28 + (t38 * t68 - t28 * t69);
             const gic_real t83 = t39 * (k[4] * t77 + k[5] * t79) + (t26 * t29 + t35 * t30);
             const gic_real t84 = t39 * (k[6] * t77 + k[7] * t79) + (t26 * t31 + t35 * t32);
-            const gic_real t85 = m0[26] * t81;
-            const gic_real t86 = m0[26] * t82;
+            /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+            const gic_real t85 = m0[ANDREWS_S + 2] * t81;
+            const gic_real t86 = m0[ANDREWS_S + 2] * t82;
             const gic_real t87 = t7 * t68 + t27 * t69 + t27 * t74 + t7 * t75;
             const gic_real t88 = t28 * t68 + t38 * t69 + t38 * t74 + t28 * t75;
             const gic_real t89 = R(0.03125) * (t78 * t48 - (t83 + t80 * t47));
-            const gic_real t90 = m0[14] * t64;
-            const gic_real t91 = m0[14] * t27;
-            const gic_real t92 = m0[14] * t7;
+            const gic_real t90 = m0[ANDREWS_OMEGA_Z] * t64;
+            const gic_real t91 = m0[ANDREWS_OMEGA_Z] * t27;
+            const gic_real t92 = m0[ANDREWS_OMEGA_Z] * t7;
             const gic_real t93 = R(0.03125) * (t78 * t49 - (t84 + t80 * t46));
-            const gic_real t94 = m0[14] * t38;
-            const gic_real t95 = m0[14] * t28;
-            const gic_real t96 = t68 * (m0[20] * t27 - m0[14] * t92) - t69 * (m0[20] * t7 + m0[14] * t91);
-            const gic_real t97 = t68 * (m0[20] * t38 - m0[14] * t95) - t69 * (m0[20] * t28 + m0[14] * t94);
+            const gic_real t94 = m0[ANDREWS_OMEGA_Z] * t38;
+            const gic_real t95 = m0[ANDREWS_OMEGA_Z] * t28;
+            const gic_real t96 = t68 * (m0[ANDREWS_ALPHA_Z] * t27 - m0[ANDREWS_OMEGA_Z] * t92) - t69 *
+                (m0[ANDREWS_ALPHA_Z] * t7 + m0[ANDREWS_OMEGA_Z] * t91);
+            const gic_real t97 = t68 * (m0[ANDREWS_ALPHA_Z] * t38 - m0[ANDREWS_OMEGA_Z] * t95) - t69 *
+                (m0[ANDREWS_ALPHA_Z] * t28 + m0[ANDREWS_OMEGA_Z] * t94);
             const gic_real t98 = t70 - t71;
             const gic_real t99 = t80 * R(0.5);
-            const gic_real t100 = k[2] * t77 + k[3] * t79 - q[9] + t80 * t43;
+            const gic_real t100 = k[2] * t77 + k[3] * t79 - q[7 + ANDREWS_Q_Z] + t80 * t43;
             const gic_real t101 = t98 * R(0.5);
             const gic_real t102 = R(1.0) - (t8 + t9);
             if (!(t102 > R(0.0)))
@@ -1079,8 +1305,8 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
                 return GIC_ERROR_SINGULAR;
             const gic_real t103 = GIC_SQRT(t62);
             const gic_real t104 = t100 - t78 * t60;
-            const gic_real t105 = q[9] + t104;
-            motion[32] = t105;
+            const gic_real c_z_2 = q[7 + ANDREWS_Q_Z] + t104;
+            motion[30 + ANDREWS_C_Z] = c_z_2;
             const gic_real t106 = (t44 > GIC_R(0) ? t103 : -t103);
             const gic_real t107 = t44 + t106;
             start[30] = t107;
@@ -1161,110 +1387,122 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             start[45] = t165;
             const gic_real t166 = R(1.0) / t164;
             start[57] = t166;
-            const gic_real t167 = t166 * (t152 - t147 * t162);
-            motion[26] = t167;
-            start[16] = t167;
+            const gic_real s_0_2 = t166 * (t152 - t147 * t162);
+            motion[ANDREWS_S + 2] = s_0_2;
+            start[16] = s_0_2;
             const gic_real t168 = t166 * (t147 * t163 - t156);
-            const gic_real t169 = t159 * (t153 - t158 * t162 - t165 * t167);
-            motion[54] = t169;
-            start[20] = t169;
-            const gic_real t170 = t43 * t167;
-            motion[58] = t170;
-            start[24] = t170;
-            const gic_real t171 = t60 * t167;
-            const gic_real t172 = rate[0] * t167;
-            motion[14] = t172;
+            const gic_real s_0_0_2 = t159 * (t153 - t158 * t162 - t165 * s_0_2);
+            motion[30 + ANDREWS_S + 0] = s_0_0_2;
+            start[20] = s_0_0_2;
+            const gic_real s_0_4_2 = t43 * s_0_2;
+            motion[30 + ANDREWS_S + 4] = s_0_4_2;
+            start[24] = s_0_4_2;
+            const gic_real t171 = t60 * s_0_2;
+            const gic_real omega_z = rate[0] * s_0_2;
+            motion[ANDREWS_OMEGA_Z] = omega_z;
             const gic_real t173 = t159 * (t158 * t163 - t155 - t165 * t168);
-            const gic_real t174 = rate[0] * t170;
-            motion[46] = t174;
+            const gic_real velocity_y_2 = rate[0] * s_0_4_2;
+            motion[30 + ANDREWS_VELOCITY_Y] = velocity_y_2;
             const gic_real t175 = rate[0] * t171;
-            const gic_real t176 = t30 * t172;
-            const gic_real t177 = t29 * t172;
-            const gic_real t178 = t32 * t172;
-            const gic_real t179 = t31 * t172;
-            const gic_real t180 = t172 * (t43 * t172);
-            const gic_real t181 = t172 * (t60 * t172);
+            /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+            const gic_real t176 = t30 * omega_z;
+            const gic_real t177 = t29 * omega_z;
+            const gic_real t178 = t32 * omega_z;
+            const gic_real t179 = t31 * omega_z;
+            const gic_real t180 = omega_z * (t43 * omega_z);
+            const gic_real t181 = omega_z * (t60 * omega_z);
             const gic_real t182 = R(0.5) * t168;
             const gic_real t183 = t74 - t60 * t168;
             const gic_real t184 = t75 + t43 * t168;
-            const gic_real t185 = t167 * k[8];
-            const gic_real t186 = -t175;
-            motion[45] = t186;
-            const gic_real t187 = -t171;
-            motion[57] = t187;
-            start[23] = t187;
-            const gic_real t188 = q[5] + (q[4] * t182 - q[6] * t101 - q[3] * t99);
-            const gic_real t189 = t130 - t139 * t144 - t148 * t169 - t151 * t167;
-            const gic_real t190 = rate[0] * t169;
-            motion[42] = t190;
+            /* what the bodies add to the inertia and to the equations of motion */
+            const gic_real t185 = s_0_2 * k[8];
+            const gic_real velocity_x_2 = -t175;
+            motion[30 + ANDREWS_VELOCITY_X] = velocity_x_2;
+            const gic_real s_0_3_2 = -t171;
+            motion[30 + ANDREWS_S + 3] = s_0_3_2;
+            start[23] = s_0_3_2;
+            const gic_real t188 = q[ANDREWS_Q_P2] + (q[ANDREWS_Q_P1] * t182 - q[ANDREWS_Q_P3] * t101 - q[ANDREWS_Q_P0] *
+                t99);
+            const gic_real t189 = t130 - t139 * t144 - t148 * s_0_0_2 - t151 * s_0_2;
+            const gic_real omega_x_2 = rate[0] * s_0_0_2;
+            motion[30 + ANDREWS_OMEGA_X] = omega_x_2;
             const gic_real t191 = t136 - t139 * t145 - t148 * t173 - t151 * t168;
             const gic_real t192 = R(0.5) * t173;
-            const gic_real t193 = q[4] + (q[3] * t101 - (q[5] * t182 + q[6] * t99));
-            const gic_real t194 = q[6] + (q[4] * t99 + q[5] * t101 + q[3] * t182);
-            const gic_real t195 = q[3] - (q[6] * t182 + (q[4] * t101 - q[5] * t99));
-            const gic_real t196 = t140 * t189;
-            motion[55] = t196;
-            start[21] = t196;
-            const gic_real t197 = t190 * R(5.667e-07);
-            const gic_real t198 = q[7] + t183;
-            motion[30] = t198;
-            const gic_real t199 = q[8] + t184;
-            motion[31] = t199;
-            const gic_real t200 = t169 * R(5.667e-07);
+            const gic_real t193 = q[ANDREWS_Q_P1] + (q[ANDREWS_Q_P0] * t101 - (q[ANDREWS_Q_P2] * t182 +
+                q[ANDREWS_Q_P3] * t99));
+            const gic_real t194 = q[ANDREWS_Q_P3] + (q[ANDREWS_Q_P1] * t99 + q[ANDREWS_Q_P2] * t101 + q[ANDREWS_Q_P0] *
+                t182);
+            const gic_real t195 = q[ANDREWS_Q_P0] - (q[ANDREWS_Q_P3] * t182 + (q[ANDREWS_Q_P1] * t101 -
+                q[ANDREWS_Q_P2] * t99));
+            const gic_real s_0_1_2 = t140 * t189;
+            motion[30 + ANDREWS_S + 1] = s_0_1_2;
+            start[21] = s_0_1_2;
+            const gic_real t197 = omega_x_2 * R(5.667e-07);
+            const gic_real c_x_2 = q[7 + ANDREWS_Q_X] + t183;
+            motion[30 + ANDREWS_C_X] = c_x_2;
+            const gic_real c_y_2 = q[7 + ANDREWS_Q_Y] + t184;
+            motion[30 + ANDREWS_C_Y] = c_y_2;
+            const gic_real t200 = s_0_0_2 * R(5.667e-07);
             const gic_real t201 = R(624.9999999999998) * (t104 * t104 + (t184 * t184 + t183 * t183));
-            const gic_real t202 = t107 * t114 - t131 * t196 - t132 * t169 - t133 * t167;
-            const gic_real t203 = rate[0] * t196;
-            motion[43] = t203;
+            const gic_real t202 = t107 * t114 - t131 * s_0_1_2 - t132 * s_0_0_2 - t133 * s_0_2;
+            const gic_real omega_y_2 = rate[0] * s_0_1_2;
+            motion[30 + ANDREWS_OMEGA_Y] = omega_y_2;
             const gic_real t204 = t140 * t191;
-            const gic_real t205 = t196 * R(5.667e-07);
-            const gic_real t206 = t34 * t190 - t33 * t203;
-            const gic_real t207 = t26 * t190 - t35 * t203;
+            const gic_real t205 = s_0_1_2 * R(5.667e-07);
+            const gic_real t206 = t34 * omega_x_2 - t33 * omega_y_2;
+            const gic_real t207 = t26 * omega_x_2 - t35 * omega_y_2;
             const gic_real t208 = t89 - t107 * t134 - t131 * t204 - t132 * t173;
             const gic_real t209 = R(0.5) * t204;
             const gic_real t210 = t194 * t194 + (t188 * t188 + t193 * t193) + t195 * t195;
-            const gic_real t211 = t108 * t202;
-            motion[56] = t211;
-            start[22] = t211;
-            const gic_real t212 = t203 * R(5.667e-07);
-            const gic_real t213 = rate[0] * t211;
-            motion[44] = t213;
-            const gic_real t214 = t211 * R(5.667e-07);
-            const gic_real t215 = t33 * t213 - t42 * t190;
-            const gic_real t216 = t42 * t203 - t34 * t213;
-            const gic_real t217 = t35 * t213 - t39 * t190;
-            const gic_real t218 = t39 * t203 - t26 * t213;
+            const gic_real s_0_2_2 = t108 * t202;
+            motion[30 + ANDREWS_S + 2] = s_0_2_2;
+            start[22] = s_0_2_2;
+            const gic_real t212 = omega_y_2 * R(5.667e-07);
+            const gic_real omega_z_2 = rate[0] * s_0_2_2;
+            motion[30 + ANDREWS_OMEGA_Z] = omega_z_2;
+            const gic_real t214 = s_0_2_2 * R(5.667e-07);
+            const gic_real t215 = t33 * omega_z_2 - t42 * omega_x_2;
+            const gic_real t216 = t42 * omega_y_2 - t34 * omega_z_2;
+            const gic_real t217 = t35 * omega_z_2 - t39 * omega_x_2;
+            const gic_real t218 = t39 * omega_y_2 - t26 * omega_z_2;
             const gic_real t219 = t108 * (t208 - t133 * t168);
             const gic_real t220 = R(1.5) - R(0.5) * t210;
-            const gic_real t221 = m0[20] * t64 + m0[14] * t76 + (t203 * t206 - t213 * t215);
-            const gic_real t222 = t213 * t216 - t190 * t206 - (m0[20] * t65 - m0[14] * t90);
-            const gic_real t223 = t174 + t215 - t76;
+            const gic_real t221 = m0[ANDREWS_ALPHA_Z] * t64 + m0[ANDREWS_OMEGA_Z] * t76 + (omega_y_2 * t206 -
+                omega_z_2 * t215);
+            const gic_real t222 = omega_z_2 * t216 - omega_x_2 * t206 - (m0[ANDREWS_ALPHA_Z] * t65 -
+                m0[ANDREWS_OMEGA_Z] * t90);
+            const gic_real t223 = velocity_y_2 + t215 - t76;
             const gic_real t224 = t90 + (t216 - t175);
-            const gic_real t225 = t213 * t218 - t190 * t207;
-            const gic_real t226 = t203 * t207 - t213 * t217;
+            const gic_real t225 = omega_z_2 * t218 - omega_x_2 * t207;
+            const gic_real t226 = omega_y_2 * t207 - omega_z_2 * t217;
             const gic_real t227 = t176 * t217 - t177 * t218;
             const gic_real t228 = t178 * t217 - t179 * t218;
             const gic_real t229 = R(0.5) * t219;
             const gic_real t230 = t193 * t220;
             const gic_real t231 = t91 * t223 - t92 * t224;
             const gic_real t232 = t94 * t223 - t95 * t224;
-            const gic_real t233 = t29 * t225 + t30 * t226 - (t26 * (t172 * t177) + t35 * (t172 * t176));
-            const gic_real t234 = t31 * t225 + t32 * t226 - (t26 * (t172 * t179) + t35 * (t172 * t178));
+            const gic_real t233 = t29 * t225 + t30 * t226 - (t26 * (omega_z * t177) + t35 * (omega_z * t176));
+            const gic_real t234 = t31 * t225 + t32 * t226 - (t26 * (omega_z * t179) + t35 * (omega_z * t178));
             const gic_real t235 = t231 + t231 + (t96 + (t7 * t222 + t27 * t221));
             const gic_real t236 = t232 + t232 + (t97 + (t28 * t222 + t38 * t221));
-            const gic_real t237 = q[12] + (q[11] * t229 - q[13] * t192 + q[10] * t209);
+            const gic_real t237 = q[7 + ANDREWS_Q_P2] + (q[7 + ANDREWS_Q_P1] * t229 - q[7 + ANDREWS_Q_P3] * t192 +
+                q[7 + ANDREWS_Q_P0] * t209);
             const gic_real t238 = R(0.03125) * (t227 + t227 + t233);
-            const gic_real t239 = q[11] + (q[13] * t209 - q[12] * t229 + q[10] * t192);
+            const gic_real t239 = q[7 + ANDREWS_Q_P1] + (q[7 + ANDREWS_Q_P3] * t209 - q[7 + ANDREWS_Q_P2] * t229 +
+                q[7 + ANDREWS_Q_P0] * t192);
             const gic_real t240 = R(0.03125) * (t228 + t228 + t234);
-            const gic_real t241 = q[13] + (q[12] * t192 - q[11] * t209 + q[10] * t229);
+            const gic_real t241 = q[7 + ANDREWS_Q_P3] + (q[7 + ANDREWS_Q_P2] * t192 - q[7 + ANDREWS_Q_P1] * t209 +
+                q[7 + ANDREWS_Q_P0] * t229);
             const gic_real t242 = t27 * t180 - t235 + t7 * t181;
             const gic_real t243 = t38 * t180 - t236 + t28 * t181;
-            const gic_real t244 = q[10] - (q[13] * t229 + (q[12] * t209 + q[11] * t192));
+            const gic_real t244 = q[7 + ANDREWS_Q_P0] - (q[7 + ANDREWS_Q_P3] * t229 + (q[7 + ANDREWS_Q_P2] * t209 +
+                q[7 + ANDREWS_Q_P1] * t192));
             const gic_real t245 = t188 * t220;
             const gic_real t246 = t194 * t220;
             const gic_real t247 = t230 + t230;
             const gic_real t248 = t195 * t220;
-            const gic_real t249 = t213 * R(5.667e-07);
-            const gic_real t250 = GIC_FABS(t172) + (GIC_FABS(t190) + GIC_FABS(t203) + GIC_FABS(t213));
+            const gic_real t249 = omega_z_2 * R(5.667e-07);
+            const gic_real t250 = GIC_FABS(omega_z) + (GIC_FABS(omega_x_2) + GIC_FABS(omega_y_2) + GIC_FABS(omega_z_2));
             const gic_real t251 = t246 + t246;
             const gic_real t252 = t245 * t247;
             const gic_real t253 = t50 * t242 - (t107 * t238 + t45 * t240) + t51 * t243;
@@ -1272,15 +1510,15 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t255 = t248 * t251;
             const gic_real t256 = t168 * t168 + (t80 * t80 + t98 * t98) + (t219 * t219 + (t204 * t204 + t173 * t173));
             const gic_real t257 = t241 * t241 + (t237 * t237 + t239 * t239) + t244 * t244;
-            const gic_real t258 = R(1.0) - (t245 * (t245 + t245) + t254);
-            motion[3] = t258;
-            const gic_real t259 = R(1.0) - (t230 * t247 + t254);
-            motion[7] = t259;
+            const gic_real a_xx = R(1.0) - (t245 * (t245 + t245) + t254);
+            motion[ANDREWS_A_XX] = a_xx;
+            const gic_real a_yy = R(1.0) - (t230 * t247 + t254);
+            motion[ANDREWS_A_YY] = a_yy;
             const gic_real t260 = t109 * t253;
-            const gic_real t261 = t252 - t255;
-            motion[4] = t261;
-            const gic_real t262 = t252 + t255;
-            motion[6] = t262;
+            const gic_real a_xy = t252 - t255;
+            motion[ANDREWS_A_XY] = a_xy;
+            const gic_real a_yx = t252 + t255;
+            motion[ANDREWS_A_YX] = a_yx;
             const gic_real t263 = t106 * t138 * t157 * t164 * k[9] - t250 * ahead[0];
             const gic_real t264 = t242 - t50 * t260;
             const gic_real t265 = t240 + t45 * t260;
@@ -1288,15 +1526,15 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t267 = t256 + t201;
             step = t267;
             const gic_real t268 = R(1.5) - R(0.5) * t257;
-            const gic_real t269 = t259 * k[10] + t262 * k[11];
-            const gic_real t270 = t261 * k[10] + t258 * k[11];
+            const gic_real t269 = a_yy * k[10] + a_yx * k[11];
+            const gic_real t270 = a_xy * k[10] + a_xx * k[11];
             const gic_real t271 = t141 * (t118 * t264 - t139 * t265 + t119 * t266);
             const gic_real t272 = t239 * t268;
             const gic_real t273 = t237 * t268;
             const gic_real t274 = t241 * t268;
             const gic_real t275 = t244 * t268;
-            const gic_real t276 = t167 * t269;
-            const gic_real t277 = t167 * t270;
+            const gic_real t276 = s_0_2 * t269;
+            const gic_real t277 = s_0_2 * t270;
             if (!(t263 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t278 = t272 + t272;
@@ -1316,93 +1554,94 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
             const gic_real t292 = t185 + ((R(-0.00227) + t269) * t281 + (R(-0.06934) + t270) * t282);
             const gic_real t293 = t266 - t119 * t271;
             const gic_real t294 = t264 - t118 * t271;
-            const gic_real t295 = R(1.0) - (t284 + t285);
-            motion[33] = t295;
-            const gic_real t296 = R(1.0) - (t283 + t285);
-            motion[37] = t296;
-            const gic_real t297 = t286 - t287;
-            motion[34] = t297;
-            const gic_real t298 = t286 + t287;
-            motion[36] = t298;
-            const gic_real t299 = t288 - t289;
-            motion[39] = t299;
-            const gic_real t300 = t290 + t291;
-            motion[40] = t300;
-            const gic_real t301 = R(1.0) - (t283 + t284);
-            motion[41] = t301;
-            const gic_real t302 = t288 + t289;
-            motion[35] = t302;
-            const gic_real t303 = t290 - t291;
-            motion[38] = t303;
+            const gic_real a_xx_2 = R(1.0) - (t284 + t285);
+            motion[30 + ANDREWS_A_XX] = a_xx_2;
+            const gic_real a_yy_2 = R(1.0) - (t283 + t285);
+            motion[30 + ANDREWS_A_YY] = a_yy_2;
+            const gic_real a_xy_2 = t286 - t287;
+            motion[30 + ANDREWS_A_XY] = a_xy_2;
+            const gic_real a_yx_2 = t286 + t287;
+            motion[30 + ANDREWS_A_YX] = a_yx_2;
+            const gic_real a_zx_2 = t288 - t289;
+            motion[30 + ANDREWS_A_ZX] = a_zx_2;
+            const gic_real a_zy_2 = t290 + t291;
+            motion[30 + ANDREWS_A_ZY] = a_zy_2;
+            const gic_real a_zz_2 = R(1.0) - (t283 + t284);
+            motion[30 + ANDREWS_A_ZZ] = a_zz_2;
+            const gic_real a_xz_2 = t288 + t289;
+            motion[30 + ANDREWS_A_XZ] = a_xz_2;
+            const gic_real a_yz_2 = t290 - t291;
+            motion[30 + ANDREWS_A_YZ] = a_yz_2;
             const gic_real t304 = t160 * (t158 * t294 + t147 * t293);
-            const gic_real t305 = t300 * k[13] + t299 * k[14];
-            const gic_real t306 = t296 * k[13] + t298 * k[14];
-            const gic_real t307 = t297 * k[13] + t295 * k[14];
-            const gic_real t308 = t105 + t305;
-            const gic_real t309 = t203 * t305 - t213 * t306;
-            const gic_real t310 = t166 * (t293 - t147 * t304);
-            motion[20] = t310;
-            const gic_real t311 = t213 * t307 - t190 * t305;
-            const gic_real t312 = t190 * t306 - t203 * t307;
-            const gic_real t313 = t196 * t305 - t211 * t306 - t171;
-            const gic_real t314 = t170 + (t211 * t307 - t169 * t305);
-            const gic_real t315 = t169 * t306 - t196 * t307;
-            const gic_real t316 = t199 + t306;
-            const gic_real t317 = t198 + t307;
-            const gic_real t318 = t159 * (t294 - t158 * t304 - t165 * t310);
-            motion[48] = t318;
-            const gic_real t319 = t180 + t60 * t310;
-            const gic_real t320 = t43 * t310 - t181;
-            motion[52] = t320;
-            const gic_real t321 = k[12] * (t310 * t270 - t172 * (t172 * t269)) * t277;
-            const gic_real t322 = k[12] * (t172 * (t172 * t270) + t310 * t269) * t276;
+            const gic_real t305 = a_zy_2 * k[13] + a_zx_2 * k[14];
+            const gic_real t306 = a_yy_2 * k[13] + a_yx_2 * k[14];
+            const gic_real t307 = a_xy_2 * k[13] + a_xx_2 * k[14];
+            const gic_real t308 = c_z_2 + t305;
+            const gic_real t309 = omega_y_2 * t305 - omega_z_2 * t306;
+            const gic_real alpha_z = t166 * (t293 - t147 * t304);
+            motion[ANDREWS_ALPHA_Z] = alpha_z;
+            const gic_real t311 = omega_z_2 * t307 - omega_x_2 * t305;
+            const gic_real t312 = omega_x_2 * t306 - omega_y_2 * t307;
+            const gic_real t313 = s_0_1_2 * t305 - s_0_2_2 * t306 - t171;
+            const gic_real t314 = s_0_4_2 + (s_0_2_2 * t307 - s_0_0_2 * t305);
+            const gic_real t315 = s_0_0_2 * t306 - s_0_1_2 * t307;
+            const gic_real t316 = c_y_2 + t306;
+            const gic_real t317 = c_x_2 + t307;
+            const gic_real alpha_x_2 = t159 * (t294 - t158 * t304 - t165 * alpha_z);
+            motion[30 + ANDREWS_ALPHA_X] = alpha_x_2;
+            const gic_real t319 = t180 + t60 * alpha_z;
+            const gic_real acceleration_y_2 = t43 * alpha_z - t181;
+            motion[30 + ANDREWS_ACCELERATION_Y] = acceleration_y_2;
+            const gic_real t321 = k[12] * (alpha_z * t270 - omega_z * (omega_z * t269)) * t277;
+            const gic_real t322 = k[12] * (omega_z * (omega_z * t270) + alpha_z * t269) * t276;
             const gic_real t323 = R(0.00706) * t313;
             const gic_real t324 = R(0.00706) * t314;
-            const gic_real t325 = R(0.00706) * t315;
-            inertia[17] = t325;
-            const gic_real t326 = -t319;
-            motion[51] = t326;
-            const gic_real t327 = t323 - t281;
-            inertia[15] = t327;
-            const gic_real t328 = t292 + (t214 + (t317 * t324 - t316 * t323));
-            inertia[20] = t328;
-            const gic_real t329 = t265 + t139 * t271 + t148 * t318 + t151 * t310;
-            const gic_real t330 = t169 * (t318 * R(5.667e-07) + (t203 * t249 - t213 * t212));
-            const gic_real t331 = t211 * t214 + (t196 * t205 + t169 * t200) + (t315 * t325 + (t314 * t324 + t313 * t323));
-            const gic_real t332 = t200 + (t316 * t325 - t308 * t324);
-            inertia[18] = t332;
-            const gic_real t333 = t205 + (t308 * t323 - t317 * t325);
-            inertia[19] = t333;
-            const gic_real t334 = t282 + t324;
-            inertia[16] = t334;
+            const gic_real along_0_force_z = R(0.00706) * t315;
+            inertia[ANDREWS_I_COORDINATE + 2] = along_0_force_z;
+            const gic_real acceleration_x_2 = -t319;
+            motion[30 + ANDREWS_ACCELERATION_X] = acceleration_x_2;
+            const gic_real along_0_force_x = t323 - t281;
+            inertia[ANDREWS_I_COORDINATE + 0] = along_0_force_x;
+            const gic_real along_0_moment_z = t292 + (t214 + (t317 * t324 - t316 * t323));
+            inertia[ANDREWS_I_COORDINATE + 5] = along_0_moment_z;
+            const gic_real t329 = t265 + t139 * t271 + t148 * alpha_x_2 + t151 * alpha_z;
+            const gic_real t330 = s_0_0_2 * (alpha_x_2 * R(5.667e-07) + (omega_y_2 * t249 - omega_z_2 * t212));
+            const gic_real t331 = s_0_2_2 * t214 + (s_0_1_2 * t205 + s_0_0_2 * t200) + (t315 * along_0_force_z + (t314 *
+                t324 + t313 * t323));
+            const gic_real along_0_moment_x = t200 + (t316 * along_0_force_z - t308 * t324);
+            inertia[ANDREWS_I_COORDINATE + 3] = along_0_moment_x;
+            const gic_real along_0_moment_y = t205 + (t308 * t323 - t317 * along_0_force_z);
+            inertia[ANDREWS_I_COORDINATE + 4] = along_0_moment_y;
+            const gic_real along_0_force_y = t282 + t324;
+            inertia[ANDREWS_I_COORDINATE + 1] = along_0_force_y;
             const gic_real t335 = t140 * t329;
-            const gic_real t336 = t131 * t335 - (t238 + t107 * t260) - t132 * t318;
-            const gic_real t337 = t196 * (t213 * t197 - t190 * t249 - t335 * R(5.667e-07));
-            const gic_real t338 = t190 * t311 - t203 * t309 + (t335 * t307 + t318 * t306);
-            const gic_real t339 = t167 * t185 + (t277 * t282 + t276 * t281) + t331;
-            inertia[22] = t339;
-            const gic_real t340 = -t335;
-            motion[49] = t340;
-            const gic_real t341 = t108 * (t336 - t133 * t310);
-            motion[50] = t341;
-            const gic_real t342 = t213 * t309 - t190 * t312 + (t341 * t307 - t318 * t305);
-            const gic_real t343 = t203 * t312 - t213 * t311 - (t341 * t306 + t335 * t305);
-            const gic_real t344 = t211 * (t341 * R(5.667e-07) + (t190 * t212 - t203 * t197));
-            const gic_real t345 = R(0.00706) * (t320 + t342) * t314 + R(0.00706) * (t343 - t319) * t313;
+            const gic_real t336 = t131 * t335 - (t238 + t107 * t260) - t132 * alpha_x_2;
+            const gic_real t337 = s_0_1_2 * (omega_z_2 * t197 - omega_x_2 * t249 - t335 * R(5.667e-07));
+            const gic_real t338 = omega_x_2 * t311 - omega_y_2 * t309 + (t335 * t307 + alpha_x_2 * t306);
+            const gic_real mass_0 = s_0_2 * t185 + (t277 * t282 + t276 * t281) + t331;
+            inertia[ANDREWS_I_COORDINATE + 7] = mass_0;
+            const gic_real alpha_y_2 = -t335;
+            motion[30 + ANDREWS_ALPHA_Y] = alpha_y_2;
+            const gic_real alpha_z_2 = t108 * (t336 - t133 * alpha_z);
+            motion[30 + ANDREWS_ALPHA_Z] = alpha_z_2;
+            const gic_real t342 = omega_z_2 * t309 - omega_x_2 * t312 + (alpha_z_2 * t307 - alpha_x_2 * t305);
+            const gic_real t343 = omega_y_2 * t312 - omega_z_2 * t311 - (alpha_z_2 * t306 + t335 * t305);
+            const gic_real t344 = s_0_2_2 * (alpha_z_2 * R(5.667e-07) + (omega_x_2 * t212 - omega_y_2 * t197));
+            const gic_real t345 = R(0.00706) * (acceleration_y_2 + t342) * t314 + R(0.00706) * (t343 - t319) * t313;
             const gic_real t346 = t344 + (t337 + t330) + (R(0.00706) * t338 * t315 + t345);
-            const gic_real t347 = t167 * (t310 * k[8]) + (t321 + t322) + t346;
-            inertia[21] = t347;
-            q[3] = t248;
-            q[4] = t230;
-            q[5] = t245;
-            q[6] = t246;
-            q[7] = t198;
-            q[8] = t199;
-            q[9] = t105;
-            q[10] = t275;
-            q[11] = t272;
-            q[12] = t273;
-            q[13] = t274;
+            const gic_real along_0_bias = s_0_2 * (alpha_z * k[8]) + (t321 + t322) + t346;
+            inertia[ANDREWS_I_COORDINATE + 6] = along_0_bias;
+            q[ANDREWS_Q_P0] = t248;
+            q[ANDREWS_Q_P1] = t230;
+            q[ANDREWS_Q_P2] = t245;
+            q[ANDREWS_Q_P3] = t246;
+            q[7 + ANDREWS_Q_X] = c_x_2;
+            q[7 + ANDREWS_Q_Y] = c_y_2;
+            q[7 + ANDREWS_Q_Z] = c_z_2;
+            q[7 + ANDREWS_Q_P0] = t275;
+            q[7 + ANDREWS_Q_P1] = t272;
+            q[7 + ANDREWS_Q_P2] = t273;
+            q[7 + ANDREWS_Q_P3] = t274;
             start[14] = R(0.0);
             start[15] = R(0.0);
             start[17] = R(0.0);
@@ -1414,10 +1653,9 @@ static int andrews_solve_K5_K4(andrews *self, const gic_real *GIC_RESTRICT k, co
         motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
         ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+        if (!GIC_LEADS_ON(step))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
+        if (GIC_IS_ENOUGH(step, enough) || GIC_IS_ROUNDING(step, before, enough)) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1440,108 +1678,160 @@ static GIC_COLD void andrews_residual_K5_K4(const gic_real *GIC_RESTRICT k, cons
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[41]) - motion[41];
-        const gic_real t2 = k[2] * motion[4] + k[3] * motion[3];
-        const gic_real t3 = k[2] * motion[7] + k[3] * motion[6];
-        const gic_real t4 = GIC_FABS((motion[30] - (R(-0.06934) + t2)) * R(24.999999999999996)) + GIC_FABS((motion[31] - (R(-0.00227) + t3)) * R(24.999999999999996));
-        const gic_real t5 = k[4] * motion[7] + k[5] * motion[6];
-        const gic_real t6 = k[4] * motion[4] + k[5] * motion[3];
-        const gic_real t7 = t4 + GIC_FABS(motion[32] * R(24.999999999999996)) + GIC_FABS((motion[38] * t5 + motion[35] * t6) * k[15]);
-        const gic_real t8 = k[6] * motion[7] + k[7] * motion[6];
-        const gic_real t9 = k[6] * motion[4] + k[7] * motion[3];
-        const gic_real t10 = t7 + t1 + GIC_FABS((motion[38] * t8 + motion[35] * t9) * k[16]);
-        const gic_real t11 = R(-0.43971364724701895) * m0[7] + R(0.898138023036952) * m0[6];
-        const gic_real t12 = k[0] * motion[37] + k[1] * motion[36];
-        const gic_real t13 = R(-0.03500000000000001) * m0[7];
-        const gic_real t14 = motion[31] + t12 - (t13 + R(0.03273));
-        const gic_real t15 = R(-0.43971364724701895) * m0[4] + R(0.898138023036952) * m0[3];
-        const gic_real t16 = k[0] * motion[34] + k[1] * motion[33];
-        const gic_real t17 = R(-0.03500000000000001) * m0[4];
-        const gic_real t18 = motion[30] + t16 - (t17 + R(-0.03635));
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[30 + ANDREWS_A_ZZ]) - motion[30 + ANDREWS_A_ZZ];
+        const gic_real t2 = k[2] * motion[ANDREWS_A_XY] + k[3] * motion[ANDREWS_A_XX];
+        const gic_real t3 = k[2] * motion[ANDREWS_A_YY] + k[3] * motion[ANDREWS_A_YX];
+        const gic_real t4 = GIC_FABS((motion[30 + ANDREWS_C_X] - (R(-0.06934) + t2)) * R(24.999999999999996)) +
+            GIC_FABS((motion[30 + ANDREWS_C_Y] - (R(-0.00227) + t3)) * R(24.999999999999996));
+        const gic_real t5 = k[4] * motion[ANDREWS_A_YY] + k[5] * motion[ANDREWS_A_YX];
+        const gic_real t6 = k[4] * motion[ANDREWS_A_XY] + k[5] * motion[ANDREWS_A_XX];
+        const gic_real t7 = t4 + GIC_FABS(motion[30 + ANDREWS_C_Z] * R(24.999999999999996)) +
+            GIC_FABS((motion[30 + ANDREWS_A_YZ] * t5 + motion[30 + ANDREWS_A_XZ] * t6) * k[15]);
+        const gic_real t8 = k[6] * motion[ANDREWS_A_YY] + k[7] * motion[ANDREWS_A_YX];
+        const gic_real t9 = k[6] * motion[ANDREWS_A_XY] + k[7] * motion[ANDREWS_A_XX];
+        const gic_real t10 = t7 + t1 + GIC_FABS((motion[30 + ANDREWS_A_YZ] * t8 + motion[30 + ANDREWS_A_XZ] * t9) *
+            k[16]);
+        const gic_real t11 = R(-0.43971364724701895) * m0[ANDREWS_A_YY] + R(0.898138023036952) * m0[ANDREWS_A_YX];
+        const gic_real t12 = k[0] * motion[30 + ANDREWS_A_YY] + k[1] * motion[30 + ANDREWS_A_YX];
+        const gic_real t13 = R(-0.03500000000000001) * m0[ANDREWS_A_YY];
+        const gic_real t14 = motion[30 + ANDREWS_C_Y] + t12 - (t13 + R(0.03273));
+        const gic_real t15 = R(-0.43971364724701895) * m0[ANDREWS_A_XY] + R(0.898138023036952) * m0[ANDREWS_A_XX];
+        const gic_real t16 = k[0] * motion[30 + ANDREWS_A_XY] + k[1] * motion[30 + ANDREWS_A_XX];
+        const gic_real t17 = R(-0.03500000000000001) * m0[ANDREWS_A_XY];
+        const gic_real t18 = motion[30 + ANDREWS_C_X] + t16 - (t17 + R(-0.03635));
         const gic_real t19 = t1 + t10 + GIC_FABS((t11 * t14 + t15 * t18) * R(24.99999999999999));
-        const gic_real t20 = R(0.8981380230369522) * m0[7] + R(0.43971364724701906) * m0[6];
-        const gic_real t21 = R(0.8981380230369522) * m0[4] + R(0.43971364724701906) * m0[3];
+        const gic_real t20 = R(0.8981380230369522) * m0[ANDREWS_A_YY] + R(0.43971364724701906) * m0[ANDREWS_A_YX];
+        const gic_real t21 = R(0.8981380230369522) * m0[ANDREWS_A_XY] + R(0.43971364724701906) * m0[ANDREWS_A_XX];
         const gic_real t22 = t19 + GIC_FABS((t20 * t14 + t21 * t18) * R(24.999999999999982));
-        const gic_real t23 = t22 + GIC_FABS(motion[6] * motion[6] + motion[3] * motion[3] - R(1.0));
-        const gic_real t24 = t23 + GIC_FABS(motion[7] * motion[7] + motion[4] * motion[4] - R(1.0));
-        const gic_real t25 = t24 + GIC_FABS(motion[6] * motion[7] + motion[3] * motion[4]) + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - R(1.0));
-        const gic_real t26 = motion[39] * motion[39] + (motion[36] * motion[36] + motion[33] * motion[33]) - R(1.0);
-        const gic_real t27 = motion[40] * motion[40] + (motion[37] * motion[37] + motion[34] * motion[34]) - R(1.0);
-        const gic_real t28 = GIC_FABS(motion[39] * motion[40] + (motion[36] * motion[37] + motion[33] * motion[34]));
-        const gic_real t29 = t25 + GIC_FABS(t26) + GIC_FABS(t27) + t28 + GIC_FABS(motion[36] * motion[40] - motion[37] * motion[39] - motion[35]);
-        const gic_real t30 = t29 + GIC_FABS(motion[34] * motion[39] - motion[33] * motion[40] - motion[38]);
-        const gic_real t31 = t30 + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - motion[41]);
-        const gic_real t32 = GIC_FABS(R(24.999999999999996) * (motion[57] + t3 * motion[26])) + GIC_FABS(R(24.999999999999996) * (motion[58] - t2 * motion[26]));
-        const gic_real t33 = motion[38] * t6;
-        const gic_real t34 = motion[35] * t5;
-        const gic_real t35 = (t33 - t34) * motion[26] - motion[41] * t5 * motion[54] + motion[41] * t6 * motion[55];
-        const gic_real t36 = t32 + GIC_FABS(k[15] * (t35 + (t34 - t33) * motion[56]));
-        const gic_real t37 = motion[38] * t9;
-        const gic_real t38 = motion[35] * t8;
-        const gic_real t39 = (t37 - t38) * motion[26] - motion[41] * t8 * motion[54] + motion[41] * t9 * motion[55];
-        const gic_real t40 = t36 + GIC_FABS(k[16] * (t39 + (t38 - t37) * motion[56]));
+        const gic_real t23 = t22 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YX] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XX] - R(1.0));
+        const gic_real t24 = t23 + GIC_FABS(motion[ANDREWS_A_YY] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_XY] - R(1.0));
+        const gic_real t25 = t24 + GIC_FABS(motion[ANDREWS_A_YX] * motion[ANDREWS_A_YY] + motion[ANDREWS_A_XX] *
+            motion[ANDREWS_A_XY]) + GIC_FABS(motion[ANDREWS_A_XX] * motion[ANDREWS_A_YY] - motion[ANDREWS_A_XY] *
+            motion[ANDREWS_A_YX] - R(1.0));
+        const gic_real t26 = motion[30 + ANDREWS_A_ZX] * motion[30 + ANDREWS_A_ZX] + (motion[30 + ANDREWS_A_YX] *
+            motion[30 + ANDREWS_A_YX] + motion[30 + ANDREWS_A_XX] * motion[30 + ANDREWS_A_XX]) - R(1.0);
+        const gic_real t27 = motion[30 + ANDREWS_A_ZY] * motion[30 + ANDREWS_A_ZY] + (motion[30 + ANDREWS_A_YY] *
+            motion[30 + ANDREWS_A_YY] + motion[30 + ANDREWS_A_XY] * motion[30 + ANDREWS_A_XY]) - R(1.0);
+        const gic_real t28 = GIC_FABS(motion[30 + ANDREWS_A_ZX] * motion[30 + ANDREWS_A_ZY] +
+            (motion[30 + ANDREWS_A_YX] * motion[30 + ANDREWS_A_YY] + motion[30 + ANDREWS_A_XX] *
+            motion[30 + ANDREWS_A_XY]));
+        const gic_real t29 = t25 + GIC_FABS(t26) + GIC_FABS(t27) + t28 + GIC_FABS(motion[30 + ANDREWS_A_YX] *
+            motion[30 + ANDREWS_A_ZY] - motion[30 + ANDREWS_A_YY] * motion[30 + ANDREWS_A_ZX] -
+            motion[30 + ANDREWS_A_XZ]);
+        const gic_real t30 = t29 + GIC_FABS(motion[30 + ANDREWS_A_XY] * motion[30 + ANDREWS_A_ZX] -
+            motion[30 + ANDREWS_A_XX] * motion[30 + ANDREWS_A_ZY] - motion[30 + ANDREWS_A_YZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[30 + ANDREWS_A_XX] * motion[30 + ANDREWS_A_YY] -
+            motion[30 + ANDREWS_A_XY] * motion[30 + ANDREWS_A_YX] - motion[30 + ANDREWS_A_ZZ]);
+        const gic_real t32 = GIC_FABS(R(24.999999999999996) * (motion[30 + ANDREWS_S + 3] + t3 *
+            motion[ANDREWS_S + 2])) + GIC_FABS(R(24.999999999999996) * (motion[30 + ANDREWS_S + 4] - t2 *
+            motion[ANDREWS_S + 2]));
+        const gic_real t33 = motion[30 + ANDREWS_A_YZ] * t6;
+        const gic_real t34 = motion[30 + ANDREWS_A_XZ] * t5;
+        const gic_real t35 = (t33 - t34) * motion[ANDREWS_S + 2] - motion[30 + ANDREWS_A_ZZ] * t5 *
+            motion[30 + ANDREWS_S + 0] + motion[30 + ANDREWS_A_ZZ] * t6 * motion[30 + ANDREWS_S + 1];
+        const gic_real t36 = t32 + GIC_FABS(k[15] * (t35 + (t34 - t33) * motion[30 + ANDREWS_S + 2]));
+        const gic_real t37 = motion[30 + ANDREWS_A_YZ] * t9;
+        const gic_real t38 = motion[30 + ANDREWS_A_XZ] * t8;
+        const gic_real t39 = (t37 - t38) * motion[ANDREWS_S + 2] - motion[30 + ANDREWS_A_ZZ] * t8 *
+            motion[30 + ANDREWS_S + 0] + motion[30 + ANDREWS_A_ZZ] * t9 * motion[30 + ANDREWS_S + 1];
+        const gic_real t40 = t36 + GIC_FABS(k[16] * (t39 + (t38 - t37) * motion[30 + ANDREWS_S + 2]));
         const gic_real t41 = t13 * t15 - t17 * t11 + (t15 * t14 - t11 * t18);
-        const gic_real t42 = k[0] * motion[40] + k[1] * motion[39];
-        const gic_real t43 = m0[26] * t41 - t11 * t42 * motion[54] + t15 * t42 * motion[55];
-        const gic_real t44 = t43 + (t11 * t16 - t15 * t12) * motion[56] + t15 * motion[57];
+        const gic_real t42 = k[0] * motion[30 + ANDREWS_A_ZY] + k[1] * motion[30 + ANDREWS_A_ZX];
+        const gic_real t43 = m0[ANDREWS_S + 2] * t41 - t11 * t42 * motion[30 + ANDREWS_S + 0] + t15 * t42 *
+            motion[30 + ANDREWS_S + 1];
+        const gic_real t44 = t43 + (t11 * t16 - t15 * t12) * motion[30 + ANDREWS_S + 2] + t15 *
+            motion[30 + ANDREWS_S + 3];
         const gic_real t45 = t13 * t21 - t17 * t20 + (t21 * t14 - t20 * t18);
-        const gic_real t46 = m0[26] * t45 - t20 * t42 * motion[54] + t21 * t42 * motion[55];
-        const gic_real t47 = t46 + (t20 * t16 - t21 * t12) * motion[56] + t21 * motion[57];
-        const gic_real t48 = t40 + GIC_FABS(R(24.99999999999999) * (t44 + t11 * motion[58])) + GIC_FABS(R(24.999999999999982) * (t47 + t20 * motion[58]));
-        const gic_real t49 = R(24.999999999999996) * (GIC_FABS(motion[57]) + GIC_FABS(motion[58])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
-        const gic_real t50 = GIC_FABS(motion[26]) + t49 + GIC_FABS(m0[26]);
-        const gic_real t51 = GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(motion[42] - rate[0] * motion[54]);
-        const gic_real t52 = t51 + GIC_FABS(motion[43] - rate[0] * motion[55]) + GIC_FABS(motion[44] - rate[0] * motion[56]);
-        const gic_real t53 = t52 + GIC_FABS(R(24.999999999999996) * (motion[45] - rate[0] * motion[57])) + GIC_FABS(R(24.999999999999996) * (motion[46] - rate[0] * motion[58]));
-        const gic_real t54 = GIC_FABS(motion[14]);
-        const gic_real t55 = R(24.999999999999996) * (GIC_FABS(motion[45]) + GIC_FABS(motion[46]));
-        const gic_real t56 = GIC_FABS(motion[42]) + GIC_FABS(motion[43]) + GIC_FABS(motion[44]);
+        const gic_real t46 = m0[ANDREWS_S + 2] * t45 - t20 * t42 * motion[30 + ANDREWS_S + 0] + t21 * t42 *
+            motion[30 + ANDREWS_S + 1];
+        const gic_real t47 = t46 + (t20 * t16 - t21 * t12) * motion[30 + ANDREWS_S + 2] + t21 *
+            motion[30 + ANDREWS_S + 3];
+        const gic_real t48 = t40 + GIC_FABS(R(24.99999999999999) * (t44 + t11 * motion[30 + ANDREWS_S + 4])) +
+            GIC_FABS(R(24.999999999999982) * (t47 + t20 * motion[30 + ANDREWS_S + 4]));
+        const gic_real t49 = R(24.999999999999996) * (GIC_FABS(motion[30 + ANDREWS_S + 3]) +
+            GIC_FABS(motion[30 + ANDREWS_S + 4])) + (GIC_FABS(motion[30 + ANDREWS_S + 0]) +
+            GIC_FABS(motion[30 + ANDREWS_S + 1]) + GIC_FABS(motion[30 + ANDREWS_S + 2]));
+        const gic_real t50 = GIC_FABS(motion[ANDREWS_S + 2]) + t49 + GIC_FABS(m0[ANDREWS_S + 2]);
+        const gic_real t51 = GIC_FABS(motion[ANDREWS_OMEGA_Z] - rate[0] * motion[ANDREWS_S + 2]) +
+            GIC_FABS(motion[30 + ANDREWS_OMEGA_X] - rate[0] * motion[30 + ANDREWS_S + 0]);
+        const gic_real t52 = t51 + GIC_FABS(motion[30 + ANDREWS_OMEGA_Y] - rate[0] * motion[30 + ANDREWS_S + 1]) +
+            GIC_FABS(motion[30 + ANDREWS_OMEGA_Z] - rate[0] * motion[30 + ANDREWS_S + 2]);
+        const gic_real t53 = t52 + GIC_FABS(R(24.999999999999996) * (motion[30 + ANDREWS_VELOCITY_X] - rate[0] *
+            motion[30 + ANDREWS_S + 3])) + GIC_FABS(R(24.999999999999996) * (motion[30 + ANDREWS_VELOCITY_Y] - rate[0] *
+            motion[30 + ANDREWS_S + 4]));
+        const gic_real t54 = GIC_FABS(motion[ANDREWS_OMEGA_Z]);
+        const gic_real t55 = R(24.999999999999996) * (GIC_FABS(motion[30 + ANDREWS_VELOCITY_X]) +
+            GIC_FABS(motion[30 + ANDREWS_VELOCITY_Y]));
+        const gic_real t56 = GIC_FABS(motion[30 + ANDREWS_OMEGA_X]) + GIC_FABS(motion[30 + ANDREWS_OMEGA_Y]) +
+            GIC_FABS(motion[30 + ANDREWS_OMEGA_Z]);
         const gic_real t57 = t50 * GIC_FABS(rate[0]);
         const gic_real t58 = t48 / (t50 + R(1e-30)) + t53 / (R(1e-30) + (t54 + (t55 + t56) + t57));
-        const gic_real t59 = R(24.999999999999996) * (motion[51] + (motion[14] * (t2 * motion[14]) + t3 * motion[20]));
-        const gic_real t60 = R(24.999999999999996) * (motion[52] - (t2 * motion[20] - motion[14] * (t3 * motion[14])));
-        const gic_real t61 = t6 * motion[14];
-        const gic_real t62 = motion[35] * motion[44] - motion[41] * motion[42];
-        const gic_real t63 = t5 * motion[14];
-        const gic_real t64 = motion[41] * motion[43] - motion[38] * motion[44];
+        const gic_real t59 = R(24.999999999999996) * (motion[30 + ANDREWS_ACCELERATION_X] + (motion[ANDREWS_OMEGA_Z] *
+            (t2 * motion[ANDREWS_OMEGA_Z]) + t3 * motion[ANDREWS_ALPHA_Z]));
+        const gic_real t60 = R(24.999999999999996) * (motion[30 + ANDREWS_ACCELERATION_Y] - (t2 *
+            motion[ANDREWS_ALPHA_Z] - motion[ANDREWS_OMEGA_Z] * (t3 * motion[ANDREWS_OMEGA_Z])));
+        const gic_real t61 = t6 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t62 = motion[30 + ANDREWS_A_XZ] * motion[30 + ANDREWS_OMEGA_Z] - motion[30 + ANDREWS_A_ZZ] *
+            motion[30 + ANDREWS_OMEGA_X];
+        const gic_real t63 = t5 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t64 = motion[30 + ANDREWS_A_ZZ] * motion[30 + ANDREWS_OMEGA_Y] - motion[30 + ANDREWS_A_YZ] *
+            motion[30 + ANDREWS_OMEGA_Z];
         const gic_real t65 = t61 * t62 - t63 * t64;
-        const gic_real t66 = motion[38] * (t6 * motion[20] - motion[14] * t63) - motion[35] * (motion[14] * t61 + t5 * motion[20]);
-        const gic_real t67 = motion[38] * motion[42] - motion[35] * motion[43];
-        const gic_real t68 = motion[44] * t64 - motion[42] * t67 + (motion[35] * motion[50] - motion[41] * motion[48]);
-        const gic_real t69 = motion[43] * t67 - motion[44] * t62 + (motion[41] * motion[49] - motion[38] * motion[50]);
+        const gic_real t66 = motion[30 + ANDREWS_A_YZ] * (t6 * motion[ANDREWS_ALPHA_Z] - motion[ANDREWS_OMEGA_Z] *
+            t63) - motion[30 + ANDREWS_A_XZ] * (motion[ANDREWS_OMEGA_Z] * t61 + t5 * motion[ANDREWS_ALPHA_Z]);
+        const gic_real t67 = motion[30 + ANDREWS_A_YZ] * motion[30 + ANDREWS_OMEGA_X] - motion[30 + ANDREWS_A_XZ] *
+            motion[30 + ANDREWS_OMEGA_Y];
+        const gic_real t68 = motion[30 + ANDREWS_OMEGA_Z] * t64 - motion[30 + ANDREWS_OMEGA_X] * t67 +
+            (motion[30 + ANDREWS_A_XZ] * motion[30 + ANDREWS_ALPHA_Z] - motion[30 + ANDREWS_A_ZZ] *
+            motion[30 + ANDREWS_ALPHA_X]);
+        const gic_real t69 = motion[30 + ANDREWS_OMEGA_Y] * t67 - motion[30 + ANDREWS_OMEGA_Z] * t62 +
+            (motion[30 + ANDREWS_A_ZZ] * motion[30 + ANDREWS_ALPHA_Y] - motion[30 + ANDREWS_A_YZ] *
+            motion[30 + ANDREWS_ALPHA_Z]);
         const gic_real t70 = t65 + t65 + (t66 + (t5 * t68 + t6 * t69));
         const gic_real t71 = GIC_FABS(t59) + GIC_FABS(t60) + GIC_FABS(t70 * k[15]);
-        const gic_real t72 = t9 * motion[14];
-        const gic_real t73 = t8 * motion[14];
+        const gic_real t72 = t9 * motion[ANDREWS_OMEGA_Z];
+        const gic_real t73 = t8 * motion[ANDREWS_OMEGA_Z];
         const gic_real t74 = t72 * t62 - t73 * t64;
-        const gic_real t75 = motion[38] * (t9 * motion[20] - motion[14] * t73) - motion[35] * (motion[14] * t72 + t8 * motion[20]);
+        const gic_real t75 = motion[30 + ANDREWS_A_YZ] * (t9 * motion[ANDREWS_ALPHA_Z] - motion[ANDREWS_OMEGA_Z] *
+            t73) - motion[30 + ANDREWS_A_XZ] * (motion[ANDREWS_OMEGA_Z] * t72 + t8 * motion[ANDREWS_ALPHA_Z]);
         const gic_real t76 = t74 + t74 + (t75 + (t8 * t68 + t9 * t69));
-        const gic_real t77 = m0[14] * t15;
-        const gic_real t78 = t16 * motion[44] - t42 * motion[42];
-        const gic_real t79 = m0[14] * t17;
-        const gic_real t80 = motion[46] + t78 - t79;
-        const gic_real t81 = m0[14] * t11;
-        const gic_real t82 = m0[14] * t13;
-        const gic_real t83 = t42 * motion[43] - t12 * motion[44];
-        const gic_real t84 = t82 + (motion[45] + t83);
+        const gic_real t77 = m0[ANDREWS_OMEGA_Z] * t15;
+        const gic_real t78 = t16 * motion[30 + ANDREWS_OMEGA_Z] - t42 * motion[30 + ANDREWS_OMEGA_X];
+        const gic_real t79 = m0[ANDREWS_OMEGA_Z] * t17;
+        const gic_real t80 = motion[30 + ANDREWS_VELOCITY_Y] + t78 - t79;
+        const gic_real t81 = m0[ANDREWS_OMEGA_Z] * t11;
+        const gic_real t82 = m0[ANDREWS_OMEGA_Z] * t13;
+        const gic_real t83 = t42 * motion[30 + ANDREWS_OMEGA_Y] - t12 * motion[30 + ANDREWS_OMEGA_Z];
+        const gic_real t84 = t82 + (motion[30 + ANDREWS_VELOCITY_X] + t83);
         const gic_real t85 = t77 * t80 - t81 * t84;
-        const gic_real t86 = (m0[20] * t15 - m0[14] * t81) * t14 - (m0[20] * t11 + m0[14] * t77) * t18;
-        const gic_real t87 = t12 * motion[42] - t16 * motion[43];
-        const gic_real t88 = motion[44] * t83 - motion[42] * t87 + (t16 * motion[50] - t42 * motion[48]);
-        const gic_real t89 = motion[52] + t88 - (m0[20] * t17 - m0[14] * t82);
-        const gic_real t90 = motion[43] * t87 - motion[44] * t78 + (t42 * motion[49] - t12 * motion[50]);
-        const gic_real t91 = m0[20] * t13 + m0[14] * t79 + (motion[51] + t90);
+        const gic_real t86 = (m0[ANDREWS_ALPHA_Z] * t15 - m0[ANDREWS_OMEGA_Z] * t81) * t14 - (m0[ANDREWS_ALPHA_Z] *
+            t11 + m0[ANDREWS_OMEGA_Z] * t77) * t18;
+        const gic_real t87 = t12 * motion[30 + ANDREWS_OMEGA_X] - t16 * motion[30 + ANDREWS_OMEGA_Y];
+        const gic_real t88 = motion[30 + ANDREWS_OMEGA_Z] * t83 - motion[30 + ANDREWS_OMEGA_X] * t87 + (t16 *
+            motion[30 + ANDREWS_ALPHA_Z] - t42 * motion[30 + ANDREWS_ALPHA_X]);
+        const gic_real t89 = motion[30 + ANDREWS_ACCELERATION_Y] + t88 - (m0[ANDREWS_ALPHA_Z] * t17 -
+            m0[ANDREWS_OMEGA_Z] * t82);
+        const gic_real t90 = motion[30 + ANDREWS_OMEGA_Y] * t87 - motion[30 + ANDREWS_OMEGA_Z] * t78 + (t42 *
+            motion[30 + ANDREWS_ALPHA_Y] - t12 * motion[30 + ANDREWS_ALPHA_Z]);
+        const gic_real t91 = m0[ANDREWS_ALPHA_Z] * t13 + m0[ANDREWS_OMEGA_Z] * t79 +
+            (motion[30 + ANDREWS_ACCELERATION_X] + t90);
         const gic_real t92 = t85 + t85 + (t86 + (t11 * t89 + t15 * t91));
         const gic_real t93 = t71 + GIC_FABS(t76 * k[16]) + GIC_FABS(t92 * R(24.99999999999999));
-        const gic_real t94 = m0[14] * t21;
-        const gic_real t95 = m0[14] * t20;
+        const gic_real t94 = m0[ANDREWS_OMEGA_Z] * t21;
+        const gic_real t95 = m0[ANDREWS_OMEGA_Z] * t20;
         const gic_real t96 = t94 * t80 - t95 * t84;
-        const gic_real t97 = (m0[20] * t21 - m0[14] * t95) * t14 - (m0[20] * t20 + m0[14] * t94) * t18;
+        const gic_real t97 = (m0[ANDREWS_ALPHA_Z] * t21 - m0[ANDREWS_OMEGA_Z] * t95) * t14 - (m0[ANDREWS_ALPHA_Z] *
+            t20 + m0[ANDREWS_OMEGA_Z] * t94) * t18;
         const gic_real t98 = t96 + t96 + (t97 + (t20 * t89 + t21 * t91));
-        const gic_real t99 = R(24.999999999999996) * (GIC_FABS(motion[51]) + GIC_FABS(motion[52])) + (GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]));
-        const gic_real t100 = t54 * t54 + GIC_FABS(motion[20]) + (t55 * t55 + t56 * t56 + t99);
-        const gic_real t101 = GIC_FABS(m0[14]);
-        const gic_real t102 = t100 + (t101 * t101 + GIC_FABS(m0[20])) + t57 * t57;
+        const gic_real t99 = R(24.999999999999996) * (GIC_FABS(motion[30 + ANDREWS_ACCELERATION_X]) +
+            GIC_FABS(motion[30 + ANDREWS_ACCELERATION_Y])) + (GIC_FABS(motion[30 + ANDREWS_ALPHA_X]) +
+            GIC_FABS(motion[30 + ANDREWS_ALPHA_Y]) + GIC_FABS(motion[30 + ANDREWS_ALPHA_Z]));
+        const gic_real t100 = t54 * t54 + GIC_FABS(motion[ANDREWS_ALPHA_Z]) + (t55 * t55 + t56 * t56 + t99);
+        const gic_real t101 = GIC_FABS(m0[ANDREWS_OMEGA_Z]);
+        const gic_real t102 = t100 + (t101 * t101 + GIC_FABS(m0[ANDREWS_ALPHA_Z])) + t57 * t57;
         const gic_real t103 = t58 + (t93 + GIC_FABS(t98 * R(24.999999999999982))) / (R(1e-30) + t102);
         worst[0] = t31;
         worst[1] = t103;
@@ -1566,52 +1856,57 @@ static int andrews_recover_piece(andrews *self, andrews_links *links, const gic_
     (void)xd;
     (void)status;
     /* stage 1: K1 */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[ANDREWS_X_BETA]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* beta */
-        links->rate[0] = xd[0];
-        status = andrews_solve_K1(self, andrews_k_K1[0], links, start + 1, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[ANDREWS_X_BETA];
+        links->rate[0] = xd[ANDREWS_X_BETA];
+        status = andrews_solve_K1(self, andrews_k_K1[0], links, start + 1, self->motion + ANDREWS_MOTION_K1,
+            self->inertia + ANDREWS_INERTIA_K1);
         if (status != GIC_OK) {
-            self->head.subset = 0;
+            self->head.subset = ANDREWS_SUBSET_K1;
             return status;
         }
     }
     /* stage 2: K2 K3 */
-    links->known[0] = self->motion + 0; /* K1 */
-    links->x[0] = start[0]; /* beta */
-    links->rate[0] = xd[0];
-    links->change[0] = gic_unwound(start[0] - old[0]);
-    status = andrews_solve_K2_K3(self, andrews_k_K2_K3[0], links, old + 1, start + 1, self->motion + 30, self->inertia + 23);
+    links->known[0] = self->motion + ANDREWS_MOTION_K1; /* K1 */
+    links->x[0] = start[ANDREWS_X_BETA];
+    links->rate[0] = xd[ANDREWS_X_BETA];
+    links->change[0] = gic_unwound(start[ANDREWS_X_BETA] - old[ANDREWS_X_BETA]);
+    status = andrews_solve_K2_K3(self, andrews_k_K2_K3[0], links, old + 1, start + 1, self->motion + ANDREWS_MOTION_K2,
+        self->inertia + ANDREWS_INERTIA_K2);
     if (status != GIC_OK) {
-        self->head.subset = 1;
+        self->head.subset = ANDREWS_SUBSET_K2;
         return status;
     }
     /* stage 3: K5 K4 */
-    links->known[0] = self->motion + 60; /* K3 */
-    links->x[0] = start[0]; /* beta */
-    links->rate[0] = xd[0];
-    links->change[0] = gic_unwound(start[0] - old[0]);
-    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[0], links, old + 35, start + 35, self->motion + 90, self->inertia + 46);
+    links->known[0] = self->motion + ANDREWS_MOTION_K3; /* K3 */
+    links->x[0] = start[ANDREWS_X_BETA];
+    links->rate[0] = xd[ANDREWS_X_BETA];
+    links->change[0] = gic_unwound(start[ANDREWS_X_BETA] - old[ANDREWS_X_BETA]);
+    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[0], links, old + 35, start + 35, self->motion +
+        ANDREWS_MOTION_K5, self->inertia + ANDREWS_INERTIA_K5);
     if (status != GIC_OK) {
-        self->head.subset = 2;
+        self->head.subset = ANDREWS_SUBSET_K5;
         return status;
     }
     /* stage 3: K7 K6 */
-    links->known[0] = self->motion + 60; /* K3 */
-    links->x[0] = start[0]; /* beta */
-    links->rate[0] = xd[0];
-    links->change[0] = gic_unwound(start[0] - old[0]);
-    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[1], links, old + 93, start + 93, self->motion + 150, self->inertia + 69);
+    links->known[0] = self->motion + ANDREWS_MOTION_K3; /* K3 */
+    links->x[0] = start[ANDREWS_X_BETA];
+    links->rate[0] = xd[ANDREWS_X_BETA];
+    links->change[0] = gic_unwound(start[ANDREWS_X_BETA] - old[ANDREWS_X_BETA]);
+    status = andrews_solve_K5_K4(self, andrews_k_K5_K4[1], links, old + 93, start + 93, self->motion +
+        ANDREWS_MOTION_K7, self->inertia + ANDREWS_INERTIA_K7);
     if (status != GIC_OK) {
-        self->head.subset = 3;
+        self->head.subset = ANDREWS_SUBSET_K7;
         return status;
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
 static int andrews_recover_way(andrews *self, andrews_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
@@ -1634,13 +1929,11 @@ static int andrews_recover_way(andrews *self, andrews_links *links, const gic_re
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (ANDREWS_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1667,8 +1960,8 @@ static int andrews_recover(andrews *self, const gic_real turn[3], int cold)
     links.ahead[0] = self->head.ahead;
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         way[i] = self->x[i] - self->start[first][i];
-    if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * andrews_piece[0])) /* beta */
-        way[0] = gic_unwound(way[0]);
+    if (!(GIC_FABS(way[ANDREWS_X_BETA]) < R(GIC_PIECES) * andrews_piece[ANDREWS_X_BETA])) /* beta */
+        way[ANDREWS_X_BETA] = gic_unwound(way[ANDREWS_X_BETA]);
     for (i = 0; i < ANDREWS_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < andrews_piece[i]);
     if (far)
@@ -1703,8 +1996,8 @@ static void andrews_gather(andrews *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[0]; /* beta */
-    xd[0] = y[1];
+    x[ANDREWS_X_BETA] = y[ANDREWS_STATE_BETA]; /* beta */
+    xd[ANDREWS_X_BETA] = y[ANDREWS_STATE_BETA_RATE];
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
@@ -1738,7 +2031,8 @@ static GIC_COLD int andrews_about(andrews *self, int status, int32_t subset, int
 
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int andrews_dynamics(andrews *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int andrews_dynamics(andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -1748,20 +2042,30 @@ static GIC_APART int andrews_dynamics(andrews *self, gic_real time, const gic_re
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[22] + n[45] + n[68] + n[91];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[ANDREWS_INERTIA_K1 + ANDREWS_I_COORDINATE + 7] +
+            n[ANDREWS_INERTIA_K2 + ANDREWS_I_COORDINATE + 7] + n[ANDREWS_INERTIA_K5 + ANDREWS_I_COORDINATE + 7] +
+            n[ANDREWS_INERTIA_K7 + ANDREWS_I_COORDINATE + 7];
         if (!(t1 > R(0.0)))
-            return andrews_about(self, GIC_ERROR_MASS, 0, 0);
-        const gic_real t2 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
-        const gic_real t3 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
+            return andrews_about(self, GIC_ERROR_MASS, ANDREWS_SUBSET_K1, ANDREWS_STATE_BETA);
+        /* force spring */
+        const gic_real t2 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.020000000000000004);
+        const gic_real t3 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.020000000000000004);
         const gic_real t4 = R(-0.03635) + t3 - R(0.014);
         const gic_real t5 = R(0.03273) + t2 - R(0.072);
         const gic_real t6 = GIC_SQRT(t5 * t5 + t4 * t4);
         const gic_real t7 = R(1.0) / t6 * ((t6 - R(0.07785)) * R(4530.0));
-        const gic_real t8 = m[86] * (t2 * (t4 * t7) - t3 * (t5 * t7));
-        const gic_real t9 = (R(0.033) + t8 - (n[21] + n[44] + n[67] + n[90])) * (R(1.0) / t1);
-        const gic_real t10 = xd[0];
-        rate[0] = t10;
-        rate[1] = t9;
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t8 = m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * (t2 * (t4 * t7) - t3 * (t5 * t7));
+        /* accelerations */
+        const gic_real rate_of_beta_rate = (R(0.033) + t8 - (n[ANDREWS_INERTIA_K1 + ANDREWS_I_COORDINATE + 6] +
+            n[ANDREWS_INERTIA_K2 + ANDREWS_I_COORDINATE + 6] + n[ANDREWS_INERTIA_K5 + ANDREWS_I_COORDINATE + 6] +
+            n[ANDREWS_INERTIA_K7 + ANDREWS_I_COORDINATE + 6])) * (R(1.0) / t1);
+        const gic_real rate_of_beta = xd[ANDREWS_X_BETA];
+        rate[ANDREWS_STATE_BETA] = rate_of_beta;
+        rate[ANDREWS_STATE_BETA_RATE] = rate_of_beta_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -1773,8 +2077,8 @@ static GIC_APART int andrews_dynamics(andrews *self, gic_real time, const gic_re
     return GIC_OK;
 }
 
-static int andrews_measure(const andrews *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int andrews_measure(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -1782,143 +2086,212 @@ static int andrews_measure(const andrews *self, gic_real time, const gic_real *y
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
-        const gic_real t1 = R(0.03273) + (m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004)) - R(0.072);
-        const gic_real t2 = R(-0.03635) + (m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004)) - R(0.014);
+        /* force spring */
+        const gic_real t1 = R(0.03273) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.020000000000000004)) - R(0.072);
+        const gic_real t2 = R(-0.03635) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.020000000000000004)) - R(0.014);
         const gic_real t3 = GIC_SQRT(t1 * t1 + t2 * t2) - R(0.07785);
-        const gic_real t4 = t3 * R(4530.0);
-        const gic_real t5 = m[14] * (m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092));
-        const gic_real t6 = m[14] * (m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092));
-        const gic_real t7 = m[14] * (m[14] * R(2.194e-06)) + R(0.04325) * (t5 * t5 + t6 * t6);
-        const gic_real t8 = m[46] + m[44] * (m[33] * R(-0.0115));
-        const gic_real t9 = m[45] - m[44] * (m[36] * R(-0.0115));
-        const gic_real t10 = m[44] * (m[44] * R(4.41e-07)) + R(0.00365) * (t8 * t8 + t9 * t9);
-        const gic_real t11 = m[74] * (m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002));
-        const gic_real t12 = m[74] * (m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002));
-        const gic_real t13 = m[74] * (m[74] * R(5.255e-06)) + R(0.02373) * (t11 * t11 + t12 * t12);
-        const gic_real t14 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
-        const gic_real t15 = m[128] * R(5.667e-07);
-        const gic_real t16 = m[127] * R(5.667e-07);
-        const gic_real t17 = m[126] * R(5.667e-07);
-        const gic_real t18 = m[131] * t15 + (m[130] * t16 + m[129] * t17);
-        const gic_real t19 = m[125] * R(5.667e-07);
-        const gic_real t20 = m[124] * R(5.667e-07);
-        const gic_real t21 = m[123] * R(5.667e-07);
-        const gic_real t22 = m[131] * t19 + (m[130] * t20 + m[129] * t21);
-        const gic_real t23 = m[134] * (m[134] * t14 + (m[133] * t18 + m[132] * t22));
-        const gic_real t24 = m[133] * (m[128] * t15 + (m[127] * t16 + m[126] * t17));
-        const gic_real t25 = m[128] * t19 + (m[127] * t20 + m[126] * t21);
-        const gic_real t26 = m[132] * (m[125] * t19 + (m[124] * t20 + m[123] * t21));
-        const gic_real t27 = m[133] * (m[134] * t18 + (t24 + m[132] * t25)) + m[132] * (m[134] * t22 + (m[133] * t25 + t26));
-        const gic_real t28 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
-        const gic_real t29 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
-        const gic_real t30 = m[132] * t28 - m[133] * t29;
-        const gic_real t31 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
-        const gic_real t32 = m[136] + (m[134] * t29 - m[132] * t31);
-        const gic_real t33 = m[135] + (m[133] * t31 - m[134] * t28);
+        const gic_real force_spring = t3 * R(4530.0);
+        /* output energy */
+        const gic_real t5 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] *
+            R(-6.776263578034403e-21) + m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] * R(0.00092));
+        const gic_real t6 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] *
+            R(-6.776263578034403e-21) + m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] * R(0.00092));
+        const gic_real t7 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] *
+            R(2.194e-06)) + R(0.04325) * (t5 * t5 + t6 * t6);
+        const gic_real t8 = m[ANDREWS_MOTION_K2 + ANDREWS_VELOCITY_Y] + m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] * R(-0.0115));
+        const gic_real t9 = m[ANDREWS_MOTION_K2 + ANDREWS_VELOCITY_X] - m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] * R(-0.0115));
+        const gic_real t10 = m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            R(4.41e-07)) + R(0.00365) * (t8 * t8 + t9 * t9);
+        const gic_real t11 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] *
+            R(-0.018740000000000003) + m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.010430000000000002));
+        const gic_real t12 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] *
+            R(-0.018740000000000003) + m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.010430000000000002));
+        const gic_real t13 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] *
+            R(5.255e-06)) + R(0.02373) * (t11 * t11 + t12 * t12);
+        const gic_real t14 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t15 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t16 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t17 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t18 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t15 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t16 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t17);
+        const gic_real t19 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t20 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t21 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t22 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t19 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t20 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t21);
+        const gic_real t23 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t14 +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t18 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t22));
+        const gic_real t24 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t15 +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t16 + m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t17));
+        const gic_real t25 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t19 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t20 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t21);
+        const gic_real t26 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * t19 +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * t20 + m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * t21));
+        const gic_real t27 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t18 +
+            (t24 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t25)) + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t22 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t25 + t26));
+        const gic_real t28 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(1.3010426069826053e-18);
+        const gic_real t29 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(1.3010426069826053e-18);
+        const gic_real t30 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t28 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t29;
+        const gic_real t31 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(1.3010426069826053e-18);
+        const gic_real t32 = m[ANDREWS_MOTION_K4 + ANDREWS_VELOCITY_Y] + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t29 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t31);
+        const gic_real t33 = m[ANDREWS_MOTION_K4 + ANDREWS_VELOCITY_X] + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t31 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t28);
         const gic_real t34 = R(0.00706) * (t30 * t30 + (t32 * t32 + t33 * t33));
         const gic_real t35 = R(0.5) * t7 + R(0.5) * t10 + R(0.5) * t13 + R(0.5) * (t23 + t27 + t34);
-        const gic_real t36 = m[104] * (m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007));
-        const gic_real t37 = m[104] * (m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007));
-        const gic_real t38 = m[104] * (m[104] * R(1.169e-05)) + R(0.0705) * (t36 * t36 + t37 * t37);
-        const gic_real t39 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
-        const gic_real t40 = m[188] * R(5.667e-07);
-        const gic_real t41 = m[187] * R(5.667e-07);
-        const gic_real t42 = m[186] * R(5.667e-07);
-        const gic_real t43 = m[191] * t40 + (m[190] * t41 + m[189] * t42);
-        const gic_real t44 = m[185] * R(5.667e-07);
-        const gic_real t45 = m[184] * R(5.667e-07);
-        const gic_real t46 = m[183] * R(5.667e-07);
-        const gic_real t47 = m[191] * t44 + (m[190] * t45 + m[189] * t46);
-        const gic_real t48 = m[194] * (m[194] * t39 + (m[193] * t43 + m[192] * t47));
-        const gic_real t49 = m[193] * (m[188] * t40 + (m[187] * t41 + m[186] * t42));
-        const gic_real t50 = m[188] * t44 + (m[187] * t45 + m[186] * t46);
-        const gic_real t51 = m[192] * (m[185] * t44 + (m[184] * t45 + m[183] * t46));
-        const gic_real t52 = m[193] * (m[194] * t43 + (t49 + m[192] * t50)) + m[192] * (m[194] * t47 + (m[193] * t50 + t51));
-        const gic_real t53 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
-        const gic_real t54 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
-        const gic_real t55 = m[192] * t53 - m[193] * t54;
-        const gic_real t56 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
-        const gic_real t57 = m[196] + (m[194] * t54 - m[192] * t56);
-        const gic_real t58 = m[195] + (m[193] * t56 - m[194] * t53);
+        const gic_real t36 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] *
+            R(0.009160000000000003) + m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] * R(0.023080000000000007));
+        const gic_real t37 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] *
+            R(0.009160000000000003) + m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] * R(0.023080000000000007));
+        const gic_real t38 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] *
+            R(1.169e-05)) + R(0.0705) * (t36 * t36 + t37 * t37);
+        const gic_real t39 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t40 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t41 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t42 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t43 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t40 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t41 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t42);
+        const gic_real t44 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t45 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t46 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t47 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t44 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t45 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t46);
+        const gic_real t48 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t39 +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t43 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t47));
+        const gic_real t49 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t40 +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t41 + m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t42));
+        const gic_real t50 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t44 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t45 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t46);
+        const gic_real t51 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * t44 +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * t45 + m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * t46));
+        const gic_real t52 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t43 +
+            (t49 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t50)) + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t47 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t50 + t51));
+        const gic_real t53 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(0.005790000000000001);
+        const gic_real t54 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(0.005790000000000001);
+        const gic_real t55 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t53 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t54;
+        const gic_real t56 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(0.005790000000000001);
+        const gic_real t57 = m[ANDREWS_MOTION_K6 + ANDREWS_VELOCITY_Y] + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t54 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t56);
+        const gic_real t58 = m[ANDREWS_MOTION_K6 + ANDREWS_VELOCITY_X] + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t56 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t53);
         const gic_real t59 = R(0.00706) * (t55 * t55 + (t57 * t57 + t58 * t58));
         const gic_real t60 = t35 + R(0.5) * t38 + R(0.5) * (t48 + t52 + t59);
-        const gic_real t61 = m[164] * (m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999));
-        const gic_real t62 = m[164] * (m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999));
-        const gic_real t63 = m[164] * (m[164] * R(1.912e-05)) + R(0.05498) * (t61 * t61 + t62 * t62);
-        const gic_real t64 = x[0];
-        const gic_real t65 = xd[0];
-        const gic_real t66 = rate[1];
-        const gic_real t67 = GIC_ATAN2(m[36], m[33]);
-        const gic_real t68 = GIC_ATAN2(m[66], m[63]);
-        const gic_real t69 = GIC_ATAN2(m[130], m[131]);
-        const gic_real t70 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[129], R(-1.0)), R(1.0)));
-        const gic_real t71 = GIC_ATAN2(m[126], m[123]);
-        const gic_real t72 = GIC_ATAN2(m[96], m[93]);
-        const gic_real t73 = GIC_ATAN2(m[190], m[191]);
-        const gic_real t74 = GIC_ASIN(GIC_MIN(GIC_MAX(-m[189], R(-1.0)), R(1.0)));
-        const gic_real t75 = GIC_ATAN2(m[186], m[183]);
-        const gic_real t76 = GIC_ATAN2(m[156], m[153]);
-        const gic_real t77 = m[44];
-        const gic_real t78 = m[74];
-        const gic_real t79 = m[132];
-        const gic_real t80 = m[133];
-        const gic_real t81 = m[134];
-        const gic_real t82 = m[104];
-        const gic_real t83 = m[192];
-        const gic_real t84 = m[193];
-        const gic_real t85 = m[194];
-        const gic_real t86 = m[164];
-        const gic_real t87 = R(-0.03635) + m[64] * R(-0.03500000000000001);
-        const gic_real t88 = R(0.03273) + m[67] * R(-0.03500000000000001);
-        const gic_real t89 = t60 + R(0.5) * t63;
-        const gic_real t90 = t3 * t4 * R(0.5);
-        const gic_real t91 = t65 * R(0.033);
-        out[0] = t64;
-        out[1] = t65;
-        out[2] = t66;
-        out[3] = R(0.0);
-        out[4] = R(0.0);
-        out[5] = t67;
-        out[6] = R(0.0);
-        out[7] = R(0.0);
-        out[8] = t68;
-        out[9] = t69;
-        out[10] = t70;
-        out[11] = t71;
-        out[12] = R(0.0);
-        out[13] = R(0.0);
-        out[14] = t72;
-        out[15] = t73;
-        out[16] = t74;
-        out[17] = t75;
-        out[18] = R(0.0);
-        out[19] = R(0.0);
-        out[20] = t76;
-        out[21] = R(0.0);
-        out[22] = R(0.0);
-        out[23] = t77;
-        out[24] = R(0.0);
-        out[25] = R(0.0);
-        out[26] = t78;
-        out[27] = t79;
-        out[28] = t80;
-        out[29] = t81;
-        out[30] = R(0.0);
-        out[31] = R(0.0);
-        out[32] = t82;
-        out[33] = t83;
-        out[34] = t84;
-        out[35] = t85;
-        out[36] = R(0.0);
-        out[37] = R(0.0);
-        out[38] = t86;
-        out[39] = t87;
-        out[40] = t88;
-        out[41] = R(0.0);
-        out[42] = t4;
-        out[43] = t89;
-        out[44] = t90;
-        out[45] = t91;
+        const gic_real t61 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] *
+            R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] * R(-0.004489999999999999));
+        const gic_real t62 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] *
+            R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] * R(-0.004489999999999999));
+        const gic_real t63 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] *
+            R(1.912e-05)) + R(0.05498) * (t61 * t61 + t62 * t62);
+        const gic_real output_beta_value = x[ANDREWS_X_BETA];
+        const gic_real output_beta_rate = xd[ANDREWS_X_BETA];
+        const gic_real output_beta_acceleration = rate[ANDREWS_STATE_BETA_RATE];
+        /* output K2 */
+        const gic_real output_k2_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K2 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K2 + ANDREWS_A_XX]);
+        /* output K3 */
+        const gic_real output_k3_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K3 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX]);
+        /* output K4 */
+        const gic_real output_k4_roll = GIC_ATAN2(m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY],
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ]);
+        const gic_real output_k4_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(-m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX], R(-1.0)),
+            R(1.0)));
+        const gic_real output_k4_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K4 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX]);
+        /* output K5 */
+        const gic_real output_k5_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K5 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX]);
+        /* output K6 */
+        const gic_real output_k6_roll = GIC_ATAN2(m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY],
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ]);
+        const gic_real output_k6_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(-m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX], R(-1.0)),
+            R(1.0)));
+        const gic_real output_k6_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K6 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX]);
+        /* output K7 */
+        const gic_real output_k7_yaw = GIC_ATAN2(m[ANDREWS_MOTION_K7 + ANDREWS_A_YX],
+            m[ANDREWS_MOTION_K7 + ANDREWS_A_XX]);
+        const gic_real output_spin_k2_z = m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z];
+        const gic_real output_spin_k3_z = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z];
+        const gic_real output_spin_k4_x = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X];
+        const gic_real output_spin_k4_y = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y];
+        const gic_real output_spin_k4_z = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z];
+        const gic_real output_spin_k5_z = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z];
+        const gic_real output_spin_k6_x = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X];
+        const gic_real output_spin_k6_y = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y];
+        const gic_real output_spin_k6_z = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z];
+        const gic_real output_spin_k7_z = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z];
+        /* output E */
+        const gic_real output_e_x = R(-0.03635) + m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.03500000000000001);
+        const gic_real output_e_y = R(0.03273) + m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.03500000000000001);
+        const gic_real output_energy_kinetic = t60 + R(0.5) * t63;
+        const gic_real output_energy_potential = t3 * force_spring * R(0.5);
+        /* force drive */
+        const gic_real output_energy_power = output_beta_rate * R(0.033);
+        out[ANDREWS_OUTPUT_BETA_VALUE] = output_beta_value;
+        out[ANDREWS_OUTPUT_BETA_RATE] = output_beta_rate;
+        out[ANDREWS_OUTPUT_BETA_ACCELERATION] = output_beta_acceleration;
+        out[ANDREWS_OUTPUT_K2_ROLL] = R(0.0);
+        out[ANDREWS_OUTPUT_K2_PITCH] = R(0.0);
+        out[ANDREWS_OUTPUT_K2_YAW] = output_k2_yaw;
+        out[ANDREWS_OUTPUT_K3_ROLL] = R(0.0);
+        out[ANDREWS_OUTPUT_K3_PITCH] = R(0.0);
+        out[ANDREWS_OUTPUT_K3_YAW] = output_k3_yaw;
+        out[ANDREWS_OUTPUT_K4_ROLL] = output_k4_roll;
+        out[ANDREWS_OUTPUT_K4_PITCH] = output_k4_pitch;
+        out[ANDREWS_OUTPUT_K4_YAW] = output_k4_yaw;
+        out[ANDREWS_OUTPUT_K5_ROLL] = R(0.0);
+        out[ANDREWS_OUTPUT_K5_PITCH] = R(0.0);
+        out[ANDREWS_OUTPUT_K5_YAW] = output_k5_yaw;
+        out[ANDREWS_OUTPUT_K6_ROLL] = output_k6_roll;
+        out[ANDREWS_OUTPUT_K6_PITCH] = output_k6_pitch;
+        out[ANDREWS_OUTPUT_K6_YAW] = output_k6_yaw;
+        out[ANDREWS_OUTPUT_K7_ROLL] = R(0.0);
+        out[ANDREWS_OUTPUT_K7_PITCH] = R(0.0);
+        out[ANDREWS_OUTPUT_K7_YAW] = output_k7_yaw;
+        out[ANDREWS_OUTPUT_SPIN_K2_X] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K2_Y] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K2_Z] = output_spin_k2_z;
+        out[ANDREWS_OUTPUT_SPIN_K3_X] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K3_Y] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K3_Z] = output_spin_k3_z;
+        out[ANDREWS_OUTPUT_SPIN_K4_X] = output_spin_k4_x;
+        out[ANDREWS_OUTPUT_SPIN_K4_Y] = output_spin_k4_y;
+        out[ANDREWS_OUTPUT_SPIN_K4_Z] = output_spin_k4_z;
+        out[ANDREWS_OUTPUT_SPIN_K5_X] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K5_Y] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K5_Z] = output_spin_k5_z;
+        out[ANDREWS_OUTPUT_SPIN_K6_X] = output_spin_k6_x;
+        out[ANDREWS_OUTPUT_SPIN_K6_Y] = output_spin_k6_y;
+        out[ANDREWS_OUTPUT_SPIN_K6_Z] = output_spin_k6_z;
+        out[ANDREWS_OUTPUT_SPIN_K7_X] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K7_Y] = R(0.0);
+        out[ANDREWS_OUTPUT_SPIN_K7_Z] = output_spin_k7_z;
+        out[ANDREWS_OUTPUT_E_X] = output_e_x;
+        out[ANDREWS_OUTPUT_E_Y] = output_e_y;
+        out[ANDREWS_OUTPUT_E_Z] = R(0.0);
+        out[ANDREWS_OUTPUT_SPRING] = force_spring;
+        out[ANDREWS_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[ANDREWS_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[ANDREWS_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -1928,268 +2301,303 @@ static void andrews_place(const andrews *self, const gic_real *y, const gic_real
     const gic_real *const m = self->motion;
     (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = R(1.0) + (R(1.0) - (m[3] + m[7]));
-        const gic_real t2 = R(1.0) + (m[7] - (R(1.0) + m[3]));
-        const gic_real t3 = R(1.0) + m[7];
-        const gic_real t4 = R(1.0) + (m[3] - t3);
-        const gic_real t5 = R(1.0) + (m[3] + t3);
+        /* pose of K1 */
+        const gic_real t1 = R(1.0) + (R(1.0) - (m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_YY]));
+        const gic_real t2 = R(1.0) + (m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] - (R(1.0) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_XX]));
+        const gic_real t3 = R(1.0) + m[ANDREWS_MOTION_K1 + ANDREWS_A_YY];
+        const gic_real t4 = R(1.0) + (m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] - t3);
+        const gic_real t5 = R(1.0) + (m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] + t3);
         const gic_real t6 = GIC_MAX(t4, t5);
         const gic_real t7 = GIC_MAX(t2, t6);
         const gic_real t8 = t1 - t7;
-        const gic_real t9 = m[6] - m[4];
+        const gic_real t9 = m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K1 + ANDREWS_A_XY];
         const gic_real t10 = t2 - t6;
         const gic_real t11 = t4 - t5;
         const gic_real t12 = (t8 > GIC_R(0) ? t9 : (t10 > GIC_R(0) ? R(0.0) : (t11 > GIC_R(0) ? R(0.0) : t5)));
         const gic_real t13 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
         const gic_real t14 = t12 * t13;
-        const gic_real t15 = m[4] + m[6];
+        const gic_real t15 = m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K1 + ANDREWS_A_YX];
         const gic_real t16 = (t8 > GIC_R(0) ? R(0.0) : (t10 > GIC_R(0) ? t15 : (t11 > GIC_R(0) ? t4 : R(0.0))));
         const gic_real t17 = t16 * t13;
         const gic_real t18 = (t8 > GIC_R(0) ? R(0.0) : (t10 > GIC_R(0) ? t2 : (t11 > GIC_R(0) ? t15 : R(0.0))));
         const gic_real t19 = t18 * t13;
         const gic_real t20 = (t8 > GIC_R(0) ? t1 : (t10 > GIC_R(0) ? R(0.0) : (t11 > GIC_R(0) ? R(0.0) : t9)));
         const gic_real t21 = t20 * t13;
-        const gic_real t22 = R(1.0) + (R(1.0) - (m[33] + m[37]));
-        const gic_real t23 = R(1.0) + (m[37] - (R(1.0) + m[33]));
-        const gic_real t24 = R(1.0) + m[37];
-        const gic_real t25 = R(1.0) + (m[33] - t24);
-        const gic_real t26 = R(1.0) + (m[33] + t24);
+        /* pose of K2 */
+        const gic_real t22 = R(1.0) + (R(1.0) - (m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K2 + ANDREWS_A_YY]));
+        const gic_real t23 = R(1.0) + (m[ANDREWS_MOTION_K2 + ANDREWS_A_YY] - (R(1.0) +
+            m[ANDREWS_MOTION_K2 + ANDREWS_A_XX]));
+        const gic_real t24 = R(1.0) + m[ANDREWS_MOTION_K2 + ANDREWS_A_YY];
+        const gic_real t25 = R(1.0) + (m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] - t24);
+        const gic_real t26 = R(1.0) + (m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] + t24);
         const gic_real t27 = GIC_MAX(t25, t26);
         const gic_real t28 = GIC_MAX(t23, t27);
         const gic_real t29 = t22 - t28;
-        const gic_real t30 = m[36] - m[34];
+        const gic_real t30 = m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K2 + ANDREWS_A_XY];
         const gic_real t31 = t23 - t27;
         const gic_real t32 = t25 - t26;
         const gic_real t33 = (t29 > GIC_R(0) ? t30 : (t31 > GIC_R(0) ? R(0.0) : (t32 > GIC_R(0) ? R(0.0) : t26)));
         const gic_real t34 = R(0.5) / GIC_SQRT(GIC_MAX(t22, t28));
         const gic_real t35 = t33 * t34;
-        const gic_real t36 = m[34] + m[36];
+        const gic_real t36 = m[ANDREWS_MOTION_K2 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K2 + ANDREWS_A_YX];
         const gic_real t37 = (t29 > GIC_R(0) ? R(0.0) : (t31 > GIC_R(0) ? t36 : (t32 > GIC_R(0) ? t25 : R(0.0))));
         const gic_real t38 = t37 * t34;
         const gic_real t39 = (t29 > GIC_R(0) ? R(0.0) : (t31 > GIC_R(0) ? t23 : (t32 > GIC_R(0) ? t36 : R(0.0))));
         const gic_real t40 = t39 * t34;
         const gic_real t41 = (t29 > GIC_R(0) ? t22 : (t31 > GIC_R(0) ? R(0.0) : (t32 > GIC_R(0) ? R(0.0) : t30)));
         const gic_real t42 = t41 * t34;
-        const gic_real t43 = R(1.0) + (R(1.0) - (m[63] + m[67]));
-        const gic_real t44 = R(1.0) + (m[67] - (R(1.0) + m[63]));
-        const gic_real t45 = R(1.0) + m[67];
-        const gic_real t46 = R(1.0) + (m[63] - t45);
-        const gic_real t47 = R(1.0) + (m[63] + t45);
+        /* pose of K3 */
+        const gic_real t43 = R(1.0) + (R(1.0) - (m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YY]));
+        const gic_real t44 = R(1.0) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] - (R(1.0) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX]));
+        const gic_real t45 = R(1.0) + m[ANDREWS_MOTION_K3 + ANDREWS_A_YY];
+        const gic_real t46 = R(1.0) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] - t45);
+        const gic_real t47 = R(1.0) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] + t45);
         const gic_real t48 = GIC_MAX(t46, t47);
         const gic_real t49 = GIC_MAX(t44, t48);
         const gic_real t50 = t43 - t49;
-        const gic_real t51 = m[66] - m[64];
+        const gic_real t51 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K3 + ANDREWS_A_XY];
         const gic_real t52 = t44 - t48;
         const gic_real t53 = t46 - t47;
         const gic_real t54 = (t50 > GIC_R(0) ? t51 : (t52 > GIC_R(0) ? R(0.0) : (t53 > GIC_R(0) ? R(0.0) : t47)));
         const gic_real t55 = R(0.5) / GIC_SQRT(GIC_MAX(t43, t49));
         const gic_real t56 = t54 * t55;
-        const gic_real t57 = m[64] + m[66];
+        const gic_real t57 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K3 + ANDREWS_A_YX];
         const gic_real t58 = (t50 > GIC_R(0) ? R(0.0) : (t52 > GIC_R(0) ? t57 : (t53 > GIC_R(0) ? t46 : R(0.0))));
         const gic_real t59 = t58 * t55;
         const gic_real t60 = (t50 > GIC_R(0) ? R(0.0) : (t52 > GIC_R(0) ? t44 : (t53 > GIC_R(0) ? t57 : R(0.0))));
         const gic_real t61 = t60 * t55;
         const gic_real t62 = (t50 > GIC_R(0) ? t43 : (t52 > GIC_R(0) ? R(0.0) : (t53 > GIC_R(0) ? R(0.0) : t51)));
         const gic_real t63 = t62 * t55;
-        const gic_real t64 = R(1.0) + (m[131] - (m[123] + m[127]));
-        const gic_real t65 = R(1.0) + (m[127] - (m[123] + m[131]));
-        const gic_real t66 = m[127] + m[131];
-        const gic_real t67 = R(1.0) + (m[123] - t66);
-        const gic_real t68 = R(1.0) + (m[123] + t66);
+        /* pose of K4 */
+        const gic_real t64 = R(1.0) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] - (m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YY]));
+        const gic_real t65 = R(1.0) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] - (m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ]));
+        const gic_real t66 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ];
+        const gic_real t67 = R(1.0) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] - t66);
+        const gic_real t68 = R(1.0) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] + t66);
         const gic_real t69 = GIC_MAX(t67, t68);
         const gic_real t70 = GIC_MAX(t65, t69);
         const gic_real t71 = t64 - t70;
-        const gic_real t72 = m[126] - m[124];
+        const gic_real t72 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K4 + ANDREWS_A_XY];
         const gic_real t73 = t65 - t69;
-        const gic_real t74 = m[125] - m[129];
+        const gic_real t74 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] - m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX];
         const gic_real t75 = t67 - t68;
-        const gic_real t76 = m[130] - m[128];
+        const gic_real t76 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] - m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ];
         const gic_real t77 = (t71 > GIC_R(0) ? t72 : (t73 > GIC_R(0) ? t74 : (t75 > GIC_R(0) ? t76 : t68)));
         const gic_real t78 = R(0.5) / GIC_SQRT(GIC_MAX(t64, t70));
         const gic_real t79 = t77 * t78;
-        const gic_real t80 = m[125] + m[129];
-        const gic_real t81 = m[124] + m[126];
+        const gic_real t80 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX];
+        const gic_real t81 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K4 + ANDREWS_A_YX];
         const gic_real t82 = (t71 > GIC_R(0) ? t80 : (t73 > GIC_R(0) ? t81 : (t75 > GIC_R(0) ? t67 : t76)));
         const gic_real t83 = t82 * t78;
-        const gic_real t84 = m[128] + m[130];
+        const gic_real t84 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY];
         const gic_real t85 = (t71 > GIC_R(0) ? t84 : (t73 > GIC_R(0) ? t65 : (t75 > GIC_R(0) ? t81 : t74)));
         const gic_real t86 = t85 * t78;
         const gic_real t87 = (t71 > GIC_R(0) ? t64 : (t73 > GIC_R(0) ? t84 : (t75 > GIC_R(0) ? t80 : t72)));
         const gic_real t88 = t87 * t78;
-        const gic_real t89 = R(1.0) + (R(1.0) - (m[93] + m[97]));
-        const gic_real t90 = R(1.0) + (m[97] - (R(1.0) + m[93]));
-        const gic_real t91 = R(1.0) + m[97];
-        const gic_real t92 = R(1.0) + (m[93] - t91);
-        const gic_real t93 = R(1.0) + (m[93] + t91);
+        /* pose of K5 */
+        const gic_real t89 = R(1.0) + (R(1.0) - (m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_YY]));
+        const gic_real t90 = R(1.0) + (m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] - (R(1.0) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX]));
+        const gic_real t91 = R(1.0) + m[ANDREWS_MOTION_K5 + ANDREWS_A_YY];
+        const gic_real t92 = R(1.0) + (m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] - t91);
+        const gic_real t93 = R(1.0) + (m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] + t91);
         const gic_real t94 = GIC_MAX(t92, t93);
         const gic_real t95 = GIC_MAX(t90, t94);
         const gic_real t96 = t89 - t95;
-        const gic_real t97 = m[96] - m[94];
+        const gic_real t97 = m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K5 + ANDREWS_A_XY];
         const gic_real t98 = t90 - t94;
         const gic_real t99 = t92 - t93;
         const gic_real t100 = (t96 > GIC_R(0) ? t97 : (t98 > GIC_R(0) ? R(0.0) : (t99 > GIC_R(0) ? R(0.0) : t93)));
         const gic_real t101 = R(0.5) / GIC_SQRT(GIC_MAX(t89, t95));
         const gic_real t102 = t100 * t101;
-        const gic_real t103 = m[94] + m[96];
+        const gic_real t103 = m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K5 + ANDREWS_A_YX];
         const gic_real t104 = (t96 > GIC_R(0) ? R(0.0) : (t98 > GIC_R(0) ? t103 : (t99 > GIC_R(0) ? t92 : R(0.0))));
         const gic_real t105 = t104 * t101;
         const gic_real t106 = (t96 > GIC_R(0) ? R(0.0) : (t98 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t103 : R(0.0))));
         const gic_real t107 = t106 * t101;
         const gic_real t108 = (t96 > GIC_R(0) ? t89 : (t98 > GIC_R(0) ? R(0.0) : (t99 > GIC_R(0) ? R(0.0) : t97)));
         const gic_real t109 = t108 * t101;
-        const gic_real t110 = R(1.0) + (m[191] - (m[183] + m[187]));
-        const gic_real t111 = R(1.0) + (m[187] - (m[183] + m[191]));
-        const gic_real t112 = m[187] + m[191];
-        const gic_real t113 = R(1.0) + (m[183] - t112);
-        const gic_real t114 = R(1.0) + (m[183] + t112);
+        /* pose of K6 */
+        const gic_real t110 = R(1.0) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] - (m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YY]));
+        const gic_real t111 = R(1.0) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] - (m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ]));
+        const gic_real t112 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ];
+        const gic_real t113 = R(1.0) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] - t112);
+        const gic_real t114 = R(1.0) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] + t112);
         const gic_real t115 = GIC_MAX(t113, t114);
         const gic_real t116 = GIC_MAX(t111, t115);
         const gic_real t117 = t110 - t116;
-        const gic_real t118 = m[186] - m[184];
+        const gic_real t118 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K6 + ANDREWS_A_XY];
         const gic_real t119 = t111 - t115;
-        const gic_real t120 = m[185] - m[189];
+        const gic_real t120 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] - m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX];
         const gic_real t121 = t113 - t114;
-        const gic_real t122 = m[190] - m[188];
+        const gic_real t122 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] - m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ];
         const gic_real t123 = (t117 > GIC_R(0) ? t118 : (t119 > GIC_R(0) ? t120 : (t121 > GIC_R(0) ? t122 : t114)));
         const gic_real t124 = R(0.5) / GIC_SQRT(GIC_MAX(t110, t116));
         const gic_real t125 = t123 * t124;
-        const gic_real t126 = m[185] + m[189];
-        const gic_real t127 = m[184] + m[186];
+        const gic_real t126 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX];
+        const gic_real t127 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K6 + ANDREWS_A_YX];
         const gic_real t128 = (t117 > GIC_R(0) ? t126 : (t119 > GIC_R(0) ? t127 : (t121 > GIC_R(0) ? t113 : t122)));
         const gic_real t129 = t128 * t124;
-        const gic_real t130 = m[188] + m[190];
+        const gic_real t130 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY];
         const gic_real t131 = (t117 > GIC_R(0) ? t130 : (t119 > GIC_R(0) ? t111 : (t121 > GIC_R(0) ? t127 : t120)));
         const gic_real t132 = t131 * t124;
         const gic_real t133 = (t117 > GIC_R(0) ? t110 : (t119 > GIC_R(0) ? t130 : (t121 > GIC_R(0) ? t126 : t118)));
         const gic_real t134 = t133 * t124;
-        const gic_real t135 = R(1.0) + (R(1.0) - (m[153] + m[157]));
-        const gic_real t136 = R(1.0) + (m[157] - (R(1.0) + m[153]));
-        const gic_real t137 = R(1.0) + m[157];
-        const gic_real t138 = R(1.0) + (m[153] - t137);
-        const gic_real t139 = R(1.0) + (m[153] + t137);
+        /* pose of K7 */
+        const gic_real t135 = R(1.0) + (R(1.0) - (m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] +
+            m[ANDREWS_MOTION_K7 + ANDREWS_A_YY]));
+        const gic_real t136 = R(1.0) + (m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] - (R(1.0) +
+            m[ANDREWS_MOTION_K7 + ANDREWS_A_XX]));
+        const gic_real t137 = R(1.0) + m[ANDREWS_MOTION_K7 + ANDREWS_A_YY];
+        const gic_real t138 = R(1.0) + (m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] - t137);
+        const gic_real t139 = R(1.0) + (m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] + t137);
         const gic_real t140 = GIC_MAX(t138, t139);
         const gic_real t141 = GIC_MAX(t136, t140);
         const gic_real t142 = t135 - t141;
-        const gic_real t143 = m[156] - m[154];
+        const gic_real t143 = m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] - m[ANDREWS_MOTION_K7 + ANDREWS_A_XY];
         const gic_real t144 = t136 - t140;
         const gic_real t145 = t138 - t139;
         const gic_real t146 = (t142 > GIC_R(0) ? t143 : (t144 > GIC_R(0) ? R(0.0) : (t145 > GIC_R(0) ? R(0.0) : t139)));
         const gic_real t147 = R(0.5) / GIC_SQRT(GIC_MAX(t135, t141));
         const gic_real t148 = t146 * t147;
-        const gic_real t149 = m[154] + m[156];
+        const gic_real t149 = m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] + m[ANDREWS_MOTION_K7 + ANDREWS_A_YX];
         const gic_real t150 = (t142 > GIC_R(0) ? R(0.0) : (t144 > GIC_R(0) ? t149 : (t145 > GIC_R(0) ? t138 : R(0.0))));
         const gic_real t151 = t150 * t147;
         const gic_real t152 = (t142 > GIC_R(0) ? R(0.0) : (t144 > GIC_R(0) ? t136 : (t145 > GIC_R(0) ? t149 : R(0.0))));
         const gic_real t153 = t152 * t147;
         const gic_real t154 = (t142 > GIC_R(0) ? t135 : (t144 > GIC_R(0) ? R(0.0) : (t145 > GIC_R(0) ? R(0.0) : t143)));
         const gic_real t155 = t154 * t147;
-        const gic_real t156 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
-        const gic_real t157 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
+        const gic_real t156 = m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] * R(0.00092);
+        const gic_real t157 = m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] * R(0.00092);
         const gic_real t158 = (t14 > GIC_R(0) ? t14 : -t14);
         const gic_real t159 = (t14 > GIC_R(0) ? t17 : -t17);
         const gic_real t160 = (t14 > GIC_R(0) ? t19 : -t19);
         const gic_real t161 = (t14 > GIC_R(0) ? t21 : -t21);
-        const gic_real t162 = m[30] + m[33] * R(-0.0115);
-        const gic_real t163 = m[31] + m[36] * R(-0.0115);
+        const gic_real t162 = m[ANDREWS_MOTION_K2 + ANDREWS_C_X] + m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] * R(-0.0115);
+        const gic_real t163 = m[ANDREWS_MOTION_K2 + ANDREWS_C_Y] + m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] * R(-0.0115);
         const gic_real t164 = (t35 > GIC_R(0) ? t35 : -t35);
         const gic_real t165 = (t35 > GIC_R(0) ? t38 : -t38);
         const gic_real t166 = (t35 > GIC_R(0) ? t40 : -t40);
         const gic_real t167 = (t35 > GIC_R(0) ? t42 : -t42);
-        const gic_real t168 = R(-0.03635) + (m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002));
-        const gic_real t169 = R(0.03273) + (m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002));
+        const gic_real t168 = R(-0.03635) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.010430000000000002));
+        const gic_real t169 = R(0.03273) + (m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.010430000000000002));
         const gic_real t170 = (t56 > GIC_R(0) ? t56 : -t56);
         const gic_real t171 = (t56 > GIC_R(0) ? t59 : -t59);
         const gic_real t172 = (t56 > GIC_R(0) ? t61 : -t61);
         const gic_real t173 = (t56 > GIC_R(0) ? t63 : -t63);
-        const gic_real t174 = m[120] + (m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18));
-        const gic_real t175 = m[121] + (m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18));
-        const gic_real t176 = m[122] + (m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18));
+        const gic_real t174 = m[ANDREWS_MOTION_K4 + ANDREWS_C_X] + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] *
+            R(-0.005789999999999998) + m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(1.3010426069826053e-18));
+        const gic_real t175 = m[ANDREWS_MOTION_K4 + ANDREWS_C_Y] + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] *
+            R(-0.005789999999999998) + m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(1.3010426069826053e-18));
+        const gic_real t176 = m[ANDREWS_MOTION_K4 + ANDREWS_C_Z] + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] *
+            R(-0.005789999999999998) + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(1.3010426069826053e-18));
         const gic_real t177 = (t79 > GIC_R(0) ? t79 : -t79);
         const gic_real t178 = (t79 > GIC_R(0) ? t83 : -t83);
         const gic_real t179 = (t79 > GIC_R(0) ? t86 : -t86);
         const gic_real t180 = (t79 > GIC_R(0) ? t88 : -t88);
-        const gic_real t181 = R(-0.06934) + (m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007));
-        const gic_real t182 = R(-0.00227) + (m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007));
+        const gic_real t181 = R(-0.06934) + (m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] * R(0.023080000000000007));
+        const gic_real t182 = R(-0.00227) + (m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] * R(0.023080000000000007));
         const gic_real t183 = (t102 > GIC_R(0) ? t102 : -t102);
         const gic_real t184 = (t102 > GIC_R(0) ? t105 : -t105);
         const gic_real t185 = (t102 > GIC_R(0) ? t107 : -t107);
         const gic_real t186 = (t102 > GIC_R(0) ? t109 : -t109);
-        const gic_real t187 = m[180] + (m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001));
-        const gic_real t188 = m[181] + (m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001));
-        const gic_real t189 = m[182] + (m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001));
+        const gic_real t187 = m[ANDREWS_MOTION_K6 + ANDREWS_C_X] + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] *
+            R(-4.336808689942018e-19) + m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(0.005790000000000001));
+        const gic_real t188 = m[ANDREWS_MOTION_K6 + ANDREWS_C_Y] + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] *
+            R(-4.336808689942018e-19) + m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(0.005790000000000001));
+        const gic_real t189 = m[ANDREWS_MOTION_K6 + ANDREWS_C_Z] + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] *
+            R(-4.336808689942018e-19) + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(0.005790000000000001));
         const gic_real t190 = (t125 > GIC_R(0) ? t125 : -t125);
         const gic_real t191 = (t125 > GIC_R(0) ? t129 : -t129);
         const gic_real t192 = (t125 > GIC_R(0) ? t132 : -t132);
         const gic_real t193 = (t125 > GIC_R(0) ? t134 : -t134);
-        const gic_real t194 = R(-0.06934) + (m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999));
-        const gic_real t195 = R(-0.00227) + (m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999));
+        const gic_real t194 = R(-0.06934) + (m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] * R(-0.01228) +
+            m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] * R(-0.004489999999999999));
+        const gic_real t195 = R(-0.00227) + (m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] * R(-0.01228) +
+            m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] * R(-0.004489999999999999));
         const gic_real t196 = (t148 > GIC_R(0) ? t148 : -t148);
         const gic_real t197 = (t148 > GIC_R(0) ? t151 : -t151);
         const gic_real t198 = (t148 > GIC_R(0) ? t153 : -t153);
         const gic_real t199 = (t148 > GIC_R(0) ? t155 : -t155);
-        pose[0] = R(0.0);
-        pose[1] = R(0.0);
-        pose[2] = R(0.0);
-        pose[3] = R(1.0);
-        pose[4] = R(0.0);
-        pose[5] = R(0.0);
-        pose[6] = R(0.0);
-        pose[7] = t156;
-        pose[8] = t157;
-        pose[9] = R(0.0);
-        pose[10] = t158;
-        pose[11] = t159;
-        pose[12] = t160;
-        pose[13] = t161;
-        pose[14] = t162;
-        pose[15] = t163;
-        pose[16] = R(0.0);
-        pose[17] = t164;
-        pose[18] = t165;
-        pose[19] = t166;
-        pose[20] = t167;
-        pose[21] = t168;
-        pose[22] = t169;
-        pose[23] = R(0.0);
-        pose[24] = t170;
-        pose[25] = t171;
-        pose[26] = t172;
-        pose[27] = t173;
-        pose[28] = t174;
-        pose[29] = t175;
-        pose[30] = t176;
-        pose[31] = t177;
-        pose[32] = t178;
-        pose[33] = t179;
-        pose[34] = t180;
-        pose[35] = t181;
-        pose[36] = t182;
-        pose[37] = R(0.0);
-        pose[38] = t183;
-        pose[39] = t184;
-        pose[40] = t185;
-        pose[41] = t186;
-        pose[42] = t187;
-        pose[43] = t188;
-        pose[44] = t189;
-        pose[45] = t190;
-        pose[46] = t191;
-        pose[47] = t192;
-        pose[48] = t193;
-        pose[49] = t194;
-        pose[50] = t195;
-        pose[51] = R(0.0);
-        pose[52] = t196;
-        pose[53] = t197;
-        pose[54] = t198;
-        pose[55] = t199;
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_X] = R(0.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_Y] = R(0.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_P0] = R(1.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_P1] = R(0.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_P2] = R(0.0);
+        pose[ANDREWS_POSE_GROUND + ANDREWS_Q_P3] = R(0.0);
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_X] = t156;
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_Y] = t157;
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_P0] = t158;
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_P1] = t159;
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_P2] = t160;
+        pose[ANDREWS_POSE_K1 + ANDREWS_Q_P3] = t161;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_X] = t162;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_Y] = t163;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_P0] = t164;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_P1] = t165;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_P2] = t166;
+        pose[ANDREWS_POSE_K2 + ANDREWS_Q_P3] = t167;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_X] = t168;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_Y] = t169;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_P0] = t170;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_P1] = t171;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_P2] = t172;
+        pose[ANDREWS_POSE_K3 + ANDREWS_Q_P3] = t173;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_X] = t174;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_Y] = t175;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_Z] = t176;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_P0] = t177;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_P1] = t178;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_P2] = t179;
+        pose[ANDREWS_POSE_K4 + ANDREWS_Q_P3] = t180;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_X] = t181;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_Y] = t182;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_P0] = t183;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_P1] = t184;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_P2] = t185;
+        pose[ANDREWS_POSE_K5 + ANDREWS_Q_P3] = t186;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_X] = t187;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_Y] = t188;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_Z] = t189;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_P0] = t190;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_P1] = t191;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_P2] = t192;
+        pose[ANDREWS_POSE_K6 + ANDREWS_Q_P3] = t193;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_X] = t194;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_Y] = t195;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_Z] = R(0.0);
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_P0] = t196;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_P1] = t197;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_P2] = t198;
+        pose[ANDREWS_POSE_K7 + ANDREWS_Q_P3] = t199;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int andrews_residual(const andrews *self, gic_real largest[2])
 {
     andrews_links links;
@@ -2198,243 +2606,369 @@ static GIC_COLD GIC_APART int andrews_residual(const andrews *self, gic_real lar
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    andrews_residual_K1(andrews_k_K1[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[ANDREWS_X_BETA];
+    links.rate[0] = self->xd[ANDREWS_X_BETA];
+    andrews_residual_K1(andrews_k_K1[0], &links, self->motion + ANDREWS_MOTION_K1, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.0863176909312428e-19)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 0;
+        bad = ANDREWS_SUBSET_K1;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, self->motion + 30, one);
+    links.known[0] = self->motion + ANDREWS_MOTION_K1; /* K1 */
+    links.x[0] = self->x[ANDREWS_X_BETA];
+    links.rate[0] = self->xd[ANDREWS_X_BETA];
+    andrews_residual_K2_K3(andrews_k_K2_K3[0], &links, self->motion + ANDREWS_MOTION_K2, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.397541690079478)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = ANDREWS_SUBSET_K2;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 60;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, self->motion + 90, one);
+    links.known[0] = self->motion + ANDREWS_MOTION_K3; /* K3 */
+    links.x[0] = self->x[ANDREWS_X_BETA];
+    links.rate[0] = self->xd[ANDREWS_X_BETA];
+    andrews_residual_K5_K4(andrews_k_K5_K4[0], &links, self->motion + ANDREWS_MOTION_K5, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7344286703407552)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = ANDREWS_SUBSET_K5;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 60;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, self->motion + 150, one);
+    links.known[0] = self->motion + ANDREWS_MOTION_K3; /* K3 */
+    links.x[0] = self->x[ANDREWS_X_BETA];
+    links.rate[0] = self->xd[ANDREWS_X_BETA];
+    andrews_residual_K5_K4(andrews_k_K5_K4[1], &links, self->motion + ANDREWS_MOTION_K7, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7344286703407552)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = ANDREWS_SUBSET_K7;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than andrews_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
+/* tau: residual of the equations of motion at `rate`, body by body: another way than andrews_dynamics. size: magnitudes
+ * of the terms that it is the sum of. */
 static GIC_COLD GIC_APART int andrews_balance(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
-        const gic_real t2 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
-        const gic_real t3 = m[14] * (m[14] * t2);
-        const gic_real t4 = m[14] * (m[14] * t1);
-        const gic_real t5 = t1 * ((t3 + rate[1] * t1) * R(0.04325)) + t2 * ((rate[1] * t2 - t4) * R(0.04325));
-        const gic_real t6 = m[33] * R(-0.0115);
-        const gic_real t7 = m[36] * R(-0.0115);
-        const gic_real t8 = m[52] + (m[50] * t6 - m[44] * (m[44] * t7));
-        const gic_real t9 = (t8 + rate[1] * (m[58] + m[56] * t6)) * R(0.00365);
-        const gic_real t10 = m[51] - (m[44] * (m[44] * t6) + m[50] * t7);
-        const gic_real t11 = (t10 + rate[1] * (m[57] - m[56] * t7)) * R(0.00365);
-        const gic_real t12 = R(4.41e-07) * (m[50] + m[56] * rate[1]) + (t6 * t9 - t7 * t11);
-        const gic_real t13 = rate[1] * R(2.194e-06) + t5 + (m[58] * t9 + m[57] * t11 + m[56] * t12);
-        const gic_real t14 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
-        const gic_real t15 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
-        const gic_real t16 = m[74] * (m[74] * t15) + m[80] * t14;
-        const gic_real t17 = m[80] * t15 - m[74] * (m[74] * t14);
-        const gic_real t18 = t14 * ((t16 + rate[1] * (m[86] * t14)) * R(0.02373)) + t15 * ((t17 + rate[1] * (m[86] * t15)) * R(0.02373));
-        const gic_real t19 = t13 + m[86] * (R(5.255e-06) * (m[80] + m[86] * rate[1]) + t18);
-        const gic_real t20 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
-        const gic_real t21 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
-        const gic_real t22 = m[133] * t20 - m[134] * t21;
-        const gic_real t23 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
-        const gic_real t24 = m[132] * t21 - m[133] * t23;
-        const gic_real t25 = m[134] * t22 - m[132] * t24 + (m[140] * t23 - m[138] * t20);
-        const gic_real t26 = m[142] + t25;
-        const gic_real t27 = t26 + rate[1] * (m[148] + (m[146] * t23 - m[144] * t20));
+        /* inertia of K1 */
+        const gic_real t1 = m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] * R(0.00092);
+        const gic_real t2 = m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] * R(0.00092);
+        const gic_real t3 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t2);
+        const gic_real t4 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t1);
+        const gic_real t5 = t1 * ((t3 + rate[ANDREWS_STATE_BETA_RATE] * t1) * R(0.04325)) + t2 *
+            ((rate[ANDREWS_STATE_BETA_RATE] * t2 - t4) * R(0.04325));
+        /* inertia of K2 */
+        const gic_real t6 = m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] * R(-0.0115);
+        const gic_real t7 = m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] * R(-0.0115);
+        const gic_real t8 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_Y] + (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] *
+            t6 - m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t7));
+        const gic_real t9 = (t8 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K2 + ANDREWS_S + 4] +
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t6)) * R(0.00365);
+        const gic_real t10 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_X] - (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t6) + m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] * t7);
+        const gic_real t11 = (t10 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K2 + ANDREWS_S + 3] -
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t7)) * R(0.00365);
+        const gic_real t12 = R(4.41e-07) * (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] +
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * rate[ANDREWS_STATE_BETA_RATE]) + (t6 * t9 - t7 * t11);
+        const gic_real t13 = rate[ANDREWS_STATE_BETA_RATE] * R(2.194e-06) + t5 + (m[ANDREWS_MOTION_K2 + ANDREWS_S + 4] *
+            t9 + m[ANDREWS_MOTION_K2 + ANDREWS_S + 3] * t11 + m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t12);
+        /* inertia of K3 */
+        const gic_real t14 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.010430000000000002);
+        const gic_real t15 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.010430000000000002);
+        const gic_real t16 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t15) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] * t14;
+        const gic_real t17 = m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] * t15 - m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t14);
+        const gic_real t18 = t14 * ((t16 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] *
+            t14)) * R(0.02373)) + t15 * ((t17 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] *
+            t15)) * R(0.02373));
+        const gic_real t19 = t13 + m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * (R(5.255e-06) *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]) + t18);
+        /* inertia of K4 */
+        const gic_real t20 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(1.3010426069826053e-18);
+        const gic_real t21 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(1.3010426069826053e-18);
+        const gic_real t22 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t20 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t21;
+        const gic_real t23 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(1.3010426069826053e-18);
+        const gic_real t24 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t21 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t23;
+        const gic_real t25 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t22 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t24 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t23 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t20);
+        const gic_real t26 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_Y] + t25;
+        const gic_real t27 = t26 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K4 + ANDREWS_S + 4] +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t23 - m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t20));
         const gic_real t28 = t27 * R(0.00706);
-        const gic_real t29 = m[134] * t23 - m[132] * t20;
-        const gic_real t30 = m[133] * t24 - m[134] * t29 + (m[139] * t20 - m[140] * t21);
-        const gic_real t31 = m[141] + t30;
-        const gic_real t32 = t31 + rate[1] * (m[147] + (m[145] * t20 - m[146] * t21));
+        const gic_real t29 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t23 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t20;
+        const gic_real t30 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t24 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t29 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t20 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t21);
+        const gic_real t31 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_X] + t30;
+        const gic_real t32 = t31 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K4 + ANDREWS_S + 3] +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t20 - m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t21));
         const gic_real t33 = t32 * R(0.00706);
-        const gic_real t34 = m[128] * R(5.667e-07);
-        const gic_real t35 = m[127] * R(5.667e-07);
-        const gic_real t36 = m[126] * R(5.667e-07);
-        const gic_real t37 = m[131] * t34 + (m[130] * t35 + m[129] * t36);
-        const gic_real t38 = m[128] * t34 + (m[127] * t35 + m[126] * t36);
-        const gic_real t39 = m[125] * R(5.667e-07);
-        const gic_real t40 = m[124] * R(5.667e-07);
-        const gic_real t41 = m[123] * R(5.667e-07);
-        const gic_real t42 = m[128] * t39 + (m[127] * t40 + m[126] * t41);
-        const gic_real t43 = m[134] * t37 + (m[133] * t38 + m[132] * t42);
-        const gic_real t44 = m[131] * t39 + (m[130] * t40 + m[129] * t41);
-        const gic_real t45 = m[125] * t39 + (m[124] * t40 + m[123] * t41);
-        const gic_real t46 = m[134] * t44 + (m[133] * t42 + m[132] * t45);
-        const gic_real t47 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
-        const gic_real t48 = m[140] + m[146] * rate[1];
-        const gic_real t49 = m[139] + m[145] * rate[1];
-        const gic_real t50 = m[138] + m[144] * rate[1];
-        const gic_real t51 = m[132] * t43 - m[133] * t46 + (t47 * t48 + (t37 * t49 + t44 * t50));
-        const gic_real t52 = m[134] * t47 + (m[133] * t37 + m[132] * t44);
-        const gic_real t53 = m[134] * t46 - m[132] * t52 + (t37 * t48 + (t38 * t49 + t42 * t50));
-        const gic_real t54 = m[132] * t29 - m[133] * t22 + (m[138] * t21 - m[139] * t23);
-        const gic_real t55 = (t54 + rate[1] * (m[144] * t21 - m[145] * t23)) * R(0.00706);
-        const gic_real t56 = m[133] * t52 - m[134] * t43 + (t44 * t48 + (t42 * t49 + t45 * t50));
-        const gic_real t57 = m[145] * (t53 + (t20 * t33 - t23 * t55)) + m[144] * (t56 + (t21 * t55 - t20 * t28));
-        const gic_real t58 = m[146] * (t51 + (t23 * t28 - t21 * t33)) + t57;
-        const gic_real t59 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
-        const gic_real t60 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
-        const gic_real t61 = m[104] * (m[104] * t60) + m[110] * t59;
-        const gic_real t62 = m[110] * t60 - m[104] * (m[104] * t59);
-        const gic_real t63 = t59 * ((t61 + rate[1] * (m[116] * t59)) * R(0.0705)) + t60 * ((t62 + rate[1] * (m[116] * t60)) * R(0.0705));
-        const gic_real t64 = t19 + (m[148] * t28 + m[147] * t33 + t58) + m[116] * (R(1.169e-05) * (m[110] + m[116] * rate[1]) + t63);
-        const gic_real t65 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
-        const gic_real t66 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
-        const gic_real t67 = m[193] * t65 - m[194] * t66;
-        const gic_real t68 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
-        const gic_real t69 = m[192] * t66 - m[193] * t68;
-        const gic_real t70 = m[194] * t67 - m[192] * t69 + (m[200] * t68 - m[198] * t65);
-        const gic_real t71 = m[202] + t70;
-        const gic_real t72 = t71 + rate[1] * (m[208] + (m[206] * t68 - m[204] * t65));
+        const gic_real t34 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t35 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t36 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t37 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t34 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t35 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t36);
+        const gic_real t38 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t34 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t35 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t36);
+        const gic_real t39 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t40 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t41 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t42 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t39 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t40 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t41);
+        const gic_real t43 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t37 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t38 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t42);
+        const gic_real t44 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t39 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t40 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t41);
+        const gic_real t45 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * t39 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * t40 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * t41);
+        const gic_real t46 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t44 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t42 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t45);
+        const gic_real t47 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t48 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t49 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t50 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t51 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t43 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t46 + (t47 * t48 + (t37 * t49 + t44 * t50));
+        const gic_real t52 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t47 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t37 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t44);
+        const gic_real t53 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t46 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t52 + (t37 * t48 + (t38 * t49 + t42 * t50));
+        const gic_real t54 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t29 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t22 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t21 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t23);
+        const gic_real t55 = (t54 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t21 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t23)) * R(0.00706);
+        const gic_real t56 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t52 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t43 + (t44 * t48 + (t42 * t49 + t45 * t50));
+        const gic_real t57 = m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * (t53 + (t20 * t33 - t23 * t55)) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * (t56 + (t21 * t55 - t20 * t28));
+        const gic_real t58 = m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * (t51 + (t23 * t28 - t21 * t33)) + t57;
+        /* inertia of K5 */
+        const gic_real t59 = m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] * R(0.023080000000000007);
+        const gic_real t60 = m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] * R(0.023080000000000007);
+        const gic_real t61 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t60) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] * t59;
+        const gic_real t62 = m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] * t60 - m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t59);
+        const gic_real t63 = t59 * ((t61 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] *
+            t59)) * R(0.0705)) + t60 * ((t62 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] *
+            t60)) * R(0.0705));
+        const gic_real t64 = t19 + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 4] * t28 + m[ANDREWS_MOTION_K4 + ANDREWS_S + 3] *
+            t33 + t58) + m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * (R(1.169e-05) *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]) + t63);
+        /* inertia of K6 */
+        const gic_real t65 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(0.005790000000000001);
+        const gic_real t66 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(0.005790000000000001);
+        const gic_real t67 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t65 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t66;
+        const gic_real t68 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(0.005790000000000001);
+        const gic_real t69 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t66 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t68;
+        const gic_real t70 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t67 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t69 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t68 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t65);
+        const gic_real t71 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_Y] + t70;
+        const gic_real t72 = t71 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K6 + ANDREWS_S + 4] +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t68 - m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * t65));
         const gic_real t73 = R(0.00706) * t72;
-        const gic_real t74 = m[194] * t68 - m[192] * t65;
-        const gic_real t75 = m[193] * t69 - m[194] * t74 + (m[199] * t65 - m[200] * t66);
-        const gic_real t76 = m[201] + t75;
-        const gic_real t77 = t76 + rate[1] * (m[207] + (m[205] * t65 - m[206] * t66));
+        const gic_real t74 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t68 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t65;
+        const gic_real t75 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t69 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t74 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t65 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t66);
+        const gic_real t76 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_X] + t75;
+        const gic_real t77 = t76 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K6 + ANDREWS_S + 3] +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t65 - m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t66));
         const gic_real t78 = R(0.00706) * t77;
-        const gic_real t79 = m[188] * R(5.667e-07);
-        const gic_real t80 = m[187] * R(5.667e-07);
-        const gic_real t81 = m[186] * R(5.667e-07);
-        const gic_real t82 = m[191] * t79 + (m[190] * t80 + m[189] * t81);
-        const gic_real t83 = m[188] * t79 + (m[187] * t80 + m[186] * t81);
-        const gic_real t84 = m[185] * R(5.667e-07);
-        const gic_real t85 = m[184] * R(5.667e-07);
-        const gic_real t86 = m[183] * R(5.667e-07);
-        const gic_real t87 = m[188] * t84 + (m[187] * t85 + m[186] * t86);
-        const gic_real t88 = m[194] * t82 + (m[193] * t83 + m[192] * t87);
-        const gic_real t89 = m[191] * t84 + (m[190] * t85 + m[189] * t86);
-        const gic_real t90 = m[185] * t84 + (m[184] * t85 + m[183] * t86);
-        const gic_real t91 = m[194] * t89 + (m[193] * t87 + m[192] * t90);
-        const gic_real t92 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
-        const gic_real t93 = m[200] + m[206] * rate[1];
-        const gic_real t94 = m[199] + m[205] * rate[1];
-        const gic_real t95 = m[198] + m[204] * rate[1];
-        const gic_real t96 = m[192] * t88 - m[193] * t91 + (t92 * t93 + (t82 * t94 + t89 * t95));
-        const gic_real t97 = m[194] * t92 + (m[193] * t82 + m[192] * t89);
-        const gic_real t98 = m[194] * t91 - m[192] * t97 + (t82 * t93 + (t83 * t94 + t87 * t95));
-        const gic_real t99 = m[192] * t74 - m[193] * t67 + (m[198] * t66 - m[199] * t68);
-        const gic_real t100 = R(0.00706) * (t99 + rate[1] * (m[204] * t66 - m[205] * t68));
-        const gic_real t101 = m[193] * t97 - m[194] * t88 + (t89 * t93 + (t87 * t94 + t90 * t95));
-        const gic_real t102 = m[205] * (t98 + (t65 * t78 - t68 * t100)) + m[204] * (t101 + (t66 * t100 - t65 * t73));
-        const gic_real t103 = m[206] * (t96 + (t68 * t73 - t66 * t78)) + t102;
-        const gic_real t104 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
-        const gic_real t105 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
-        const gic_real t106 = m[164] * (m[164] * t105) + m[170] * t104;
-        const gic_real t107 = m[170] * t105 - m[164] * (m[164] * t104);
-        const gic_real t108 = t104 * ((t106 + rate[1] * (m[176] * t104)) * R(0.05498)) + t105 * ((t107 + rate[1] * (m[176] * t105)) * R(0.05498));
-        const gic_real t109 = t64 + (m[208] * t73 + m[207] * t78 + t103) + m[176] * (R(1.912e-05) * (m[170] + m[176] * rate[1]) + t108);
-        const gic_real t110 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
-        const gic_real t111 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
+        const gic_real t79 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t80 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t81 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t82 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t79 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t80 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t81);
+        const gic_real t83 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t79 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t80 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t81);
+        const gic_real t84 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t85 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t86 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t87 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t84 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t85 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t86);
+        const gic_real t88 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t82 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t83 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t87);
+        const gic_real t89 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t84 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t85 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t86);
+        const gic_real t90 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * t84 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * t85 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * t86);
+        const gic_real t91 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t89 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t87 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t90);
+        const gic_real t92 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t93 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t94 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t95 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t96 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t88 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t91 + (t92 * t93 + (t82 * t94 + t89 * t95));
+        const gic_real t97 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t92 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t82 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t89);
+        const gic_real t98 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t91 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t97 + (t82 * t93 + (t83 * t94 + t87 * t95));
+        const gic_real t99 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t74 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t67 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t66 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t68);
+        const gic_real t100 = R(0.00706) * (t99 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * t66 - m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t68));
+        const gic_real t101 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t97 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t88 + (t89 * t93 + (t87 * t94 + t90 * t95));
+        const gic_real t102 = m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * (t98 + (t65 * t78 - t68 * t100)) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * (t101 + (t66 * t100 - t65 * t73));
+        const gic_real t103 = m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * (t96 + (t68 * t73 - t66 * t78)) + t102;
+        /* inertia of K7 */
+        const gic_real t104 = m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] *
+            R(-0.004489999999999999);
+        const gic_real t105 = m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] *
+            R(-0.004489999999999999);
+        const gic_real t106 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t105) +
+            m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] * t104;
+        const gic_real t107 = m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] * t105 - m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t104);
+        const gic_real t108 = t104 * ((t106 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] *
+            t104)) * R(0.05498)) + t105 * ((t107 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t105)) * R(0.05498));
+        const gic_real t109 = t64 + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 4] * t73 + m[ANDREWS_MOTION_K6 + ANDREWS_S + 3] *
+            t78 + t103) + m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * (R(1.912e-05) *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]) + t108);
+        /* force spring */
+        const gic_real t110 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.020000000000000004);
+        const gic_real t111 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.020000000000000004);
         const gic_real t112 = R(-0.03635) + t111 - R(0.014);
         const gic_real t113 = R(0.03273) + t110 - R(0.072);
         const gic_real t114 = GIC_SQRT(t113 * t113 + t112 * t112);
-        const gic_real t115 = (t114 - R(0.07785)) * R(4530.0);
-        const gic_real t116 = R(1.0) / t114 * t115;
-        const gic_real t117 = m[86] * (t110 * (t112 * t116) - t111 * (t113 * t116));
+        const gic_real force_spring = (t114 - R(0.07785)) * R(4530.0);
+        const gic_real t116 = R(1.0) / t114 * force_spring;
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t117 = m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * (t110 * (t112 * t116) - t111 * (t113 * t116));
         const gic_real t118 = GIC_FABS(t1) + GIC_FABS(t2);
-        const gic_real t119 = GIC_FABS(m[14]);
+        const gic_real t119 = GIC_FABS(m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z]);
         const gic_real t120 = t119 * t119;
         const gic_real t121 = t120 * t118 + (GIC_FABS(-t4) + GIC_FABS(-t3));
-        const gic_real t122 = GIC_FABS(rate[1]);
+        const gic_real t122 = GIC_FABS(rate[ANDREWS_STATE_BETA_RATE]);
         const gic_real t123 = t121 + t118 * t122;
-        const gic_real t124 = t118 * (R(0.04325) * t123) + (t120 + t122) * R(6.582000000000001e-06) + t123 * R(5.3354615545424e-08);
-        const gic_real t125 = GIC_FABS(m[56]);
+        const gic_real t124 = t118 * (R(0.04325) * t123) + (t120 + t122) * R(6.582000000000001e-06) + t123 *
+            R(5.3354615545424e-08);
+        const gic_real t125 = GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_S + 2]);
         const gic_real t126 = GIC_FABS(t7) + GIC_FABS(t6);
-        const gic_real t127 = GIC_FABS(m[44]);
+        const gic_real t127 = GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z]);
         const gic_real t128 = t127 * t127;
-        const gic_real t129 = t128 * (GIC_FABS(m[31] + t7) + GIC_FABS(m[30] + t6));
+        const gic_real t129 = t128 * (GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_C_Y] + t7) +
+            GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_C_X] + t6));
         const gic_real t130 = t122 * t125;
         const gic_real t131 = t129 + (GIC_FABS(t8) + GIC_FABS(t10)) + t130 * t126;
-        const gic_real t132 = GIC_FABS(m[58]) + GIC_FABS(m[57]);
+        const gic_real t132 = GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_S + 4]) +
+            GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_S + 3]);
         const gic_real t133 = t131 + t122 * t132;
         const gic_real t134 = R(0.00365) * t133;
-        const gic_real t135 = t126 * t134 + (t128 + GIC_FABS(m[50]) + t130) * R(1.3229999999999999e-06);
-        const gic_real t136 = R(0.033) + t124 + t125 * (t135 + t133 * R(6.949064685265204e-09)) + t132 * (t134 + t135 * R(0.00525250543103946));
-        const gic_real t137 = GIC_FABS(m[86]);
-        const gic_real t138 = GIC_FABS(t115) + R(4530.0) * (R(0.07785) + GIC_FABS(t114));
+        const gic_real t135 = t126 * t134 + (t128 + GIC_FABS(m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z]) + t130) *
+            R(1.3229999999999999e-06);
+        const gic_real t136 = R(0.033) + t124 + t125 * (t135 + t133 * R(6.949064685265204e-09)) + t132 * (t134 + t135 *
+            R(0.00525250543103946));
+        const gic_real t137 = GIC_FABS(m[ANDREWS_MOTION_K3 + ANDREWS_S + 2]);
+        const gic_real t138 = GIC_FABS(force_spring) + R(4530.0) * (R(0.07785) + GIC_FABS(t114));
         const gic_real t139 = GIC_FABS(t14) + GIC_FABS(t15);
-        const gic_real t140 = GIC_FABS(m[74]);
+        const gic_real t140 = GIC_FABS(m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z]);
         const gic_real t141 = t140 * t140;
         const gic_real t142 = t141 * (GIC_FABS(R(0.03273) + t14) + GIC_FABS(R(-0.03635) + t15));
         const gic_real t143 = t122 * t137;
         const gic_real t144 = t142 + (GIC_FABS(t17) + GIC_FABS(-t16)) + t143 * t139;
         const gic_real t145 = R(0.02373) * t144;
-        const gic_real t146 = t139 * t145 + (t141 + GIC_FABS(m[80]) + t143) * R(1.5765e-05);
-        const gic_real t147 = t138 * (GIC_FABS(t110) + GIC_FABS(t111)) + t146 + (t138 + t145) * R(2.5774967030257717e-06);
-        const gic_real t148 = GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]);
+        const gic_real t146 = t139 * t145 + (t141 + GIC_FABS(m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z]) + t143) *
+            R(1.5765e-05);
+        const gic_real t147 = t138 * (GIC_FABS(t110) + GIC_FABS(t111)) + t146 + (t138 + t145) *
+            R(2.5774967030257717e-06);
+        const gic_real t148 = GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_S + 2]) +
+            GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_S + 1]) + GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_S + 0]);
         const gic_real t149 = GIC_FABS(t20) + GIC_FABS(t21) + GIC_FABS(t23);
-        const gic_real t150 = GIC_FABS(m[134]) + GIC_FABS(m[133]) + GIC_FABS(m[132]);
+        const gic_real t150 = GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z]) +
+            GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y]) + GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X]);
         const gic_real t151 = t150 * t150;
-        const gic_real t152 = GIC_FABS(m[122] + t20) + GIC_FABS(m[121] + t21) + GIC_FABS(m[120] + t23);
+        const gic_real t152 = GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_C_Z] + t20) +
+            GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_C_Y] + t21) + GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_C_X] + t23);
         const gic_real t153 = t151 * t152 + (GIC_FABS(t54) + GIC_FABS(t26) + GIC_FABS(t31));
         const gic_real t154 = t122 * t148;
-        const gic_real t155 = GIC_FABS(m[148]) + GIC_FABS(m[147]);
+        const gic_real t155 = GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_S + 4]) +
+            GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_S + 3]);
         const gic_real t156 = t153 + t154 * t149 + t122 * t155;
         const gic_real t157 = R(0.00706) * t156;
-        const gic_real t158 = t151 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t158 = t151 + (GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z]) +
+            GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y]) + GIC_FABS(m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X]));
         const gic_real t159 = t149 * t157 + (t158 + t154) * R(1.7001e-06);
         const gic_real t160 = t136 + t137 * t147 + t148 * (t159 + t156 * R(1.0955686194848774e-08));
-        const gic_real t161 = GIC_FABS(m[116]);
+        const gic_real t161 = GIC_FABS(m[ANDREWS_MOTION_K5 + ANDREWS_S + 2]);
         const gic_real t162 = GIC_FABS(t59) + GIC_FABS(t60);
-        const gic_real t163 = GIC_FABS(m[104]);
+        const gic_real t163 = GIC_FABS(m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z]);
         const gic_real t164 = t163 * t163;
         const gic_real t165 = t164 * (GIC_FABS(R(-0.00227) + t59) + GIC_FABS(R(-0.06934) + t60));
         const gic_real t166 = t122 * t161;
         const gic_real t167 = t165 + (GIC_FABS(t62) + GIC_FABS(-t61)) + t166 * t162;
-        const gic_real t168 = t162 * (R(0.0705) * t167) + (t164 + GIC_FABS(m[110]) + t166) * R(3.507e-05);
-        const gic_real t169 = t160 + t155 * (t157 + t159 * R(0.006444142223897873)) + t161 * (t168 + t167 * R(1.572397850418271e-07));
-        const gic_real t170 = GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]);
+        const gic_real t168 = t162 * (R(0.0705) * t167) + (t164 + GIC_FABS(m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z]) +
+            t166) * R(3.507e-05);
+        const gic_real t169 = t160 + t155 * (t157 + t159 * R(0.006444142223897873)) + t161 * (t168 + t167 *
+            R(1.572397850418271e-07));
+        const gic_real t170 = GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_S + 2]) +
+            GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_S + 1]) + GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_S + 0]);
         const gic_real t171 = GIC_FABS(t65) + GIC_FABS(t66) + GIC_FABS(t68);
-        const gic_real t172 = GIC_FABS(m[194]) + GIC_FABS(m[193]) + GIC_FABS(m[192]);
+        const gic_real t172 = GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z]) +
+            GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y]) + GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X]);
         const gic_real t173 = t172 * t172;
-        const gic_real t174 = GIC_FABS(m[182] + t65) + GIC_FABS(m[181] + t66) + GIC_FABS(m[180] + t68);
+        const gic_real t174 = GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_C_Z] + t65) +
+            GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_C_Y] + t66) + GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_C_X] + t68);
         const gic_real t175 = t173 * t174 + (GIC_FABS(t99) + GIC_FABS(t71) + GIC_FABS(t76));
         const gic_real t176 = t122 * t170;
-        const gic_real t177 = GIC_FABS(m[208]) + GIC_FABS(m[207]);
+        const gic_real t177 = GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_S + 4]) +
+            GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_S + 3]);
         const gic_real t178 = t175 + t176 * t171 + t122 * t177;
         const gic_real t179 = R(0.00706) * t178;
-        const gic_real t180 = t173 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t180 = t173 + (GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z]) +
+            GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y]) + GIC_FABS(m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X]));
         const gic_real t181 = t171 * t179 + R(1.7001e-06) * (t180 + t176);
-        const gic_real t182 = t169 + t170 * (t181 + R(1.0955686194848774e-08) * t178) + t177 * (t179 + R(0.006444142223897873) * t181);
-        const gic_real t183 = GIC_FABS(m[176]);
+        const gic_real t182 = t169 + t170 * (t181 + R(1.0955686194848774e-08) * t178) + t177 * (t179 +
+            R(0.006444142223897873) * t181);
+        const gic_real t183 = GIC_FABS(m[ANDREWS_MOTION_K7 + ANDREWS_S + 2]);
         const gic_real t184 = GIC_FABS(t104) + GIC_FABS(t105);
-        const gic_real t185 = GIC_FABS(m[164]);
+        const gic_real t185 = GIC_FABS(m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z]);
         const gic_real t186 = t185 * t185;
         const gic_real t187 = t186 * (GIC_FABS(R(-0.00227) + t104) + GIC_FABS(R(-0.06934) + t105));
         const gic_real t188 = t122 * t183;
         const gic_real t189 = t187 + (GIC_FABS(t107) + GIC_FABS(-t106)) + t188 * t184;
-        const gic_real t190 = t184 * (R(0.05498) * t189) + (t186 + GIC_FABS(m[170]) + t188) * R(5.736e-05);
-        const gic_real t191 = t109 - (R(0.033) + t117);
+        const gic_real t190 = t184 * (R(0.05498) * t189) + (t186 + GIC_FABS(m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z]) +
+            t188) * R(5.736e-05);
+        const gic_real residual_0 = t109 - (R(0.033) + t117);
         const gic_real t192 = t182 + t183 * (t190 + t189 * R(1.7758526965939488e-07));
-        tau[0] = t191;
-        size[0] = t192;
+        tau[ANDREWS_UNKNOWN_OF_BETA] = residual_0;
+        size[ANDREWS_UNKNOWN_OF_BETA] = t192;
     }
     return GIC_OK;
 }
@@ -2471,7 +3005,7 @@ static GIC_COLD GIC_APART int andrews_check(andrews *self, gic_real time, const 
     return status;
 }
 
-/* ---- the functions of andrews.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of andrews.h ---------------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -2491,7 +3025,8 @@ static int andrews_locate(andrews *self, gic_real time, const gic_real *y, gic_r
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[ANDREWS_STATE_ROOM])
+static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[ANDREWS_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = andrews_locate(self, time, y, e);
@@ -2499,7 +3034,8 @@ static int andrews_evaluate(andrews *self, gic_real time, const gic_real *y, gic
     if (status == GIC_OK)
         status = andrews_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + ANDREWS_TWIST, ANDREWS_STATES - ANDREWS_TWIST))
+    if (status == GIC_OK && ANDREWS_STATES > ANDREWS_TWIST && !GIC_FINITE(rate + ANDREWS_TWIST, ANDREWS_STATES -
+        ANDREWS_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = andrews_check(self, time, y, e, rate);
@@ -2519,8 +3055,9 @@ int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *r
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int andrews_march(andrews *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -2531,7 +3068,7 @@ static int andrews_march(andrews *self, gic_real time)
         return status;
     memcpy(before, state, ANDREWS_STATES * sizeof *state);
     for (i = 0; i < ANDREWS_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = andrews_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, ANDREWS_STATES * sizeof *state);
@@ -2712,17 +3249,24 @@ static const char *const andrews_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
 } andrews_design[] = {
-    {1, {R(0.006986674115451445), R(-0.00043172306456889544), R(0.0), R(0.9995239622458657), R(-0.0), R(-0.0), R(-0.03085204849479701)}}, /* K2 */
-    {8, {R(-0.03635000000000001), R(0.03273000000000001), R(0.0), R(0.9742017304021154), R(0.0), R(0.0), R(0.22567895001865834)}}, /* K3 */
-    {35, {R(-0.06934000000000001), R(-0.0022700000000000116), R(0.0), R(0.9704560533208088), R(0.0), R(0.0), R(0.24127794879142972)}}, /* K5 */
-    {42, {R(-0.03399720388583998), R(0.01646197167499768), R(0.0), R(0.9376406891940403), R(0.0), R(0.0), R(0.34760600968298155)}}, /* K4 */
-    {93, {R(-0.06934), R(-0.002270000000000001), R(0.0), R(0.8166154899056267), R(0.0), R(0.0), R(0.5771820697545907)}}, /* K7 */
-    {100, {R(-0.0316331345074089), R(-0.015618868668304538), R(0.0), R(0.8756870468531347), R(0.0), R(0.0), R(0.48287906971998273)}}, /* K6 */
+    {1, {R(0.006986674115451445), R(-0.00043172306456889544), R(0.0), R(0.9995239622458657), R(-0.0), R(-0.0),
+    R(-0.03085204849479701)}}, /* K2 */
+    {8, {R(-0.03635000000000001), R(0.03273000000000001), R(0.0), R(0.9742017304021154), R(0.0), R(0.0),
+        R(0.22567895001865834)}}, /* K3 */
+    {35, {R(-0.06934000000000001), R(-0.0022700000000000116), R(0.0), R(0.9704560533208088), R(0.0), R(0.0),
+        R(0.24127794879142972)}}, /* K5 */
+    {42, {R(-0.03399720388583998), R(0.01646197167499768), R(0.0), R(0.9376406891940403), R(0.0), R(0.0),
+        R(0.34760600968298155)}}, /* K4 */
+    {93, {R(-0.06934), R(-0.002270000000000001), R(0.0), R(0.8166154899056267), R(0.0), R(0.0),
+        R(0.5771820697545907)}}, /* K7 */
+    {100, {R(-0.0316331345074089), R(-0.015618868668304538), R(0.0), R(0.8756870468531347), R(0.0), R(0.0),
+        R(0.48287906971998273)}}, /* K6 */
 };
 
 static const gic_real andrews_initial[ANDREWS_STATE_ROOM] = {
@@ -2823,7 +3367,7 @@ void andrews_restore(andrews *self, const andrews *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than andrews_dynamics. */
 static GIC_COLD int andrews_inverse(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
@@ -2833,261 +3377,461 @@ static GIC_COLD int andrews_inverse(const andrews *self, gic_real time, const gi
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
-        const gic_real t2 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
-        const gic_real t3 = t1 * ((m[14] * (m[14] * t2) + acc[0] * t1) * R(0.04325));
-        const gic_real t4 = t2 * ((acc[0] * t2 - m[14] * (m[14] * t1)) * R(0.04325));
-        const gic_real t5 = m[33] * R(-0.0115);
-        const gic_real t6 = m[36] * R(-0.0115);
-        const gic_real t7 = m[52] + (m[50] * t5 - m[44] * (m[44] * t6)) + acc[0] * (m[58] + m[56] * t5);
+        /* inertia of K1 */
+        const gic_real t1 = m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] * R(0.00092);
+        const gic_real t2 = m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] * R(0.00092);
+        const gic_real t3 = t1 * ((m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] *
+            t2) + acc[ANDREWS_UNKNOWN_OF_BETA] * t1) * R(0.04325));
+        const gic_real t4 = t2 * ((acc[ANDREWS_UNKNOWN_OF_BETA] * t2 - m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t1)) * R(0.04325));
+        /* inertia of K2 */
+        const gic_real t5 = m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] * R(-0.0115);
+        const gic_real t6 = m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] * R(-0.0115);
+        const gic_real t7 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_Y] + (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] *
+            t5 - m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t6)) +
+            acc[ANDREWS_UNKNOWN_OF_BETA] * (m[ANDREWS_MOTION_K2 + ANDREWS_S + 4] +
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t5);
         const gic_real t8 = t7 * R(0.00365);
-        const gic_real t9 = m[51] - (m[44] * (m[44] * t5) + m[50] * t6) + acc[0] * (m[57] - m[56] * t6);
+        const gic_real t9 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_X] - (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t5) + m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] * t6) +
+            acc[ANDREWS_UNKNOWN_OF_BETA] * (m[ANDREWS_MOTION_K2 + ANDREWS_S + 3] -
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t6);
         const gic_real t10 = t9 * R(0.00365);
-        const gic_real t11 = R(4.41e-07) * (m[50] + m[56] * acc[0]) + (t5 * t8 - t6 * t10);
-        const gic_real t12 = acc[0] * R(2.194e-06) + (t3 + t4) + (m[58] * t8 + m[57] * t10 + m[56] * t11);
-        const gic_real t13 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
-        const gic_real t14 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
-        const gic_real t15 = m[74] * (m[74] * t14) + m[80] * t13 + acc[0] * (m[86] * t13);
-        const gic_real t16 = m[80] * t14 - m[74] * (m[74] * t13) + acc[0] * (m[86] * t14);
-        const gic_real t17 = R(5.255e-06) * (m[80] + m[86] * acc[0]) + (t13 * (t15 * R(0.02373)) + t14 * (t16 * R(0.02373)));
-        const gic_real t18 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
-        const gic_real t19 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
-        const gic_real t20 = m[133] * t18 - m[134] * t19;
-        const gic_real t21 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
-        const gic_real t22 = m[132] * t19 - m[133] * t21;
-        const gic_real t23 = m[134] * t20 - m[132] * t22 + (m[140] * t21 - m[138] * t18);
-        const gic_real t24 = m[142] + t23 + acc[0] * (m[148] + (m[146] * t21 - m[144] * t18));
+        const gic_real t11 = R(4.41e-07) * (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] +
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * acc[ANDREWS_UNKNOWN_OF_BETA]) + (t5 * t8 - t6 * t10);
+        const gic_real t12 = acc[ANDREWS_UNKNOWN_OF_BETA] * R(2.194e-06) + (t3 + t4) +
+            (m[ANDREWS_MOTION_K2 + ANDREWS_S + 4] * t8 + m[ANDREWS_MOTION_K2 + ANDREWS_S + 3] * t10 +
+            m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t11);
+        /* inertia of K3 */
+        const gic_real t13 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.010430000000000002);
+        const gic_real t14 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.010430000000000002);
+        const gic_real t15 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t14) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] * t13 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * t13);
+        const gic_real t16 = m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] * t14 - m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t13) + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * t14);
+        const gic_real t17 = R(5.255e-06) * (m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] +
+            m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * acc[ANDREWS_UNKNOWN_OF_BETA]) + (t13 * (t15 * R(0.02373)) + t14 *
+            (t16 * R(0.02373)));
+        /* inertia of K4 */
+        const gic_real t18 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(1.3010426069826053e-18);
+        const gic_real t19 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(1.3010426069826053e-18);
+        const gic_real t20 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t18 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t19;
+        const gic_real t21 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(1.3010426069826053e-18);
+        const gic_real t22 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t19 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t21;
+        const gic_real t23 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t20 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t22 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t21 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t18);
+        const gic_real t24 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_Y] + t23 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 4] + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t21 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t18));
         const gic_real t25 = t24 * R(0.00706);
-        const gic_real t26 = m[134] * t21 - m[132] * t18;
-        const gic_real t27 = m[133] * t22 - m[134] * t26 + (m[139] * t18 - m[140] * t19);
-        const gic_real t28 = m[141] + t27 + acc[0] * (m[147] + (m[145] * t18 - m[146] * t19));
+        const gic_real t26 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t21 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t18;
+        const gic_real t27 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t22 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t26 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t18 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t19);
+        const gic_real t28 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_X] + t27 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 3] + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t18 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t19));
         const gic_real t29 = t28 * R(0.00706);
-        const gic_real t30 = m[128] * R(5.667e-07);
-        const gic_real t31 = m[127] * R(5.667e-07);
-        const gic_real t32 = m[126] * R(5.667e-07);
-        const gic_real t33 = m[131] * t30 + (m[130] * t31 + m[129] * t32);
-        const gic_real t34 = m[128] * t30 + (m[127] * t31 + m[126] * t32);
-        const gic_real t35 = m[125] * R(5.667e-07);
-        const gic_real t36 = m[124] * R(5.667e-07);
-        const gic_real t37 = m[123] * R(5.667e-07);
-        const gic_real t38 = m[128] * t35 + (m[127] * t36 + m[126] * t37);
-        const gic_real t39 = m[134] * t33 + (m[133] * t34 + m[132] * t38);
-        const gic_real t40 = m[131] * t35 + (m[130] * t36 + m[129] * t37);
-        const gic_real t41 = m[125] * t35 + (m[124] * t36 + m[123] * t37);
-        const gic_real t42 = m[134] * t40 + (m[133] * t38 + m[132] * t41);
-        const gic_real t43 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
-        const gic_real t44 = m[140] + m[146] * acc[0];
-        const gic_real t45 = m[139] + m[145] * acc[0];
-        const gic_real t46 = m[138] + m[144] * acc[0];
-        const gic_real t47 = m[132] * t39 - m[133] * t42 + (t43 * t44 + (t33 * t45 + t40 * t46));
-        const gic_real t48 = m[134] * t43 + (m[133] * t33 + m[132] * t40);
-        const gic_real t49 = m[134] * t42 - m[132] * t48 + (t33 * t44 + (t34 * t45 + t38 * t46));
-        const gic_real t50 = m[132] * t26 - m[133] * t20 + (m[138] * t19 - m[139] * t21);
-        const gic_real t51 = (t50 + acc[0] * (m[144] * t19 - m[145] * t21)) * R(0.00706);
-        const gic_real t52 = m[133] * t48 - m[134] * t39 + (t40 * t44 + (t38 * t45 + t41 * t46));
-        const gic_real t53 = m[145] * (t49 + (t18 * t29 - t21 * t51)) + m[144] * (t52 + (t19 * t51 - t18 * t25));
-        const gic_real t54 = m[146] * (t47 + (t21 * t25 - t19 * t29)) + t53;
-        const gic_real t55 = t12 + m[86] * t17 + (m[148] * t25 + m[147] * t29 + t54);
-        const gic_real t56 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
-        const gic_real t57 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
-        const gic_real t58 = m[104] * (m[104] * t57) + m[110] * t56 + acc[0] * (m[116] * t56);
-        const gic_real t59 = m[110] * t57 - m[104] * (m[104] * t56) + acc[0] * (m[116] * t57);
-        const gic_real t60 = R(1.169e-05) * (m[110] + m[116] * acc[0]) + (t56 * (t58 * R(0.0705)) + t57 * (t59 * R(0.0705)));
-        const gic_real t61 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
-        const gic_real t62 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
-        const gic_real t63 = m[193] * t61 - m[194] * t62;
-        const gic_real t64 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
-        const gic_real t65 = m[192] * t62 - m[193] * t64;
-        const gic_real t66 = m[194] * t63 - m[192] * t65 + (m[200] * t64 - m[198] * t61);
-        const gic_real t67 = m[202] + t66 + acc[0] * (m[208] + (m[206] * t64 - m[204] * t61));
+        const gic_real t30 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t31 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t32 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t33 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t30 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t31 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t32);
+        const gic_real t34 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t30 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t31 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t32);
+        const gic_real t35 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t36 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t37 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t38 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t35 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t36 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t37);
+        const gic_real t39 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t33 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t34 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t38);
+        const gic_real t40 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t35 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t36 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t37);
+        const gic_real t41 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * t35 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * t36 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * t37);
+        const gic_real t42 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t40 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t38 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t41);
+        const gic_real t43 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t44 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t45 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t46 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t47 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t39 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t42 + (t43 * t44 + (t33 * t45 + t40 * t46));
+        const gic_real t48 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t43 + (m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t33 + m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t40);
+        const gic_real t49 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t42 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t48 + (t33 * t44 + (t34 * t45 + t38 * t46));
+        const gic_real t50 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t26 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t20 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t19 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t21);
+        const gic_real t51 = (t50 + acc[ANDREWS_UNKNOWN_OF_BETA] * (m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t19 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t21)) * R(0.00706);
+        const gic_real t52 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t48 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t39 + (t40 * t44 + (t38 * t45 + t41 * t46));
+        const gic_real t53 = m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * (t49 + (t18 * t29 - t21 * t51)) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * (t52 + (t19 * t51 - t18 * t25));
+        const gic_real t54 = m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * (t47 + (t21 * t25 - t19 * t29)) + t53;
+        const gic_real t55 = t12 + m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * t17 + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 4] *
+            t25 + m[ANDREWS_MOTION_K4 + ANDREWS_S + 3] * t29 + t54);
+        /* inertia of K5 */
+        const gic_real t56 = m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] * R(0.023080000000000007);
+        const gic_real t57 = m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] * R(0.023080000000000007);
+        const gic_real t58 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t57) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] * t56 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * t56);
+        const gic_real t59 = m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] * t57 - m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t56) + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * t57);
+        const gic_real t60 = R(1.169e-05) * (m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] +
+            m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * acc[ANDREWS_UNKNOWN_OF_BETA]) + (t56 * (t58 * R(0.0705)) + t57 *
+            (t59 * R(0.0705)));
+        /* inertia of K6 */
+        const gic_real t61 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(0.005790000000000001);
+        const gic_real t62 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(0.005790000000000001);
+        const gic_real t63 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t61 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t62;
+        const gic_real t64 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(0.005790000000000001);
+        const gic_real t65 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t62 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t64;
+        const gic_real t66 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t63 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t65 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t64 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t61);
+        const gic_real t67 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_Y] + t66 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 4] + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t64 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * t61));
         const gic_real t68 = R(0.00706) * t67;
-        const gic_real t69 = m[194] * t64 - m[192] * t61;
-        const gic_real t70 = m[193] * t65 - m[194] * t69 + (m[199] * t61 - m[200] * t62);
-        const gic_real t71 = m[201] + t70 + acc[0] * (m[207] + (m[205] * t61 - m[206] * t62));
+        const gic_real t69 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t64 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t61;
+        const gic_real t70 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t65 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t69 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t61 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t62);
+        const gic_real t71 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_X] + t70 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 3] + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t61 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t62));
         const gic_real t72 = R(0.00706) * t71;
-        const gic_real t73 = m[188] * R(5.667e-07);
-        const gic_real t74 = m[187] * R(5.667e-07);
-        const gic_real t75 = m[186] * R(5.667e-07);
-        const gic_real t76 = m[191] * t73 + (m[190] * t74 + m[189] * t75);
-        const gic_real t77 = m[188] * t73 + (m[187] * t74 + m[186] * t75);
-        const gic_real t78 = m[185] * R(5.667e-07);
-        const gic_real t79 = m[184] * R(5.667e-07);
-        const gic_real t80 = m[183] * R(5.667e-07);
-        const gic_real t81 = m[188] * t78 + (m[187] * t79 + m[186] * t80);
-        const gic_real t82 = m[194] * t76 + (m[193] * t77 + m[192] * t81);
-        const gic_real t83 = m[191] * t78 + (m[190] * t79 + m[189] * t80);
-        const gic_real t84 = m[185] * t78 + (m[184] * t79 + m[183] * t80);
-        const gic_real t85 = m[194] * t83 + (m[193] * t81 + m[192] * t84);
-        const gic_real t86 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
-        const gic_real t87 = m[200] + m[206] * acc[0];
-        const gic_real t88 = m[199] + m[205] * acc[0];
-        const gic_real t89 = m[198] + m[204] * acc[0];
-        const gic_real t90 = m[192] * t82 - m[193] * t85 + (t86 * t87 + (t76 * t88 + t83 * t89));
-        const gic_real t91 = m[194] * t86 + (m[193] * t76 + m[192] * t83);
-        const gic_real t92 = m[194] * t85 - m[192] * t91 + (t76 * t87 + (t77 * t88 + t81 * t89));
-        const gic_real t93 = m[192] * t69 - m[193] * t63 + (m[198] * t62 - m[199] * t64);
-        const gic_real t94 = R(0.00706) * (t93 + acc[0] * (m[204] * t62 - m[205] * t64));
-        const gic_real t95 = m[193] * t91 - m[194] * t82 + (t83 * t87 + (t81 * t88 + t84 * t89));
-        const gic_real t96 = m[205] * (t92 + (t61 * t72 - t64 * t94)) + m[204] * (t95 + (t62 * t94 - t61 * t68));
-        const gic_real t97 = m[206] * (t90 + (t64 * t68 - t62 * t72)) + t96;
-        const gic_real t98 = t55 + m[116] * t60 + (m[208] * t68 + m[207] * t72 + t97);
-        const gic_real t99 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
-        const gic_real t100 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
-        const gic_real t101 = m[164] * (m[164] * t100) + m[170] * t99 + acc[0] * (m[176] * t99);
-        const gic_real t102 = m[170] * t100 - m[164] * (m[164] * t99) + acc[0] * (m[176] * t100);
-        const gic_real t103 = R(1.912e-05) * (m[170] + m[176] * acc[0]) + (t99 * (t101 * R(0.05498)) + t100 * (t102 * R(0.05498)));
-        const gic_real t104 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
-        const gic_real t105 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
+        const gic_real t73 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t74 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t75 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t76 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t73 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t74 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t75);
+        const gic_real t77 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t73 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t74 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t75);
+        const gic_real t78 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t79 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t80 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t81 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t78 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t79 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t80);
+        const gic_real t82 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t76 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t77 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t81);
+        const gic_real t83 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t78 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t79 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t80);
+        const gic_real t84 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * t78 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * t79 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * t80);
+        const gic_real t85 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t83 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t81 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t84);
+        const gic_real t86 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t87 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t88 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t89 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] *
+            acc[ANDREWS_UNKNOWN_OF_BETA];
+        const gic_real t90 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t82 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t85 + (t86 * t87 + (t76 * t88 + t83 * t89));
+        const gic_real t91 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t86 + (m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t76 + m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t83);
+        const gic_real t92 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t85 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t91 + (t76 * t87 + (t77 * t88 + t81 * t89));
+        const gic_real t93 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t69 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t63 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t62 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t64);
+        const gic_real t94 = R(0.00706) * (t93 + acc[ANDREWS_UNKNOWN_OF_BETA] * (m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] *
+            t62 - m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t64));
+        const gic_real t95 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t91 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t82 + (t83 * t87 + (t81 * t88 + t84 * t89));
+        const gic_real t96 = m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * (t92 + (t61 * t72 - t64 * t94)) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * (t95 + (t62 * t94 - t61 * t68));
+        const gic_real t97 = m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * (t90 + (t64 * t68 - t62 * t72)) + t96;
+        const gic_real t98 = t55 + m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * t60 + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 4] *
+            t68 + m[ANDREWS_MOTION_K6 + ANDREWS_S + 3] * t72 + t97);
+        /* inertia of K7 */
+        const gic_real t99 = m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] *
+            R(-0.004489999999999999);
+        const gic_real t100 = m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] *
+            R(-0.004489999999999999);
+        const gic_real t101 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t100) +
+            m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] * t99 + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t99);
+        const gic_real t102 = m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] * t100 - m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t99) + acc[ANDREWS_UNKNOWN_OF_BETA] *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t100);
+        const gic_real t103 = R(1.912e-05) * (m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] +
+            m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * acc[ANDREWS_UNKNOWN_OF_BETA]) + (t99 * (t101 * R(0.05498)) + t100 *
+            (t102 * R(0.05498)));
+        /* force spring */
+        const gic_real t104 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.020000000000000004);
+        const gic_real t105 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.020000000000000004);
         const gic_real t106 = R(-0.03635) + t105 - R(0.014);
         const gic_real t107 = R(0.03273) + t104 - R(0.072);
         const gic_real t108 = GIC_SQRT(t107 * t107 + t106 * t106);
         const gic_real t109 = R(1.0) / t108 * ((t108 - R(0.07785)) * R(4530.0));
-        const gic_real t110 = m[86] * (t104 * (t106 * t109) - t105 * (t107 * t109));
-        const gic_real t111 = t98 + m[176] * t103 - (R(0.033) + t110);
-        tau[0] = t111;
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t110 = m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * (t104 * (t106 * t109) - t105 * (t107 * t109));
+        const gic_real residual_0 = t98 + m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t103 - (R(0.033) + t110);
+        tau[ANDREWS_UNKNOWN_OF_BETA] = residual_0;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int andrews_energy(const andrews *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int andrews_energy(const andrews *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = m[67] * R(-0.018000000000000002) + m[66] * R(0.020000000000000004);
+        /* force spring */
+        const gic_real t1 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.020000000000000004);
         const gic_real t2 = R(0.03273) + t1 - R(0.072);
-        const gic_real t3 = m[64] * R(-0.018000000000000002) + m[63] * R(0.020000000000000004);
+        const gic_real t3 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018000000000000002) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.020000000000000004);
         const gic_real t4 = R(-0.03635) + t3 - R(0.014);
         const gic_real t5 = GIC_SQRT(t2 * t2 + t4 * t4);
-        const gic_real t6 = R(1.0) / t5 * (m[74] * t3 * t2 - m[74] * t1 * t4);
+        const gic_real t6 = R(1.0) / t5 * (m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t3 * t2 -
+            m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t1 * t4);
         const gic_real t7 = t6 * ((t5 - R(0.07785)) * R(4530.0));
-        const gic_real t8 = m[4] * R(-6.776263578034403e-21) + m[3] * R(0.00092);
-        const gic_real t9 = m[14] * t8;
-        const gic_real t10 = m[7] * R(-6.776263578034403e-21) + m[6] * R(0.00092);
-        const gic_real t11 = m[14] * t10;
-        const gic_real t12 = t9 * (rate[1] * t8 - m[14] * t11) + t11 * (m[14] * t9 + rate[1] * t10);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t8 = m[ANDREWS_MOTION_K1 + ANDREWS_A_XY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_XX] * R(0.00092);
+        const gic_real t9 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t8;
+        const gic_real t10 = m[ANDREWS_MOTION_K1 + ANDREWS_A_YY] * R(-6.776263578034403e-21) +
+            m[ANDREWS_MOTION_K1 + ANDREWS_A_YX] * R(0.00092);
+        const gic_real t11 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t10;
+        const gic_real t12 = t9 * (rate[ANDREWS_STATE_BETA_RATE] * t8 - m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t11) +
+            t11 * (m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * t9 + rate[ANDREWS_STATE_BETA_RATE] * t10);
         const gic_real t13 = t12 * R(0.04325);
-        const gic_real t14 = m[14] * (rate[1] * R(2.194e-06));
-        const gic_real t15 = m[33] * R(-0.0115);
-        const gic_real t16 = m[44] * t15;
-        const gic_real t17 = m[36] * R(-0.0115);
-        const gic_real t18 = m[44] * t17;
-        const gic_real t19 = m[52] + (m[50] * t15 - m[44] * t18) + rate[1] * (m[58] + m[56] * t15);
-        const gic_real t20 = m[51] - (m[44] * t16 + m[50] * t17) + rate[1] * (m[57] - m[56] * t17);
-        const gic_real t21 = ((m[46] + t16) * t19 + (m[45] - t18) * t20) * R(0.00365);
-        const gic_real t22 = m[44] * (R(4.41e-07) * (m[50] + m[56] * rate[1]));
-        const gic_real t23 = m[64] * R(-0.018740000000000003) + m[63] * R(0.010430000000000002);
-        const gic_real t24 = m[74] * t23;
-        const gic_real t25 = m[67] * R(-0.018740000000000003) + m[66] * R(0.010430000000000002);
-        const gic_real t26 = m[74] * t25;
-        const gic_real t27 = m[80] * t23 - m[74] * t26 + rate[1] * (m[86] * t23);
-        const gic_real t28 = m[74] * t24 + m[80] * t25 + rate[1] * (m[86] * t25);
+        const gic_real t14 = m[ANDREWS_MOTION_K1 + ANDREWS_OMEGA_Z] * (rate[ANDREWS_STATE_BETA_RATE] * R(2.194e-06));
+        const gic_real t15 = m[ANDREWS_MOTION_K2 + ANDREWS_A_XX] * R(-0.0115);
+        const gic_real t16 = m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t15;
+        const gic_real t17 = m[ANDREWS_MOTION_K2 + ANDREWS_A_YX] * R(-0.0115);
+        const gic_real t18 = m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t17;
+        const gic_real t19 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_Y] + (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] *
+            t15 - m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * t18) + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_S + 4] + m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t15);
+        const gic_real t20 = m[ANDREWS_MOTION_K2 + ANDREWS_ACCELERATION_X] - (m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] *
+            t16 + m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] * t17) + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_S + 3] - m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] * t17);
+        const gic_real t21 = ((m[ANDREWS_MOTION_K2 + ANDREWS_VELOCITY_Y] + t16) * t19 +
+            (m[ANDREWS_MOTION_K2 + ANDREWS_VELOCITY_X] - t18) * t20) * R(0.00365);
+        const gic_real t22 = m[ANDREWS_MOTION_K2 + ANDREWS_OMEGA_Z] * (R(4.41e-07) *
+            (m[ANDREWS_MOTION_K2 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K2 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]));
+        const gic_real t23 = m[ANDREWS_MOTION_K3 + ANDREWS_A_XY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_XX] * R(0.010430000000000002);
+        const gic_real t24 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t23;
+        const gic_real t25 = m[ANDREWS_MOTION_K3 + ANDREWS_A_YY] * R(-0.018740000000000003) +
+            m[ANDREWS_MOTION_K3 + ANDREWS_A_YX] * R(0.010430000000000002);
+        const gic_real t26 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t25;
+        const gic_real t27 = m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] * t23 - m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] *
+            t26 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * t23);
+        const gic_real t28 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * t24 + m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] *
+            t25 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] * t25);
         const gic_real t29 = (t24 * t27 + t26 * t28) * R(0.02373);
-        const gic_real t30 = m[74] * (R(5.255e-06) * (m[80] + m[86] * rate[1]));
-        const gic_real t31 = m[127] * R(-0.005789999999999998) + m[126] * R(1.3010426069826053e-18);
-        const gic_real t32 = m[124] * R(-0.005789999999999998) + m[123] * R(1.3010426069826053e-18);
-        const gic_real t33 = m[132] * t31 - m[133] * t32;
-        const gic_real t34 = m[130] * R(-0.005789999999999998) + m[129] * R(1.3010426069826053e-18);
-        const gic_real t35 = m[134] * t32 - m[132] * t34;
-        const gic_real t36 = m[133] * t34 - m[134] * t31;
-        const gic_real t37 = m[132] * t35 - m[133] * t36 + (m[138] * t31 - m[139] * t32);
-        const gic_real t38 = t33 * (t37 + rate[1] * (m[144] * t31 - m[145] * t32));
-        const gic_real t39 = m[134] * t36 - m[132] * t33 + (m[140] * t32 - m[138] * t34);
-        const gic_real t40 = m[142] + t39 + rate[1] * (m[148] + (m[146] * t32 - m[144] * t34));
-        const gic_real t41 = m[133] * t33 - m[134] * t35 + (m[139] * t34 - m[140] * t31);
-        const gic_real t42 = m[141] + t41 + rate[1] * (m[147] + (m[145] * t34 - m[146] * t31));
-        const gic_real t43 = t38 + ((m[136] + t35) * t40 + (m[135] + t36) * t42);
+        const gic_real t30 = m[ANDREWS_MOTION_K3 + ANDREWS_OMEGA_Z] * (R(5.255e-06) *
+            (m[ANDREWS_MOTION_K3 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K3 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]));
+        const gic_real t31 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(1.3010426069826053e-18);
+        const gic_real t32 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(1.3010426069826053e-18);
+        const gic_real t33 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t31 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t32;
+        const gic_real t34 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * R(-0.005789999999999998) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(1.3010426069826053e-18);
+        const gic_real t35 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t32 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t34;
+        const gic_real t36 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t34 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t31;
+        const gic_real t37 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * t35 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] *
+            t36 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t31 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t32);
+        const gic_real t38 = t33 * (t37 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t31 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t32));
+        const gic_real t39 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * t36 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] *
+            t33 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t32 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] * t34);
+        const gic_real t40 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_Y] + t39 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 4] + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t32 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] * t34));
+        const gic_real t41 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * t33 - m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] *
+            t35 + (m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] * t34 - m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] * t31);
+        const gic_real t42 = m[ANDREWS_MOTION_K4 + ANDREWS_ACCELERATION_X] + t41 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K4 + ANDREWS_S + 3] + (m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] * t34 -
+            m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] * t31));
+        const gic_real t43 = t38 + ((m[ANDREWS_MOTION_K4 + ANDREWS_VELOCITY_Y] + t35) * t40 +
+            (m[ANDREWS_MOTION_K4 + ANDREWS_VELOCITY_X] + t36) * t42);
         const gic_real t44 = t43 * R(0.00706);
-        const gic_real t45 = m[131] * (m[131] * R(5.667e-07)) + (m[130] * (m[130] * R(5.667e-07)) + m[129] * (m[129] * R(5.667e-07)));
-        const gic_real t46 = m[140] + m[146] * rate[1];
-        const gic_real t47 = m[128] * R(5.667e-07);
-        const gic_real t48 = m[127] * R(5.667e-07);
-        const gic_real t49 = m[126] * R(5.667e-07);
-        const gic_real t50 = m[131] * t47 + (m[130] * t48 + m[129] * t49);
-        const gic_real t51 = m[139] + m[145] * rate[1];
-        const gic_real t52 = m[125] * R(5.667e-07);
-        const gic_real t53 = m[124] * R(5.667e-07);
-        const gic_real t54 = m[123] * R(5.667e-07);
-        const gic_real t55 = m[131] * t52 + (m[130] * t53 + m[129] * t54);
-        const gic_real t56 = m[138] + m[144] * rate[1];
-        const gic_real t57 = m[134] * (t45 * t46 + (t50 * t51 + t55 * t56));
-        const gic_real t58 = (m[128] * t47 + (m[127] * t48 + m[126] * t49)) * t51;
-        const gic_real t59 = m[128] * t52 + (m[127] * t53 + m[126] * t54);
-        const gic_real t60 = (m[125] * t52 + (m[124] * t53 + m[123] * t54)) * t56;
-        const gic_real t61 = m[133] * (t50 * t46 + (t58 + t59 * t56)) + m[132] * (t55 * t46 + (t59 * t51 + t60));
+        const gic_real t45 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t46 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t47 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t48 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t49 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t50 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t47 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t48 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t49);
+        const gic_real t51 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 1] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t52 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t53 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t54 = m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t55 = m[ANDREWS_MOTION_K4 + ANDREWS_A_ZZ] * t52 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_ZY] * t53 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_ZX] * t54);
+        const gic_real t56 = m[ANDREWS_MOTION_K4 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K4 + ANDREWS_S + 0] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t57 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Z] * (t45 * t46 + (t50 * t51 + t55 * t56));
+        const gic_real t58 = (m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t47 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t48 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t49)) * t51;
+        const gic_real t59 = m[ANDREWS_MOTION_K4 + ANDREWS_A_YZ] * t52 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_YY] * t53 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_YX] * t54);
+        const gic_real t60 = (m[ANDREWS_MOTION_K4 + ANDREWS_A_XZ] * t52 + (m[ANDREWS_MOTION_K4 + ANDREWS_A_XY] * t53 +
+            m[ANDREWS_MOTION_K4 + ANDREWS_A_XX] * t54)) * t56;
+        const gic_real t61 = m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_Y] * (t50 * t46 + (t58 + t59 * t56)) +
+            m[ANDREWS_MOTION_K4 + ANDREWS_OMEGA_X] * (t55 * t46 + (t59 * t51 + t60));
         const gic_real t62 = t57 + t61;
         const gic_real t63 = t13 + t14 + (t21 + t22) + (t29 + t30) + (t44 + t62);
-        const gic_real t64 = m[94] * R(0.009160000000000003) + m[93] * R(0.023080000000000007);
-        const gic_real t65 = m[104] * t64;
-        const gic_real t66 = m[97] * R(0.009160000000000003) + m[96] * R(0.023080000000000007);
-        const gic_real t67 = m[104] * t66;
-        const gic_real t68 = m[110] * t64 - m[104] * t67 + rate[1] * (m[116] * t64);
-        const gic_real t69 = m[104] * t65 + m[110] * t66 + rate[1] * (m[116] * t66);
+        const gic_real t64 = m[ANDREWS_MOTION_K5 + ANDREWS_A_XY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_XX] * R(0.023080000000000007);
+        const gic_real t65 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t64;
+        const gic_real t66 = m[ANDREWS_MOTION_K5 + ANDREWS_A_YY] * R(0.009160000000000003) +
+            m[ANDREWS_MOTION_K5 + ANDREWS_A_YX] * R(0.023080000000000007);
+        const gic_real t67 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t66;
+        const gic_real t68 = m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] * t64 - m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] *
+            t67 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * t64);
+        const gic_real t69 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * t65 + m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] *
+            t66 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] * t66);
         const gic_real t70 = (t65 * t68 + t67 * t69) * R(0.0705);
-        const gic_real t71 = m[104] * (R(1.169e-05) * (m[110] + m[116] * rate[1]));
-        const gic_real t72 = m[187] * R(-4.336808689942018e-19) + m[186] * R(0.005790000000000001);
-        const gic_real t73 = m[184] * R(-4.336808689942018e-19) + m[183] * R(0.005790000000000001);
-        const gic_real t74 = m[192] * t72 - m[193] * t73;
-        const gic_real t75 = m[190] * R(-4.336808689942018e-19) + m[189] * R(0.005790000000000001);
-        const gic_real t76 = m[194] * t73 - m[192] * t75;
-        const gic_real t77 = m[193] * t75 - m[194] * t72;
-        const gic_real t78 = m[192] * t76 - m[193] * t77 + (m[198] * t72 - m[199] * t73);
-        const gic_real t79 = t74 * (t78 + rate[1] * (m[204] * t72 - m[205] * t73));
-        const gic_real t80 = m[194] * t77 - m[192] * t74 + (m[200] * t73 - m[198] * t75);
-        const gic_real t81 = m[202] + t80 + rate[1] * (m[208] + (m[206] * t73 - m[204] * t75));
-        const gic_real t82 = m[193] * t74 - m[194] * t76 + (m[199] * t75 - m[200] * t72);
-        const gic_real t83 = m[201] + t82 + rate[1] * (m[207] + (m[205] * t75 - m[206] * t72));
-        const gic_real t84 = t79 + ((m[196] + t76) * t81 + (m[195] + t77) * t83);
+        const gic_real t71 = m[ANDREWS_MOTION_K5 + ANDREWS_OMEGA_Z] * (R(1.169e-05) *
+            (m[ANDREWS_MOTION_K5 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K5 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]));
+        const gic_real t72 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(0.005790000000000001);
+        const gic_real t73 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(0.005790000000000001);
+        const gic_real t74 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t72 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t73;
+        const gic_real t75 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * R(-4.336808689942018e-19) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(0.005790000000000001);
+        const gic_real t76 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t73 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t75;
+        const gic_real t77 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t75 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t72;
+        const gic_real t78 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * t76 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] *
+            t77 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t72 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t73);
+        const gic_real t79 = t74 * (t78 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * t72 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t73));
+        const gic_real t80 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * t77 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] *
+            t74 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t73 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] * t75);
+        const gic_real t81 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_Y] + t80 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 4] + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t73 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] * t75));
+        const gic_real t82 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * t74 - m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] *
+            t76 + (m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] * t75 - m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] * t72);
+        const gic_real t83 = m[ANDREWS_MOTION_K6 + ANDREWS_ACCELERATION_X] + t82 + rate[ANDREWS_STATE_BETA_RATE] *
+            (m[ANDREWS_MOTION_K6 + ANDREWS_S + 3] + (m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] * t75 -
+            m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] * t72));
+        const gic_real t84 = t79 + ((m[ANDREWS_MOTION_K6 + ANDREWS_VELOCITY_Y] + t76) * t81 +
+            (m[ANDREWS_MOTION_K6 + ANDREWS_VELOCITY_X] + t77) * t83);
         const gic_real t85 = R(0.00706) * t84;
-        const gic_real t86 = m[191] * (m[191] * R(5.667e-07)) + (m[190] * (m[190] * R(5.667e-07)) + m[189] * (m[189] * R(5.667e-07)));
-        const gic_real t87 = m[200] + m[206] * rate[1];
-        const gic_real t88 = m[188] * R(5.667e-07);
-        const gic_real t89 = m[187] * R(5.667e-07);
-        const gic_real t90 = m[186] * R(5.667e-07);
-        const gic_real t91 = m[191] * t88 + (m[190] * t89 + m[189] * t90);
-        const gic_real t92 = m[199] + m[205] * rate[1];
-        const gic_real t93 = m[185] * R(5.667e-07);
-        const gic_real t94 = m[184] * R(5.667e-07);
-        const gic_real t95 = m[183] * R(5.667e-07);
-        const gic_real t96 = m[191] * t93 + (m[190] * t94 + m[189] * t95);
-        const gic_real t97 = m[198] + m[204] * rate[1];
-        const gic_real t98 = m[194] * (t86 * t87 + (t91 * t92 + t96 * t97));
-        const gic_real t99 = (m[188] * t88 + (m[187] * t89 + m[186] * t90)) * t92;
-        const gic_real t100 = m[188] * t93 + (m[187] * t94 + m[186] * t95);
-        const gic_real t101 = (m[185] * t93 + (m[184] * t94 + m[183] * t95)) * t97;
-        const gic_real t102 = m[193] * (t91 * t87 + (t99 + t100 * t97)) + m[192] * (t96 * t87 + (t100 * t92 + t101));
+        const gic_real t86 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] *
+            R(5.667e-07)) + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] *
+            R(5.667e-07)) + m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * R(5.667e-07)));
+        const gic_real t87 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t88 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * R(5.667e-07);
+        const gic_real t89 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * R(5.667e-07);
+        const gic_real t90 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * R(5.667e-07);
+        const gic_real t91 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t88 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t89 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t90);
+        const gic_real t92 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_Y] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 1] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t93 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * R(5.667e-07);
+        const gic_real t94 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * R(5.667e-07);
+        const gic_real t95 = m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * R(5.667e-07);
+        const gic_real t96 = m[ANDREWS_MOTION_K6 + ANDREWS_A_ZZ] * t93 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_ZY] * t94 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_ZX] * t95);
+        const gic_real t97 = m[ANDREWS_MOTION_K6 + ANDREWS_ALPHA_X] + m[ANDREWS_MOTION_K6 + ANDREWS_S + 0] *
+            rate[ANDREWS_STATE_BETA_RATE];
+        const gic_real t98 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Z] * (t86 * t87 + (t91 * t92 + t96 * t97));
+        const gic_real t99 = (m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t88 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t89 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t90)) * t92;
+        const gic_real t100 = m[ANDREWS_MOTION_K6 + ANDREWS_A_YZ] * t93 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_YY] * t94 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_YX] * t95);
+        const gic_real t101 = (m[ANDREWS_MOTION_K6 + ANDREWS_A_XZ] * t93 + (m[ANDREWS_MOTION_K6 + ANDREWS_A_XY] * t94 +
+            m[ANDREWS_MOTION_K6 + ANDREWS_A_XX] * t95)) * t97;
+        const gic_real t102 = m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_Y] * (t91 * t87 + (t99 + t100 * t97)) +
+            m[ANDREWS_MOTION_K6 + ANDREWS_OMEGA_X] * (t96 * t87 + (t100 * t92 + t101));
         const gic_real t103 = t98 + t102;
-        const gic_real t104 = m[154] * R(-0.01228) + m[153] * R(-0.004489999999999999);
-        const gic_real t105 = m[164] * t104;
-        const gic_real t106 = m[157] * R(-0.01228) + m[156] * R(-0.004489999999999999);
-        const gic_real t107 = m[164] * t106;
-        const gic_real t108 = m[170] * t104 - m[164] * t107 + rate[1] * (m[176] * t104);
-        const gic_real t109 = m[164] * t105 + m[170] * t106 + rate[1] * (m[176] * t106);
+        const gic_real t104 = m[ANDREWS_MOTION_K7 + ANDREWS_A_XY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_XX] *
+            R(-0.004489999999999999);
+        const gic_real t105 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t104;
+        const gic_real t106 = m[ANDREWS_MOTION_K7 + ANDREWS_A_YY] * R(-0.01228) + m[ANDREWS_MOTION_K7 + ANDREWS_A_YX] *
+            R(-0.004489999999999999);
+        const gic_real t107 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t106;
+        const gic_real t108 = m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] * t104 - m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] *
+            t107 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t104);
+        const gic_real t109 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * t105 + m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] *
+            t106 + rate[ANDREWS_STATE_BETA_RATE] * (m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] * t106);
         const gic_real t110 = (t105 * t108 + t107 * t109) * R(0.05498);
-        const gic_real t111 = m[164] * (R(1.912e-05) * (m[170] + m[176] * rate[1]));
+        const gic_real t111 = m[ANDREWS_MOTION_K7 + ANDREWS_OMEGA_Z] * (R(1.912e-05) *
+            (m[ANDREWS_MOTION_K7 + ANDREWS_ALPHA_Z] + m[ANDREWS_MOTION_K7 + ANDREWS_S + 2] *
+            rate[ANDREWS_STATE_BETA_RATE]));
         const gic_real t112 = t63 + (t70 + t71) + (t85 + t103) + (t110 + t111);
-        const gic_real t113 = xd[0] * R(0.033);
+        /* force drive */
+        const gic_real t113 = xd[ANDREWS_X_BETA] * R(0.033);
         const gic_real t114 = GIC_FABS(t14) + GIC_FABS(t13) + (GIC_FABS(t22) + GIC_FABS(t21));
         const gic_real t115 = t114 + (GIC_FABS(t30) + GIC_FABS(t29)) + (GIC_FABS(t62) + GIC_FABS(t44));
         const gic_real t116 = t115 + (GIC_FABS(t71) + GIC_FABS(t70)) + (GIC_FABS(t103) + GIC_FABS(t85));
         const gic_real t117 = t116 + (GIC_FABS(t111) + GIC_FABS(t110)) + (GIC_FABS(t113) + GIC_FABS(t7));
         const gic_real t118 = t7 + t112;
-        const gic_real t119 = rate[1];
-        energy[0] = t118;
-        energy[1] = t113;
-        energy[2] = t117;
-        acc[0] = t119;
+        const gic_real t119 = rate[ANDREWS_STATE_BETA_RATE];
+        energy[ANDREWS_ENERGY_RATE] = t118;
+        energy[ANDREWS_ENERGY_POWER] = t113;
+        energy[ANDREWS_ENERGY_MAGNITUDES] = t117;
+        acc[ANDREWS_UNKNOWN_OF_BETA] = t119;
     }
     return GIC_OK;
 }
 
 GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
 {
-    gic_real e[4], acc[ANDREWS_UNKNOWN_ROOM], unit[ANDREWS_UNKNOWN_ROOM], tau0[ANDREWS_UNKNOWN_ROOM], tau[ANDREWS_UNKNOWN_ROOM];
+    gic_real e[4], acc[ANDREWS_UNKNOWN_ROOM], unit[ANDREWS_UNKNOWN_ROOM], tau0[ANDREWS_UNKNOWN_ROOM],
+        tau[ANDREWS_UNKNOWN_ROOM];
     gic_real M[ANDREWS_UNKNOWN_ROOM][ANDREWS_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = andrews_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -3148,7 +3892,7 @@ GIC_COLD int andrews_self_test(andrews *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int andrews_any_setup(void *self)
 {

@@ -50,12 +50,12 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0x57ae4b93
+#define ANDREWS_H 0x9cf0ba2f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "andrews.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "andrews.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -64,7 +64,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    ANDREWS_ABI = 6,
+    ANDREWS_ABI = 7,
     ANDREWS_FREE_BASE = 0,
     ANDREWS_STATES = 2,
     ANDREWS_SLOW = 2,
@@ -101,7 +101,8 @@ enum {
     ANDREWS_DEPENDENCE_ROOM = 1
 };
 
-/* Where each number stands: vehicle.state[ANDREWS_STATE_...], .input[ANDREWS_INPUT_...], .output[ANDREWS_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[ANDREWS_STATE_...], .input[ANDREWS_INPUT_...],
+ * .output[ANDREWS_OUTPUT_...]. */
 enum {
     ANDREWS_STATE_BETA = 0, /* rad */
     ANDREWS_STATE_BETA_RATE = 1, /* rad/s */
@@ -155,40 +156,49 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct andrews {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[ANDREWS_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[ANDREWS_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][ANDREWS_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][ANDREWS_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[ANDREWS_STATE_ROOM];
     gic_real input[ANDREWS_INPUT_ROOM];
     gic_real output[ANDREWS_OUTPUT_ROOM];
-    gic_real parameter[ANDREWS_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (andrews_model.parameter_geometric) by andrews_setup_with */
+    gic_real parameter[ANDREWS_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (andrews_model.parameter_geometric) by
+                                                    * andrews_setup_with */
     gic_real port[ANDREWS_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[ANDREWS_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[ANDREWS_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[ANDREWS_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(ANDREWS_STATE_ROOM, ANDREWS_STATES - ANDREWS_SLOW)];
     gic_real scratch[GIC_SCRATCH(ANDREWS_STATE_ROOM, ANDREWS_INPUT_ROOM)];
     gic_real x[ANDREWS_COORDINATE_ROOM], xd[ANDREWS_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * ANDREWS_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[ANDREWS_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } andrews;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int andrews_setup(andrews *self);
 
-/* The same as if the file had these numbers (ANDREWS_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (ANDREWS_PARAMETERS) as values of its tunable parameters; self->parameter
+ * will do. */
 int andrews_setup_with(andrews *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: ANDREWS_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: ANDREWS_STATES numbers. rate is
+ * written only on GIC_OK. */
 int andrews_rhs(andrews *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int andrews_step(andrews *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -200,19 +210,20 @@ int andrews_poses(andrews *self, gic_real *pose);
 /* Present time, s. */
 gic_real andrews_time(const andrews *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *andrews_status_text(int status);
 const char *andrews_status_subset(const andrews *self);
 const char *andrews_status_state(const andrews *self);
 const char *andrews_status_condition(const andrews *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void andrews_snapshot(const andrews *self, andrews *copy);
 void andrews_restore(andrews *self, const andrews *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int andrews_self_test(andrews *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -72,7 +72,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x3f5b3067
+#if FIVE_LINK_H != 0x3ca0d223
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -133,16 +133,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -162,10 +163,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -190,10 +207,122 @@ typedef struct five_link_links {
     gic_real x[FIVE_LINK_DEPENDENCE_ROOM], rate[FIVE_LINK_DEPENDENCE_ROOM], change[FIVE_LINK_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[FIVE_LINK_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[FIVE_LINK_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } five_link_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef FIVE_LINK_LAYOUT_NAMES
+#define FIVE_LINK_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    FIVE_LINK_C_X = 0,
+    FIVE_LINK_C_Y = 1,
+    FIVE_LINK_C_Z = 2,
+    FIVE_LINK_A_XX = 3,
+    FIVE_LINK_A_XY = 4,
+    FIVE_LINK_A_XZ = 5,
+    FIVE_LINK_A_YX = 6,
+    FIVE_LINK_A_YY = 7,
+    FIVE_LINK_A_YZ = 8,
+    FIVE_LINK_A_ZX = 9,
+    FIVE_LINK_A_ZY = 10,
+    FIVE_LINK_A_ZZ = 11,
+    FIVE_LINK_OMEGA_X = 12,
+    FIVE_LINK_OMEGA_Y = 13,
+    FIVE_LINK_OMEGA_Z = 14,
+    FIVE_LINK_VELOCITY_X = 15,
+    FIVE_LINK_VELOCITY_Y = 16,
+    FIVE_LINK_VELOCITY_Z = 17,
+    FIVE_LINK_ALPHA_X = 18,
+    FIVE_LINK_ALPHA_Y = 19,
+    FIVE_LINK_ALPHA_Z = 20,
+    FIVE_LINK_ACCELERATION_X = 21,
+    FIVE_LINK_ACCELERATION_Y = 22,
+    FIVE_LINK_ACCELERATION_Z = 23,
+    FIVE_LINK_S = 24, /* unit velocities, 6 numbers a coordinate */
+    FIVE_LINK_I_FIRST_X = 0,
+    FIVE_LINK_I_FIRST_Y = 1,
+    FIVE_LINK_I_FIRST_Z = 2,
+    FIVE_LINK_I_SECOND_XX = 3,
+    FIVE_LINK_I_SECOND_YY = 4,
+    FIVE_LINK_I_SECOND_ZZ = 5,
+    FIVE_LINK_I_SECOND_XY = 6,
+    FIVE_LINK_I_SECOND_XZ = 7,
+    FIVE_LINK_I_SECOND_YZ = 8,
+    FIVE_LINK_I_FORCE_X = 9,
+    FIVE_LINK_I_FORCE_Y = 10,
+    FIVE_LINK_I_FORCE_Z = 11,
+    FIVE_LINK_I_MOMENT_X = 12,
+    FIVE_LINK_I_MOMENT_Y = 13,
+    FIVE_LINK_I_MOMENT_Z = 14,
+    FIVE_LINK_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    FIVE_LINK_MOTION_RACK = 0,
+    FIVE_LINK_MOTION_LCA_F_L = 30,
+    FIVE_LINK_MOTION_LCA_F_R = 60,
+    FIVE_LINK_MOTION_WHEEL_F_L = 150,
+    FIVE_LINK_MOTION_WHEEL_F_R = 186,
+    FIVE_LINK_MOTION_WHEEL_R_L = 90,
+    FIVE_LINK_MOTION_WHEEL_R_R = 120,
+    FIVE_LINK_INERTIA_RACK = 0,
+    FIVE_LINK_INERTIA_LCA_F_L = 23,
+    FIVE_LINK_INERTIA_LCA_F_R = 46,
+    FIVE_LINK_INERTIA_WHEEL_R_L = 69,
+    FIVE_LINK_INERTIA_WHEEL_R_R = 92,
+    FIVE_LINK_INERTIA_WHEEL_F_L = 115,
+    FIVE_LINK_INERTIA_WHEEL_F_R = 147,
+    FIVE_LINK_SUBSET_CHASSIS = 0,
+    FIVE_LINK_SUBSET_RACK = 1,
+    FIVE_LINK_SUBSET_LCA_F_L = 2,
+    FIVE_LINK_SUBSET_LCA_F_R = 3,
+    FIVE_LINK_SUBSET_WHEEL_R_L = 4,
+    FIVE_LINK_SUBSET_WHEEL_R_R = 5,
+    FIVE_LINK_SUBSET_WHEEL_F_L = 6,
+    FIVE_LINK_SUBSET_WHEEL_F_R = 7,
+    FIVE_LINK_X_SPRING_F_L = 0,
+    FIVE_LINK_X_SPRING_F_R = 1,
+    FIVE_LINK_X_SPRING_R_L = 2,
+    FIVE_LINK_X_SPRING_R_R = 3,
+    FIVE_LINK_X_RACK = 4,
+    FIVE_LINK_Q_X = 0,
+    FIVE_LINK_Q_Y = 1,
+    FIVE_LINK_Q_Z = 2,
+    FIVE_LINK_Q_P0 = 3,
+    FIVE_LINK_Q_P1 = 4,
+    FIVE_LINK_Q_P2 = 5,
+    FIVE_LINK_Q_P3 = 6,
+    FIVE_LINK_POSE_CHASSIS = 0,
+    FIVE_LINK_POSE_RACK = 7,
+    FIVE_LINK_POSE_LCA_F_L = 14,
+    FIVE_LINK_POSE_LCA_F_R = 21,
+    FIVE_LINK_POSE_WHEEL_F_L = 28,
+    FIVE_LINK_POSE_WHEEL_F_R = 35,
+    FIVE_LINK_POSE_WHEEL_R_L = 42,
+    FIVE_LINK_POSE_WHEEL_R_R = 49,
+    FIVE_LINK_UNKNOWN_ALPHA_X = 0,
+    FIVE_LINK_UNKNOWN_ALPHA_Y = 1,
+    FIVE_LINK_UNKNOWN_ALPHA_Z = 2,
+    FIVE_LINK_UNKNOWN_ACCELERATION_X = 3,
+    FIVE_LINK_UNKNOWN_ACCELERATION_Y = 4,
+    FIVE_LINK_UNKNOWN_ACCELERATION_Z = 5,
+    FIVE_LINK_UNKNOWN_OF_SPRING_F_L = 6,
+    FIVE_LINK_UNKNOWN_OF_SPRING_F_R = 7,
+    FIVE_LINK_UNKNOWN_OF_SPRING_R_L = 8,
+    FIVE_LINK_UNKNOWN_OF_SPRING_R_R = 9,
+    FIVE_LINK_UNKNOWN_OF_RACK = 10,
+    FIVE_LINK_ENERGY_RATE = 0,
+    FIVE_LINK_ENERGY_POWER = 1,
+    FIVE_LINK_ENERGY_MAGNITUDES = 2,
+    FIVE_LINK_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real five_link_k_rack[1][1] = {
     { /* rack */
@@ -204,48 +333,50 @@ static const gic_real five_link_k_rack[1][1] = {
 /* Class 'rack': 6 unknowns of rack.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[FIVE_LINK_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[FIVE_LINK_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[FIVE_LINK_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[FIVE_LINK_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[FIVE_LINK_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[FIVE_LINK_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[FIVE_LINK_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[FIVE_LINK_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[FIVE_LINK_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[FIVE_LINK_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[FIVE_LINK_I_FORCE_Y] = inertia_force_y;
+        inertia[FIVE_LINK_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[FIVE_LINK_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[FIVE_LINK_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -259,17 +390,33 @@ static int five_link_solve_rack(five_link *self, const gic_real *GIC_RESTRICT k,
 static GIC_COLD void five_link_residual_rack(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[FIVE_LINK_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[FIVE_LINK_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[FIVE_LINK_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  0.0386496 * sign
+ *    1  spring_f_l.b
+ *    2  (arm_f_l.side_b_z * 0.0112189 + 0.970969 * spring_f_l.point_b_y) * 215.616
+ *    3  -arm_f_l.third_b_y * 215.616
+ *    4  arm_f_l.side_b_z * 215.616
+ *    5  arm_f_l.third_b_y * 215.616
+ *    6  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *    7  lca_f_l.com_y
+ *    8  arm_f_l.point_a_y
+ *    9  scale of the determinant
+ *   10  spring_f_l.point_b_y
+ *   11  spring_f_l.point_a_y
+ */
 static const gic_real five_link_k_lca_f_l[2][12] = {
     { /* lca_f_l */
         R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(51.57660077184113),
@@ -286,15 +433,17 @@ static const gic_real five_link_k_lca_f_l[2][12] = {
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -306,100 +455,105 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
         const gic_real t5 = t3 * k[0] + k[1] * t1;
         const gic_real t6 = t4 * k[2] + t5 * R(10.049655409199131);
         const gic_real t7 = t4 * R(-10.049655409199131) + t5 * k[2];
-        const gic_real t8 = t5 * k[3] + t4 * R(209.3566321652691);
-        motion[7] = t8;
-        const gic_real t9 = t5 * R(-209.35663216526908) + t4 * k[4];
-        motion[8] = t9;
-        const gic_real t10 = t5 * R(209.3566321652691) + t4 * k[5];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[4] + t4 * R(209.35663216526908);
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[3] + t4 * R(209.3566321652691);
+        motion[FIVE_LINK_A_YY] = a_yy;
+        const gic_real a_yz = t5 * R(-209.35663216526908) + t4 * k[4];
+        motion[FIVE_LINK_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * R(209.3566321652691) + t4 * k[5];
+        motion[FIVE_LINK_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[4] + t4 * R(209.35663216526908);
+        motion[FIVE_LINK_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[6];
         const gic_real t13 = t7 - R(0.19748500000000002);
-        const gic_real t14 = t9 * R(3.0379110359107786e-06) + t8 * k[7];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * R(3.0379110359107786e-06) + a_yy * k[7];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * R(3.0379110359107786e-06) + t10 * k[7];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * R(3.0379110359107786e-06) + a_zy * k[7];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[8] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * R(40.476046225));
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * R(40.476046225));
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[FIVE_LINK_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[FIVE_LINK_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * R(40.476046225));
+        inertia[FIVE_LINK_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * R(40.476046225));
+        inertia[FIVE_LINK_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[9] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[FIVE_LINK_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[FIVE_LINK_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[FIVE_LINK_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[FIVE_LINK_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[FIVE_LINK_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[FIVE_LINK_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[9] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[FIVE_LINK_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - R(1.688965) * turn[1] + t44);
         const gic_real t52 = R(1.688965) * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[FIVE_LINK_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[FIVE_LINK_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[FIVE_LINK_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(R(40.476046225) * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(R(40.476046225) * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = R(40.476046225) * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - R(40.476046225) * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[FIVE_LINK_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(R(40.476046225) * t38);
+        inertia[FIVE_LINK_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(R(40.476046225) * t37);
+        inertia[FIVE_LINK_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[FIVE_LINK_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[FIVE_LINK_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = R(40.476046225) * t59 + (t58 - t19 * inertia_force_x);
+        inertia[FIVE_LINK_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[FIVE_LINK_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - R(40.476046225) * t60;
+        inertia[FIVE_LINK_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[FIVE_LINK_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[FIVE_LINK_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -410,38 +564,56 @@ static int five_link_solve_lca_f_l(five_link *self, const gic_real *GIC_RESTRICT
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void five_link_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = R(0.01121887479261392) * motion[FIVE_LINK_A_ZZ] + k[10] * motion[FIVE_LINK_A_ZY];
         const gic_real t2 = t1 - R(0.19748500000000002);
-        const gic_real t3 = R(0.01121887479261392) * motion[8] + k[10] * motion[7];
+        const gic_real t3 = R(0.01121887479261392) * motion[FIVE_LINK_A_YZ] + k[10] * motion[FIVE_LINK_A_YY];
         const gic_real t4 = k[8] + t3 - k[11];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
-        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) + R(0.06335227878037952);
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) +
+            R(0.06335227878037952);
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[FIVE_LINK_A_ZY] * motion[FIVE_LINK_A_ZY] +
+            motion[FIVE_LINK_A_YY] * motion[FIVE_LINK_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[FIVE_LINK_A_YZ] + motion[FIVE_LINK_A_ZY])) +
+            GIC_FABS(motion[FIVE_LINK_A_YY] - motion[FIVE_LINK_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[FIVE_LINK_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[FIVE_LINK_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[FIVE_LINK_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[FIVE_LINK_OMEGA_X] - rate[0] * motion[FIVE_LINK_S + 0]) / (R(1e-30) +
+            (t12 + t13));
+        const gic_real t15 = t3 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t16 = t1 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[FIVE_LINK_ALPHA_X] - motion[FIVE_LINK_OMEGA_X] * t16) - t4 *
+            (motion[FIVE_LINK_OMEGA_X] * t15 + t1 * motion[FIVE_LINK_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[FIVE_LINK_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
     }
 }
 
+/* Columns, with the names of wheel_r_l:
+ *    0  lower1_r_l.point_a_y
+ *    1  upper1_r_l.point_b_y
+ *    2  tierod_r_l.point_b_y
+ *    3  spring_r_l.point_b_y
+ *    4  upper2_r_l.point_a_y
+ *    5  upper1_r_l.point_a_y
+ *    6  tierod_r_l.point_a_y
+ *    7  spring_r_l.point_a_y
+ *    8  scale of the determinant
+ *    9  wheel_r_l.com_y
+ */
 static const gic_real five_link_k_wheel_r_l[2][10] = {
     { /* wheel_r_l */
         R(0.307086), R(-0.07099299999999997), R(0.03459480000000004), R(-0.00012699999999998823),
@@ -458,11 +630,11 @@ static const gic_real five_link_k_wheel_r_l[2][10] = {
 /* Class 'wheel_r_l': 6 unknowns of wheel_r_l, wheel_r_r.
  * start: pose 7 numbers a body, S from 7, factors from 13. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
+static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
     gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_r_l */
     const gic_real *const rate = links->rate;
     const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
@@ -479,6 +651,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
     if (!links->cold) {
         /* predict: the old pose moved by its unit velocities times the change of the coordinates */
         {
+            /* constraint equations at the poses, and their derivative */
             const gic_real t1 = change[0] * s[3];
             const gic_real t2 = change[0] * s[4];
             const gic_real t3 = change[0] * s[5];
@@ -488,48 +661,51 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t7 = R(0.5) * t6;
             const gic_real t8 = change[0] * s[0];
             const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
+            const gic_real t10 = q[FIVE_LINK_Q_P0] - (q[FIVE_LINK_Q_P3] * t5 + (q[FIVE_LINK_Q_P2] * t7 +
+                q[FIVE_LINK_Q_P1] * t9));
+            const gic_real t11 = q[FIVE_LINK_Q_P3] + (q[FIVE_LINK_Q_P2] * t9 - q[FIVE_LINK_Q_P1] * t7 +
+                q[FIVE_LINK_Q_P0] * t5);
+            const gic_real t12 = q[FIVE_LINK_Q_P2] + (q[FIVE_LINK_Q_P1] * t5 - q[FIVE_LINK_Q_P3] * t9 +
+                q[FIVE_LINK_Q_P0] * t7);
+            const gic_real t13 = q[FIVE_LINK_Q_P1] + (q[FIVE_LINK_Q_P3] * t7 - q[FIVE_LINK_Q_P2] * t5 +
+                q[FIVE_LINK_Q_P0] * t9);
             const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
             const gic_real t15 = R(1.5) - R(0.5) * t14;
             const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(8.319281640348928);
             const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
+            const gic_real t18 = q[FIVE_LINK_Q_X] + t1;
+            const gic_real t19 = q[FIVE_LINK_Q_Y] + t2;
+            const gic_real t20 = q[FIVE_LINK_Q_Z] + t3;
             const gic_real t21 = t10 * t15;
             const gic_real t22 = t13 * t15;
             const gic_real t23 = t12 * t15;
             const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
+            q[FIVE_LINK_Q_X] = t18;
+            q[FIVE_LINK_Q_Y] = t19;
+            q[FIVE_LINK_Q_Z] = t20;
+            q[FIVE_LINK_Q_P0] = t21;
+            q[FIVE_LINK_Q_P1] = t22;
+            q[FIVE_LINK_Q_P2] = t23;
+            q[FIVE_LINK_Q_P3] = t24;
             reach = t17;
         }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding;
-         * not at all where the prediction, which is off by about the square of the way, is that good */
-        for (i = 0; i < GIC_CHORDS && (i || R(4.0) * reach * reach > enough); ++i) {
+        /* correct with the old factors until what a further correction would change is rounding */
+        for (i = 0; i < GIC_CHORDS && (i || !GIC_PREDICTED(reach, enough)); ++i) {
             {
-                const gic_real t1 = q[4] + q[4];
-                const gic_real t2 = q[5] + q[5];
-                const gic_real t3 = q[6] + q[6];
-                const gic_real t4 = q[1] - k[0];
-                const gic_real t5 = q[0] - R(-1.465699);
-                const gic_real t6 = q[4] * t1;
-                const gic_real t7 = q[5] * t2;
-                const gic_real t8 = q[6] * t2;
-                const gic_real t9 = q[3] * t1;
-                const gic_real t10 = q[4] * t3;
-                const gic_real t11 = q[3] * t2;
-                const gic_real t12 = q[6] * t3;
-                const gic_real t13 = q[5] * t1;
-                const gic_real t14 = q[3] * t3;
+                const gic_real t1 = q[FIVE_LINK_Q_P1] + q[FIVE_LINK_Q_P1];
+                const gic_real t2 = q[FIVE_LINK_Q_P2] + q[FIVE_LINK_Q_P2];
+                const gic_real t3 = q[FIVE_LINK_Q_P3] + q[FIVE_LINK_Q_P3];
+                const gic_real t4 = q[FIVE_LINK_Q_Y] - k[0];
+                const gic_real t5 = q[FIVE_LINK_Q_X] - R(-1.465699);
+                const gic_real t6 = q[FIVE_LINK_Q_P1] * t1;
+                const gic_real t7 = q[FIVE_LINK_Q_P2] * t2;
+                const gic_real t8 = q[FIVE_LINK_Q_P3] * t2;
+                const gic_real t9 = q[FIVE_LINK_Q_P0] * t1;
+                const gic_real t10 = q[FIVE_LINK_Q_P1] * t3;
+                const gic_real t11 = q[FIVE_LINK_Q_P0] * t2;
+                const gic_real t12 = q[FIVE_LINK_Q_P3] * t3;
+                const gic_real t13 = q[FIVE_LINK_Q_P2] * t1;
+                const gic_real t14 = q[FIVE_LINK_Q_P0] * t3;
                 const gic_real t15 = R(1.0) - (t6 + t7);
                 const gic_real t16 = t8 + t9;
                 const gic_real t17 = t8 - t9;
@@ -544,30 +720,38 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
                 const gic_real t26 = t13 - t14;
                 const gic_real t27 = R(-0.06000000000000005) * t20;
                 const gic_real t28 = R(0.33401) * t15;
-                const gic_real t29 = q[2] + (R(0.10883900000000002) * t15 + (k[2] * t16 + R(0.10472159999999997) * t18));
-                const gic_real t30 = q[2] + (R(0.079756) * t15 + (k[3] * t16 + R(-0.16944599999999999) * t18));
-                const gic_real t31 = q[2] + (t28 + (t22 + t24)) - R(0.22376380000000007);
-                const gic_real t32 = q[2] + (t28 + t22) - R(0.22759419999999997);
-                const gic_real t33 = q[2] + t24;
+                const gic_real t29 = q[FIVE_LINK_Q_Z] + (R(0.10883900000000002) * t15 + (k[2] * t16 +
+                    R(0.10472159999999997) * t18));
+                const gic_real t30 = q[FIVE_LINK_Q_Z] + (R(0.079756) * t15 + (k[3] * t16 + R(-0.16944599999999999) *
+                    t18));
+                const gic_real t31 = q[FIVE_LINK_Q_Z] + (t28 + (t22 + t24)) - R(0.22376380000000007);
+                const gic_real t32 = q[FIVE_LINK_Q_Z] + (t28 + t22) - R(0.22759419999999997);
+                const gic_real t33 = q[FIVE_LINK_Q_Z] + t24;
                 const gic_real t34 = k[1] * t19;
-                const gic_real t35 = q[1] + (R(0.10883900000000002) * t17 + (k[2] * t19 + R(0.10472159999999997) * t20));
-                const gic_real t36 = q[1] + (R(0.079756) * t17 + (k[3] * t19 + R(-0.16944599999999999) * t20));
+                const gic_real t35 = q[FIVE_LINK_Q_Y] + (R(0.10883900000000002) * t17 + (k[2] * t19 +
+                    R(0.10472159999999997) * t20));
+                const gic_real t36 = q[FIVE_LINK_Q_Y] + (R(0.079756) * t17 + (k[3] * t19 + R(-0.16944599999999999) *
+                    t20));
                 const gic_real t37 = t29 - R(0.058674000000000004);
-                const gic_real t38 = q[1] + (t23 + (t34 + t27)) - k[4];
+                const gic_real t38 = q[FIVE_LINK_Q_Y] + (t23 + (t34 + t27)) - k[4];
                 const gic_real t39 = t30 - R(0.32308800000000004);
-                const gic_real t40 = q[1] + (t23 + t34) - k[5];
-                const gic_real t41 = q[1] + t27 - k[0];
+                const gic_real t40 = q[FIVE_LINK_Q_Y] + (t23 + t34) - k[5];
+                const gic_real t41 = q[FIVE_LINK_Q_Y] + t27 - k[0];
                 const gic_real t42 = R(0.33401) * t25;
                 const gic_real t43 = k[1] * t26;
                 const gic_real t44 = R(-0.06000000000000005) * t21;
-                const gic_real t45 = q[0] + (R(0.10883900000000002) * t25 + (k[2] * t26 + R(0.10472159999999997) * t21));
+                const gic_real t45 = q[FIVE_LINK_Q_X] + (R(0.10883900000000002) * t25 + (k[2] * t26 +
+                    R(0.10472159999999997) * t21));
                 const gic_real t46 = t35 - k[6];
-                const gic_real t47 = q[0] + (t42 + (t43 + t44)) - R(-1.6118633);
-                const gic_real t48 = q[0] + (t42 + t43) - R(-1.3398547);
+                const gic_real t47 = q[FIVE_LINK_Q_X] + (t42 + (t43 + t44)) - R(-1.6118633);
+                const gic_real t48 = q[FIVE_LINK_Q_X] + (t42 + t43) - R(-1.3398547);
                 const gic_real t49 = t36 - k[7];
-                const gic_real t50 = q[0] + (R(0.079756) * t25 + (k[3] * t26 + R(-0.16944599999999999) * t21));
-                const gic_real t51 = q[0] + t44 - R(-1.912231);
-                const gic_real t52 = R(0.26866948516099987) - (q[2] * q[2] + (t4 * t4 + t5 * t5));
+                const gic_real t50 = q[FIVE_LINK_Q_X] + (R(0.079756) * t25 + (k[3] * t26 + R(-0.16944599999999999) *
+                    t21));
+                const gic_real t51 = q[FIVE_LINK_Q_X] + t44 - R(-1.912231);
+                /* pose: the last correction */
+                const gic_real t52 = R(0.26866948516099987) - (q[FIVE_LINK_Q_Z] * q[FIVE_LINK_Q_Z] + (t4 * t4 + t5 *
+                    t5));
                 const gic_real t53 = t45 - R(-1.465699);
                 const gic_real t54 = R(0.14467861041253996) - (t32 * t32 + (t40 * t40 + t48 * t48));
                 const gic_real t55 = R(0.06942663884414002) - (t31 * t31 + (t38 * t38 + t47 * t47));
@@ -575,6 +759,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
                 const gic_real t57 = R(0.1714924505628) - (t37 * t37 + (t46 * t46 + t53 * t53));
                 const gic_real t58 = R(0.29615964100099984) - (t33 * t33 + (t41 * t41 + t51 * t51));
                 const gic_real t59 = x[0] * x[0] - (t39 * t39 + (t49 * t49 + t56 * t56));
+                /* what the bodies add to the inertia and to the equations of motion */
                 const gic_real t60 = t52 * f[0] + t54 * f[6] + t55 * f[12] + t57 * f[18];
                 const gic_real t61 = f[36] * (t60 + t58 * f[24] + t59 * f[30]);
                 const gic_real t62 = t55 - f[12] * t61;
@@ -605,13 +790,17 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
                 const gic_real t87 = f[41] * t85;
                 const gic_real t88 = t69 - f[14] * t74 - f[15] * t87 - f[16] * t83;
                 const gic_real t89 = R(0.5) * t87;
-                const gic_real t90 = q[5] + (q[4] * t89 - q[6] * t84 + q[3] * t86);
-                const gic_real t91 = q[4] + (q[6] * t86 - q[5] * t89 + q[3] * t84);
-                const gic_real t92 = q[6] + (q[5] * t84 - q[4] * t86 + q[3] * t89);
+                const gic_real t90 = q[FIVE_LINK_Q_P2] + (q[FIVE_LINK_Q_P1] * t89 - q[FIVE_LINK_Q_P3] * t84 +
+                    q[FIVE_LINK_Q_P0] * t86);
+                const gic_real t91 = q[FIVE_LINK_Q_P1] + (q[FIVE_LINK_Q_P3] * t86 - q[FIVE_LINK_Q_P2] * t89 +
+                    q[FIVE_LINK_Q_P0] * t84);
+                const gic_real t92 = q[FIVE_LINK_Q_P3] + (q[FIVE_LINK_Q_P2] * t84 - q[FIVE_LINK_Q_P1] * t86 +
+                    q[FIVE_LINK_Q_P0] * t89);
                 const gic_real t93 = f[39] * (t88 - f[17] * t82);
-                const gic_real t94 = q[3] - (q[6] * t89 + (q[5] * t86 + q[4] * t84));
+                const gic_real t94 = q[FIVE_LINK_Q_P0] - (q[FIVE_LINK_Q_P3] * t89 + (q[FIVE_LINK_Q_P2] * t86 +
+                    q[FIVE_LINK_Q_P1] * t84));
                 const gic_real t95 = t63 - f[7] * t68 - f[8] * t93 - f[9] * t87;
-                const gic_real t96 = q[0] + t93;
+                const gic_real t96 = q[FIVE_LINK_Q_X] + t93;
                 const gic_real t97 = t92 * t92 + (t90 * t90 + t91 * t91) + t94 * t94;
                 const gic_real t98 = f[37] * (t95 - f[10] * t83 - f[11] * t82);
                 const gic_real t99 = R(1.5) - R(0.5) * t97;
@@ -620,25 +809,25 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
                 const gic_real t102 = t90 * t99;
                 const gic_real t103 = t92 * t99;
                 const gic_real t104 = t52 - f[0] * t61 - f[1] * t98 - f[2] * t93;
-                const gic_real t105 = q[1] + t98;
+                const gic_real t105 = q[FIVE_LINK_Q_Y] + t98;
                 const gic_real t106 = t104 + f[3] * t87 + f[4] * t83 + f[5] * t82;
                 const gic_real t107 = f[35] * t106;
                 const gic_real t108 = R(8.319281640348928) * (t107 * t107 + (t98 * t98 + t93 * t93));
-                const gic_real t109 = q[2] + t107;
+                const gic_real t109 = q[FIVE_LINK_Q_Z] + t107;
                 const gic_real t110 = t87 * t87 + (t83 * t83 + t82 * t82) + t108;
                 step = t110;
-                q[0] = t96;
-                q[1] = t105;
-                q[2] = t109;
-                q[3] = t100;
-                q[4] = t101;
-                q[5] = t102;
-                q[6] = t103;
+                q[FIVE_LINK_Q_X] = t96;
+                q[FIVE_LINK_Q_Y] = t105;
+                q[FIVE_LINK_Q_Z] = t109;
+                q[FIVE_LINK_Q_P0] = t100;
+                q[FIVE_LINK_Q_P1] = t101;
+                q[FIVE_LINK_Q_P2] = t102;
+                q[FIVE_LINK_Q_P3] = t103;
             }
             ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
+            if (!GIC_LEADS_ON(step))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
+            if (GIC_CORRECTED(step, GIC_MAX(reach, step), enough))
                 break;
             ++self->head.late_count;
         }
@@ -646,22 +835,24 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
     for (i = 0; i < GIC_PASSES; ++i) {
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
-            const gic_real t1 = q[4] + q[4];
-            const gic_real t2 = q[5] + q[5];
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[2] * R(2.0);
-            const gic_real t5 = q[1] - k[0];
-            const gic_real t6 = q[0] - R(-1.465699);
+            const gic_real t1 = q[FIVE_LINK_Q_P1] + q[FIVE_LINK_Q_P1];
+            const gic_real t2 = q[FIVE_LINK_Q_P2] + q[FIVE_LINK_Q_P2];
+            const gic_real t3 = q[FIVE_LINK_Q_P3] + q[FIVE_LINK_Q_P3];
+            /* constraint equations at the poses, and their derivative */
+            const gic_real t4 = q[FIVE_LINK_Q_Z] * R(2.0);
+            const gic_real t5 = q[FIVE_LINK_Q_Y] - k[0];
+            const gic_real t6 = q[FIVE_LINK_Q_X] - R(-1.465699);
+            /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
             const gic_real t7 = x[0] * R(2.0);
-            const gic_real t8 = q[4] * t1;
-            const gic_real t9 = q[5] * t2;
-            const gic_real t10 = q[6] * t2;
-            const gic_real t11 = q[3] * t1;
-            const gic_real t12 = q[4] * t3;
-            const gic_real t13 = q[3] * t2;
-            const gic_real t14 = q[6] * t3;
-            const gic_real t15 = q[5] * t1;
-            const gic_real t16 = q[3] * t3;
+            const gic_real t8 = q[FIVE_LINK_Q_P1] * t1;
+            const gic_real t9 = q[FIVE_LINK_Q_P2] * t2;
+            const gic_real t10 = q[FIVE_LINK_Q_P3] * t2;
+            const gic_real t11 = q[FIVE_LINK_Q_P0] * t1;
+            const gic_real t12 = q[FIVE_LINK_Q_P1] * t3;
+            const gic_real t13 = q[FIVE_LINK_Q_P0] * t2;
+            const gic_real t14 = q[FIVE_LINK_Q_P3] * t3;
+            const gic_real t15 = q[FIVE_LINK_Q_P2] * t1;
+            const gic_real t16 = q[FIVE_LINK_Q_P0] * t3;
             const gic_real t17 = R(1.0) - (t8 + t9);
             const gic_real t18 = t10 + t11;
             const gic_real t19 = t10 - t11;
@@ -680,30 +871,30 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t32 = R(0.079756) * t17 + (k[3] * t18 + R(-0.16944599999999999) * t20);
             const gic_real t33 = t30 + t25;
             const gic_real t34 = t30 + (t25 + t26);
-            const gic_real t35 = q[2] + t26;
+            const gic_real t35 = q[FIVE_LINK_Q_Z] + t26;
             const gic_real t36 = k[1] * t21;
             const gic_real t37 = R(0.10883900000000002) * t19 + (k[2] * t21 + R(0.10472159999999997) * t22);
-            const gic_real t38 = q[2] + t33 - R(0.22759419999999997);
+            const gic_real t38 = q[FIVE_LINK_Q_Z] + t33 - R(0.22759419999999997);
             const gic_real t39 = t35 * R(2.0);
             start[37] = t39;
             const gic_real t40 = t27 + t36;
-            const gic_real t41 = q[2] + t31 - R(0.058674000000000004);
+            const gic_real t41 = q[FIVE_LINK_Q_Z] + t31 - R(0.058674000000000004);
             const gic_real t42 = t27 + (t36 + t29);
-            const gic_real t43 = q[2] + t34 - R(0.22376380000000007);
-            const gic_real t44 = q[2] + t32 - R(0.32308800000000004);
-            const gic_real t45 = q[1] + t40 - k[5];
+            const gic_real t43 = q[FIVE_LINK_Q_Z] + t34 - R(0.22376380000000007);
+            const gic_real t44 = q[FIVE_LINK_Q_Z] + t32 - R(0.32308800000000004);
+            const gic_real t45 = q[FIVE_LINK_Q_Y] + t40 - k[5];
             const gic_real t46 = R(0.079756) * t19 + (k[3] * t21 + R(-0.16944599999999999) * t22);
             const gic_real t47 = t38 * R(2.0);
             start[19] = t47;
             const gic_real t48 = t41 * R(2.0);
             start[31] = t48;
-            const gic_real t49 = q[1] + t37 - k[6];
-            const gic_real t50 = q[1] + t42 - k[4];
+            const gic_real t49 = q[FIVE_LINK_Q_Y] + t37 - k[6];
+            const gic_real t50 = q[FIVE_LINK_Q_Y] + t42 - k[4];
             const gic_real t51 = t43 * R(2.0);
             start[25] = t51;
             const gic_real t52 = t44 * R(2.0);
             start[43] = t52;
-            const gic_real t53 = q[1] + t29 - k[0];
+            const gic_real t53 = q[FIVE_LINK_Q_Y] + t29 - k[0];
             const gic_real t54 = t45 * R(2.0);
             const gic_real t55 = t15 - t16;
             const gic_real t56 = R(0.33401) * t28;
@@ -711,7 +902,7 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t58 = t4 * t4 + t47 * t47 + t51 * t51 + t48 * t48;
             const gic_real t59 = t50 * R(2.0);
             const gic_real t60 = t49 * R(2.0);
-            const gic_real t61 = q[1] + t46 - k[7];
+            const gic_real t61 = q[FIVE_LINK_Q_Y] + t46 - k[7];
             const gic_real t62 = t53 * R(2.0);
             const gic_real t63 = k[1] * t55;
             const gic_real t64 = R(0.10883900000000002) * t28 + (k[2] * t55 + R(0.10472159999999997) * t24);
@@ -720,13 +911,13 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t67 = t61 * R(2.0);
             const gic_real t68 = t56 + t63;
             const gic_real t69 = t6 * R(2.0);
-            const gic_real t70 = q[0] + t57 - R(-1.912231);
+            const gic_real t70 = q[FIVE_LINK_Q_X] + t57 - R(-1.912231);
             const gic_real t71 = (t40 * t38 - t33 * t45) * R(2.0);
             const gic_real t72 = GIC_SQRT(t58 + t39 * t39 + t52 * t52);
-            const gic_real t73 = q[0] + t68 - R(-1.3398547);
-            const gic_real t74 = q[0] + t66 - R(-1.6118633);
-            const gic_real t75 = q[0] + t64 - R(-1.465699);
-            const gic_real t76 = q[0] + t65 - R(-1.792851);
+            const gic_real t73 = q[FIVE_LINK_Q_X] + t68 - R(-1.3398547);
+            const gic_real t74 = q[FIVE_LINK_Q_X] + t66 - R(-1.6118633);
+            const gic_real t75 = q[FIVE_LINK_Q_X] + t64 - R(-1.465699);
+            const gic_real t76 = q[FIVE_LINK_Q_X] + t65 - R(-1.792851);
             const gic_real t77 = t70 * R(2.0);
             const gic_real t78 = (t57 * t53 - t29 * t70) * R(2.0);
             const gic_real t79 = (t26 * t70 - t57 * t35) * R(2.0);
@@ -755,7 +946,8 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t100 = t69 * t95 + t47 * t80 + t51 * t81 + t48 * t83;
             const gic_real t101 = (t29 * t35 - t26 * t53) * R(2.0);
             const gic_real t102 = (t46 * t44 - t32 * t61) * R(2.0);
-            const gic_real t103 = R(0.26866948516099987) - (q[2] * q[2] + (t5 * t5 + t6 * t6));
+            /* pose: the last correction */
+            const gic_real t103 = R(0.26866948516099987) - (q[FIVE_LINK_Q_Z] * q[FIVE_LINK_Q_Z] + (t5 * t5 + t6 * t6));
             const gic_real t104 = R(0.14467861041253996) - (t38 * t38 + (t45 * t45 + t73 * t73));
             const gic_real t105 = t99 * (t98 + t39 * t62 + t52 * t67);
             const gic_real t106 = t99 * (t100 + t39 * t77 + t52 * t84);
@@ -955,61 +1147,67 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t265 = R(1.0) / t263;
             start[58] = t265;
             const gic_real t266 = t92 * t154 * t201 * t237 * t256 * t263 * k[8];
-            const gic_real t267 = t265 * (t251 - t246 * t261);
-            motion[24] = t267;
-            start[7] = t267;
+            const gic_real s_0_0 = t265 * (t251 - t246 * t261);
+            motion[FIVE_LINK_S + 0] = s_0_0;
+            start[7] = s_0_0;
             const gic_real t268 = t265 * (t255 - t246 * t262);
-            const gic_real t269 = t258 * (t252 + t257 * t261 + t264 * t267);
-            const gic_real t270 = rate[0] * t267;
-            motion[12] = t270;
+            const gic_real t269 = t258 * (t252 + t257 * t261 + t264 * s_0_0);
+            const gic_real omega_x = rate[0] * s_0_0;
+            motion[FIVE_LINK_OMEGA_X] = omega_x;
             const gic_real t271 = t258 * (t254 - t257 * t262 - t264 * t268);
             const gic_real t272 = R(0.5) * t268;
-            const gic_real t273 = t270 + turn[0];
-            const gic_real t274 = t247 * t269 - (t230 + t238 * t243) - t250 * t267;
+            /* what the bodies add to the inertia and to the equations of motion */
+            const gic_real t273 = omega_x + turn[0];
+            const gic_real t274 = t247 * t269 - (t230 + t238 * t243) - t250 * s_0_0;
             const gic_real t275 = rate[0] * t269;
             const gic_real t276 = t234 - t238 * t244 - t247 * t271 - t250 * t268;
             const gic_real t277 = R(0.5) * t271;
-            const gic_real t278 = t68 * t275 + t40 * t270;
-            const gic_real t279 = t66 * t275 + t42 * t270;
-            const gic_real t280 = t64 * t275 + t37 * t270;
-            const gic_real t281 = t65 * t275 + t46 * t270;
-            const gic_real t282 = t57 * t275 + t29 * t270;
+            /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+            const gic_real t278 = t68 * t275 + t40 * omega_x;
+            const gic_real t279 = t66 * t275 + t42 * omega_x;
+            const gic_real t280 = t64 * t275 + t37 * omega_x;
+            const gic_real t281 = t65 * t275 + t46 * omega_x;
+            const gic_real t282 = t57 * t275 + t29 * omega_x;
             const gic_real t283 = turn[1] - t275;
-            const gic_real t284 = -t275;
-            motion[13] = t284;
-            const gic_real t285 = -t269;
-            motion[25] = t285;
-            start[8] = t285;
-            const gic_real t286 = t239 * t274;
-            motion[26] = t286;
-            start[9] = t286;
+            const gic_real omega_y = -t275;
+            motion[FIVE_LINK_OMEGA_Y] = omega_y;
+            const gic_real s_0_1 = -t269;
+            motion[FIVE_LINK_S + 1] = s_0_1;
+            start[8] = s_0_1;
+            const gic_real s_0_2 = t239 * t274;
+            motion[FIVE_LINK_S + 2] = s_0_2;
+            start[9] = s_0_2;
             const gic_real t287 = t239 * t276;
-            const gic_real t288 = t224 * t269 - (t196 + t203 * t222 + t223 * t286);
-            const gic_real t289 = rate[0] * t286;
-            motion[14] = t289;
+            const gic_real t288 = t224 * t269 - (t196 + t203 * t222 + t223 * s_0_2);
+            const gic_real omega_z = rate[0] * s_0_2;
+            motion[FIVE_LINK_OMEGA_Z] = omega_z;
             const gic_real t290 = t202 - t203 * t225 - t223 * t287 - t224 * t271;
             const gic_real t291 = R(0.5) * t287;
-            const gic_real t292 = t68 * t289 - t33 * t270;
-            const gic_real t293 = t40 * t289 + t33 * t275;
-            const gic_real t294 = t66 * t289 - t34 * t270;
-            const gic_real t295 = t42 * t289 + t34 * t275;
-            const gic_real t296 = t64 * t289 - t31 * t270;
-            const gic_real t297 = t37 * t289 + t31 * t275;
-            const gic_real t298 = t65 * t289 - t32 * t270;
-            const gic_real t299 = t45 * (t270 * t278 + t289 * t293) + t73 * (t289 * t292 + t275 * t278);
-            const gic_real t300 = t46 * t289 + t32 * t275;
-            const gic_real t301 = t50 * (t270 * t279 + t289 * t295) + t74 * (t289 * t294 + t275 * t279);
-            const gic_real t302 = t57 * t289 - t26 * t270;
-            const gic_real t303 = t29 * t289 + t26 * t275;
-            const gic_real t304 = t49 * (t270 * t280 + t289 * t297) + t75 * (t289 * t296 + t275 * t280);
-            const gic_real t305 = t61 * (t270 * t281 + t289 * t300) + t76 * (t289 * t298 + t275 * t281);
-            const gic_real t306 = t53 * (t270 * t282 + t289 * t303) + t70 * (t289 * t302 + t275 * t282);
-            const gic_real t307 = q[5] + (q[4] * t291 - q[6] * t272 + q[3] * t277);
-            const gic_real t308 = q[4] + (q[6] * t277 - q[5] * t291 + q[3] * t272);
-            const gic_real t309 = q[6] + (q[5] * t272 - q[4] * t277 + q[3] * t291);
-            const gic_real t310 = q[3] - (q[6] * t291 + (q[5] * t277 + q[4] * t272));
-            const gic_real t311 = t289 + turn[2];
-            const gic_real t312 = (GIC_FABS(t270) + GIC_FABS(t284) + GIC_FABS(t289)) * ahead[0];
+            const gic_real t292 = t68 * omega_z - t33 * omega_x;
+            const gic_real t293 = t40 * omega_z + t33 * t275;
+            const gic_real t294 = t66 * omega_z - t34 * omega_x;
+            const gic_real t295 = t42 * omega_z + t34 * t275;
+            const gic_real t296 = t64 * omega_z - t31 * omega_x;
+            const gic_real t297 = t37 * omega_z + t31 * t275;
+            const gic_real t298 = t65 * omega_z - t32 * omega_x;
+            const gic_real t299 = t45 * (omega_x * t278 + omega_z * t293) + t73 * (omega_z * t292 + t275 * t278);
+            const gic_real t300 = t46 * omega_z + t32 * t275;
+            const gic_real t301 = t50 * (omega_x * t279 + omega_z * t295) + t74 * (omega_z * t294 + t275 * t279);
+            const gic_real t302 = t57 * omega_z - t26 * omega_x;
+            const gic_real t303 = t29 * omega_z + t26 * t275;
+            const gic_real t304 = t49 * (omega_x * t280 + omega_z * t297) + t75 * (omega_z * t296 + t275 * t280);
+            const gic_real t305 = t61 * (omega_x * t281 + omega_z * t300) + t76 * (omega_z * t298 + t275 * t281);
+            const gic_real t306 = t53 * (omega_x * t282 + omega_z * t303) + t70 * (omega_z * t302 + t275 * t282);
+            const gic_real t307 = q[FIVE_LINK_Q_P2] + (q[FIVE_LINK_Q_P1] * t291 - q[FIVE_LINK_Q_P3] * t272 +
+                q[FIVE_LINK_Q_P0] * t277);
+            const gic_real t308 = q[FIVE_LINK_Q_P1] + (q[FIVE_LINK_Q_P3] * t277 - q[FIVE_LINK_Q_P2] * t291 +
+                q[FIVE_LINK_Q_P0] * t272);
+            const gic_real t309 = q[FIVE_LINK_Q_P3] + (q[FIVE_LINK_Q_P2] * t272 - q[FIVE_LINK_Q_P1] * t277 +
+                q[FIVE_LINK_Q_P0] * t291);
+            const gic_real t310 = q[FIVE_LINK_Q_P0] - (q[FIVE_LINK_Q_P3] * t291 + (q[FIVE_LINK_Q_P2] * t277 +
+                q[FIVE_LINK_Q_P1] * t272));
+            const gic_real t311 = omega_z + turn[2];
+            const gic_real t312 = (GIC_FABS(omega_x) + GIC_FABS(omega_y) + GIC_FABS(omega_z)) * ahead[0];
             const gic_real t313 = t309 * t309 + (t307 * t307 + t308 * t308) + t310 * t310;
             if (!(t266 - t312 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
@@ -1020,9 +1218,9 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t316 = R(1.0) / -t92;
             start[48] = t316;
             const gic_real t317 = R(1.5) - R(0.5) * t313;
-            const gic_real t318 = t314 * (t288 - t233 * t267);
-            motion[27] = t318;
-            start[10] = t318;
+            const gic_real s_0_3 = t314 * (t288 - t233 * s_0_0);
+            motion[FIVE_LINK_S + 3] = s_0_3;
+            start[10] = s_0_3;
             const gic_real t319 = t314 * (t290 - t233 * t268);
             const gic_real t320 = t308 * t317;
             const gic_real t321 = t307 * t317;
@@ -1031,16 +1229,16 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t324 = t320 + t320;
             const gic_real t325 = t321 + t321;
             const gic_real t326 = t322 + t322;
-            const gic_real t327 = t135 + t155 * t187 + t190 * t318 + t191 * t286;
-            const gic_real t328 = rate[0] * t318;
-            motion[15] = t328;
+            const gic_real t327 = t135 + t155 * t187 + t190 * s_0_3 + t191 * s_0_2;
+            const gic_real velocity_x = rate[0] * s_0_3;
+            motion[FIVE_LINK_VELOCITY_X] = velocity_x;
             const gic_real t329 = t166 - t155 * t200 - t190 * t319 - t191 * t287;
             const gic_real t330 = t321 * t325;
-            const gic_real t331 = t328 - t293;
-            const gic_real t332 = t328 - t295;
-            const gic_real t333 = t328 - t297;
-            const gic_real t334 = t328 - t300;
-            const gic_real t335 = t328 - t303;
+            const gic_real t331 = velocity_x - t293;
+            const gic_real t332 = velocity_x - t295;
+            const gic_real t333 = velocity_x - t297;
+            const gic_real t334 = velocity_x - t300;
+            const gic_real t335 = velocity_x - t303;
             const gic_real t336 = t322 * t326;
             const gic_real t337 = t320 * t324;
             const gic_real t338 = t321 * t324;
@@ -1049,87 +1247,94 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t341 = t323 * t325;
             const gic_real t342 = t322 * t325;
             const gic_real t343 = t323 * t324;
-            const gic_real t344 = R(1.0) - (t330 + t336);
-            motion[3] = t344;
-            const gic_real t345 = R(1.0) - (t337 + t336);
-            motion[7] = t345;
-            const gic_real t346 = t338 - t339;
-            motion[4] = t346;
-            const gic_real t347 = t315 * (t192 * t269 - t327 - t193 * t267);
-            motion[28] = t347;
-            start[11] = t347;
-            const gic_real t348 = t338 + t339;
-            motion[6] = t348;
-            const gic_real t349 = t340 - t341;
-            motion[9] = t349;
+            const gic_real a_xx = R(1.0) - (t330 + t336);
+            motion[FIVE_LINK_A_XX] = a_xx;
+            const gic_real a_yy = R(1.0) - (t337 + t336);
+            motion[FIVE_LINK_A_YY] = a_yy;
+            const gic_real a_xy = t338 - t339;
+            motion[FIVE_LINK_A_XY] = a_xy;
+            const gic_real s_0_4 = t315 * (t192 * t269 - t327 - t193 * s_0_0);
+            motion[FIVE_LINK_S + 4] = s_0_4;
+            start[11] = s_0_4;
+            const gic_real a_yx = t338 + t339;
+            motion[FIVE_LINK_A_YX] = a_yx;
+            const gic_real a_zx = t340 - t341;
+            motion[FIVE_LINK_A_ZX] = a_zx;
             const gic_real t350 = t315 * (t329 - t192 * t271 - t193 * t268);
-            const gic_real t351 = t342 + t343;
-            motion[10] = t351;
-            const gic_real t352 = R(1.0) - (t337 + t330);
-            motion[11] = t352;
-            const gic_real t353 = t340 + t341;
-            motion[5] = t353;
-            const gic_real t354 = t342 - t343;
-            motion[8] = t354;
-            const gic_real t355 = q[0] + t319;
-            motion[0] = t355;
-            const gic_real t356 = t346 * R(2.8083995);
-            const gic_real t357 = t344 * R(0.12192999999999987);
-            const gic_real t358 = t345 * R(2.8083995);
-            const gic_real t359 = t348 * R(0.12192999999999987);
-            const gic_real t360 = R(4.7728205) + (t351 * (t351 * R(2.8083995)) + t349 * (t349 * R(0.12192999999999987)));
-            const gic_real t361 = t353 * R(0.09182100000000004) + (t346 * k[9] + t344 * R(-0.030000000000000027));
-            const gic_real t362 = t149 * t286 - (t95 * t110 + t141 * t347 + t142 * t318);
-            const gic_real t363 = rate[0] * t347;
-            motion[16] = t363;
+            const gic_real a_zy = t342 + t343;
+            motion[FIVE_LINK_A_ZY] = a_zy;
+            const gic_real a_zz = R(1.0) - (t337 + t330);
+            motion[FIVE_LINK_A_ZZ] = a_zz;
+            const gic_real a_xz = t340 + t341;
+            motion[FIVE_LINK_A_XZ] = a_xz;
+            const gic_real a_yz = t342 - t343;
+            motion[FIVE_LINK_A_YZ] = a_yz;
+            const gic_real c_x = q[FIVE_LINK_Q_X] + t319;
+            motion[FIVE_LINK_C_X] = c_x;
+            const gic_real t356 = a_xy * R(2.8083995);
+            const gic_real t357 = a_xx * R(0.12192999999999987);
+            const gic_real t358 = a_yy * R(2.8083995);
+            const gic_real t359 = a_yx * R(0.12192999999999987);
+            const gic_real t360 = R(4.7728205) + (a_zy * (a_zy * R(2.8083995)) + a_zx * (a_zx *
+                R(0.12192999999999987)));
+            const gic_real t361 = a_xz * R(0.09182100000000004) + (a_xy * k[9] + a_xx * R(-0.030000000000000027));
+            const gic_real t362 = t149 * s_0_2 - (t95 * t110 + t141 * s_0_4 + t142 * s_0_3);
+            const gic_real velocity_y = rate[0] * s_0_4;
+            motion[FIVE_LINK_VELOCITY_Y] = velocity_y;
             const gic_real t364 = t103 - t95 * t156 - t141 * t350 - t142 * t319;
-            const gic_real t365 = t354 * R(0.09182100000000004) + (t345 * k[9] + t348 * R(-0.030000000000000027));
-            const gic_real t366 = t363 + t292;
-            const gic_real t367 = t363 + t294;
-            const gic_real t368 = t363 + t296;
-            const gic_real t369 = t363 + t298;
-            const gic_real t370 = t363 + t302;
-            const gic_real t371 = t352 * R(0.09182100000000004) + (t351 * k[9] + t349 * R(-0.030000000000000027));
-            const gic_real t372 = q[1] + t350;
-            motion[1] = t372;
-            const gic_real t373 = t355 + t361;
-            const gic_real t374 = R(4.7728205) + (t346 * t356 + t344 * t357);
-            const gic_real t375 = t316 * (t362 - t152 * t269 + t153 * t267);
-            motion[29] = t375;
-            start[12] = t375;
+            const gic_real t365 = a_yz * R(0.09182100000000004) + (a_yy * k[9] + a_yx * R(-0.030000000000000027));
+            const gic_real t366 = velocity_y + t292;
+            const gic_real t367 = velocity_y + t294;
+            const gic_real t368 = velocity_y + t296;
+            const gic_real t369 = velocity_y + t298;
+            const gic_real t370 = velocity_y + t302;
+            const gic_real t371 = a_zz * R(0.09182100000000004) + (a_zy * k[9] + a_zx * R(-0.030000000000000027));
+            const gic_real c_y = q[FIVE_LINK_Q_Y] + t350;
+            motion[FIVE_LINK_C_Y] = c_y;
+            const gic_real t373 = c_x + t361;
+            const gic_real t374 = R(4.7728205) + (a_xy * t356 + a_xx * t357);
+            const gic_real s_0_5 = t316 * (t362 - t152 * t269 + t153 * s_0_0);
+            motion[FIVE_LINK_S + 5] = s_0_5;
+            start[12] = s_0_5;
             const gic_real t376 = t364 + t149 * t287 + t152 * t271 + t153 * t268;
-            const gic_real t377 = t372 + t365;
-            const gic_real t378 = t275 * t361 + t270 * t365;
-            const gic_real t379 = t289 * t361 - t270 * t371;
-            const gic_real t380 = t289 * t365 + t275 * t371;
-            const gic_real t381 = R(4.7728205) + (t345 * t358 + t348 * t359);
-            const gic_real t382 = t345 * t356 + t348 * t357;
-            const gic_real t383 = t351 * t356 + t349 * t357;
-            const gic_real t384 = t363 + t379;
-            const gic_real t385 = rate[0] * t375;
-            motion[17] = t385;
-            const gic_real t386 = t351 * t358 + t349 * t359;
-            const gic_real t387 = t328 - t380;
+            const gic_real t377 = c_y + t365;
+            const gic_real t378 = t275 * t361 + omega_x * t365;
+            const gic_real t379 = omega_z * t361 - omega_x * t371;
+            const gic_real t380 = omega_z * t365 + t275 * t371;
+            const gic_real t381 = R(4.7728205) + (a_yy * t358 + a_yx * t359);
+            const gic_real t382 = a_yy * t356 + a_yx * t357;
+            const gic_real t383 = a_zy * t356 + a_zx * t357;
+            const gic_real t384 = velocity_y + t379;
+            const gic_real velocity_z = rate[0] * s_0_5;
+            motion[FIVE_LINK_VELOCITY_Z] = velocity_z;
+            const gic_real t386 = a_zy * t358 + a_zx * t359;
+            const gic_real t387 = velocity_x - t380;
             const gic_real t388 = t316 * t376;
-            const gic_real t389 = t318 - (t286 * t365 + t269 * t371);
-            const gic_real t390 = t385 + t278;
-            const gic_real t391 = R(2.0) * (t385 * t385 + (t363 * t363 + t328 * t328));
-            const gic_real t392 = t385 + t279;
-            const gic_real t393 = t390 * t390 + (t366 * t366 + t331 * t331) + (t38 * (t270 * t292 - t275 * t293) - t299);
-            const gic_real t394 = t392 * t392 + (t367 * t367 + t332 * t332) + (t43 * (t270 * t294 - t275 * t295) - t301);
-            const gic_real t395 = t385 + t280;
-            const gic_real t396 = t385 + t281;
-            const gic_real t397 = t385 + t282;
-            const gic_real t398 = q[2] + t388;
-            motion[2] = t398;
-            const gic_real t399 = t385 + t378;
+            const gic_real t389 = s_0_3 - (s_0_2 * t365 + t269 * t371);
+            const gic_real t390 = velocity_z + t278;
+            const gic_real t391 = R(2.0) * (velocity_z * velocity_z + (velocity_y * velocity_y + velocity_x *
+                velocity_x));
+            const gic_real t392 = velocity_z + t279;
+            const gic_real t393 = t390 * t390 + (t366 * t366 + t331 * t331) + (t38 * (omega_x * t292 - t275 * t293) -
+                t299);
+            const gic_real t394 = t392 * t392 + (t367 * t367 + t332 * t332) + (t43 * (omega_x * t294 - t275 * t295) -
+                t301);
+            const gic_real t395 = velocity_z + t280;
+            const gic_real t396 = velocity_z + t281;
+            const gic_real t397 = velocity_z + t282;
+            const gic_real c_z = q[FIVE_LINK_Q_Z] + t388;
+            motion[FIVE_LINK_C_Z] = c_z;
+            const gic_real t399 = velocity_z + t378;
             const gic_real t400 = t360 * t311 + (t386 * t283 + t383 * t273);
-            const gic_real t401 = t395 * t395 + (t368 * t368 + t333 * t333) + (t41 * (t270 * t296 - t275 * t297) - t304);
-            const gic_real t402 = t396 * t396 + (t369 * t369 + t334 * t334) + (t44 * (t270 * t298 - t275 * t300) - t305);
-            const gic_real t403 = t397 * t397 + (t370 * t370 + t335 * t335) + (t35 * (t270 * t302 - t275 * t303) - t306);
+            const gic_real t401 = t395 * t395 + (t368 * t368 + t333 * t333) + (t41 * (omega_x * t296 - t275 * t297) -
+                t304);
+            const gic_real t402 = t396 * t396 + (t369 * t369 + t334 * t334) + (t44 * (omega_x * t298 - t275 * t300) -
+                t305);
+            const gic_real t403 = t397 * t397 + (t370 * t370 + t335 * t335) + (t35 * (omega_x * t302 - t275 * t303) -
+                t306);
             const gic_real t404 = R(2.0) * t393;
             const gic_real t405 = R(2.0) * t394;
-            const gic_real t406 = t398 + t371;
+            const gic_real t406 = c_z + t371;
             const gic_real t407 = t399 + (t399 + (turn[0] * t377 - turn[1] * t373));
             const gic_real t408 = R(2.0) * t401;
             const gic_real t409 = t386 * t311 + (t381 * t283 + t382 * t273);
@@ -1139,60 +1344,61 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t413 = R(2.0) * t403;
             const gic_real t414 = t387 + (t387 + (turn[1] * t406 - turn[2] * t377));
             const gic_real t415 = t383 * t311 + (t382 * t283 + t374 * t273);
-            const gic_real t416 = t347 + (t286 * t361 - t267 * t371);
-            const gic_real t417 = t375 + (t269 * t361 + t267 * t365);
-            const gic_real t418 = turn[1] * t407 - turn[2] * t410 - (t289 * t379 + t275 * t378);
+            const gic_real t416 = s_0_4 + (s_0_2 * t361 - s_0_0 * t371);
+            const gic_real t417 = s_0_5 + (t269 * t361 + s_0_0 * t365);
+            const gic_real t418 = turn[1] * t407 - turn[2] * t410 - (omega_z * t379 + t275 * t378);
             const gic_real t419 = t99 * (t52 * t412 - (t411 + t39 * t413));
-            const gic_real t420 = t286 * t383 + (t267 * t374 - t269 * t382);
-            const gic_real t421 = turn[2] * t414 - turn[0] * t407 - (t270 * t378 + t289 * t380);
-            const gic_real t422 = turn[0] * t410 - turn[1] * t414 + (t270 * t379 - t275 * t380);
-            const gic_real t423 = t286 * t386 + (t267 * t382 - t269 * t381);
-            const gic_real t424 = t286 * t360 + (t267 * t383 - t269 * t386);
+            const gic_real t420 = s_0_2 * t383 + (s_0_0 * t374 - t269 * t382);
+            const gic_real t421 = turn[2] * t414 - turn[0] * t407 - (omega_x * t378 + omega_z * t380);
+            const gic_real t422 = turn[0] * t410 - turn[1] * t414 + (omega_x * t379 - t275 * t380);
+            const gic_real t423 = s_0_2 * t386 + (s_0_0 * t382 - t269 * t381);
+            const gic_real t424 = s_0_2 * t360 + (s_0_0 * t383 - t269 * t386);
             const gic_real t425 = t404 + t47 * t419;
             const gic_real t426 = t405 + t51 * t419;
             const gic_real t427 = t408 + t48 * t419;
             const gic_real t428 = t413 + t39 * t419;
             const gic_real t429 = t412 - t52 * t419;
             const gic_real t430 = R(8.319281640348928) * (t388 * t388 + (t350 * t350 + t319 * t319));
-            const gic_real t431 = R(90.555) * t389;
-            inertia[15] = t431;
-            const gic_real t432 = R(90.555) * t416;
-            inertia[16] = t432;
-            const gic_real t433 = R(90.555) * t373;
-            inertia[0] = t433;
-            const gic_real t434 = R(90.555) * t377;
-            inertia[1] = t434;
-            const gic_real t435 = R(90.555) * t406;
-            inertia[2] = t435;
-            const gic_real t436 = R(90.555) * t417;
-            inertia[17] = t436;
+            const gic_real along_0_force_x = R(90.555) * t389;
+            inertia[FIVE_LINK_I_COORDINATE + 0] = along_0_force_x;
+            const gic_real along_0_force_y = R(90.555) * t416;
+            inertia[FIVE_LINK_I_COORDINATE + 1] = along_0_force_y;
+            const gic_real inertia_first_x = R(90.555) * t373;
+            inertia[FIVE_LINK_I_FIRST_X] = inertia_first_x;
+            const gic_real inertia_first_y = R(90.555) * t377;
+            inertia[FIVE_LINK_I_FIRST_Y] = inertia_first_y;
+            const gic_real inertia_first_z = R(90.555) * t406;
+            inertia[FIVE_LINK_I_FIRST_Z] = inertia_first_z;
+            const gic_real along_0_force_z = R(90.555) * t417;
+            inertia[FIVE_LINK_I_COORDINATE + 2] = along_0_force_z;
             const gic_real t437 = t155 * t425 + t114 * t426 + t115 * t427 + t116 * t428;
-            const gic_real t438 = t286 * t424 + (t267 * t420 - t269 * t423) + (t417 * t436 + (t416 * t432 + t389 * t431));
-            inertia[22] = t438;
-            const gic_real t439 = t377 * t434;
-            const gic_real t440 = t406 * t435;
+            const gic_real mass_0 = s_0_2 * t424 + (s_0_0 * t420 - t269 * t423) + (t417 * along_0_force_z + (t416 *
+                along_0_force_y + t389 * along_0_force_x));
+            inertia[FIVE_LINK_I_COORDINATE + 7] = mass_0;
+            const gic_real t439 = t377 * inertia_first_y;
+            const gic_real t440 = t406 * inertia_first_z;
             const gic_real t441 = t287 * t287 + (t271 * t271 + t268 * t268) + t430;
             step = t441;
-            const gic_real t442 = t373 * t433;
-            const gic_real t443 = t420 + (t377 * t436 - t406 * t432);
-            inertia[18] = t443;
-            const gic_real t444 = t423 + (t406 * t431 - t373 * t436);
-            inertia[19] = t444;
+            const gic_real t442 = t373 * inertia_first_x;
+            const gic_real along_0_moment_x = t420 + (t377 * along_0_force_z - t406 * along_0_force_y);
+            inertia[FIVE_LINK_I_COORDINATE + 3] = along_0_moment_x;
+            const gic_real along_0_moment_y = t423 + (t406 * along_0_force_x - t373 * along_0_force_z);
+            inertia[FIVE_LINK_I_COORDINATE + 4] = along_0_moment_y;
             const gic_real t445 = t158 * (t117 * t429 - t437);
-            const gic_real t446 = t424 + (t373 * t432 - t377 * t431);
-            inertia[20] = t446;
-            const gic_real t447 = t374 + (t439 + t440);
-            inertia[3] = t447;
-            const gic_real t448 = t381 + (t442 + t440);
-            inertia[4] = t448;
-            const gic_real t449 = t360 + (t442 + t439);
-            inertia[5] = t449;
-            const gic_real t450 = t382 - t377 * t433;
-            inertia[6] = t450;
-            const gic_real t451 = t383 - t406 * t433;
-            inertia[7] = t451;
-            const gic_real t452 = t386 - t406 * t434;
-            inertia[8] = t452;
+            const gic_real along_0_moment_z = t424 + (t373 * along_0_force_y - t377 * along_0_force_x);
+            inertia[FIVE_LINK_I_COORDINATE + 5] = along_0_moment_z;
+            const gic_real inertia_second_xx = t374 + (t439 + t440);
+            inertia[FIVE_LINK_I_SECOND_XX] = inertia_second_xx;
+            const gic_real inertia_second_yy = t381 + (t442 + t440);
+            inertia[FIVE_LINK_I_SECOND_YY] = inertia_second_yy;
+            const gic_real inertia_second_zz = t360 + (t442 + t439);
+            inertia[FIVE_LINK_I_SECOND_ZZ] = inertia_second_zz;
+            const gic_real inertia_second_xy = t382 - t377 * inertia_first_x;
+            inertia[FIVE_LINK_I_SECOND_XY] = inertia_second_xy;
+            const gic_real inertia_second_xz = t383 - t406 * inertia_first_x;
+            inertia[FIVE_LINK_I_SECOND_XZ] = inertia_second_xz;
+            const gic_real inertia_second_yz = t386 - t406 * inertia_first_y;
+            inertia[FIVE_LINK_I_SECOND_YZ] = inertia_second_yz;
             const gic_real t453 = t426 + t114 * t445;
             const gic_real t454 = t427 + t115 * t445;
             const gic_real t455 = t428 + t116 * t445;
@@ -1206,60 +1412,60 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
             const gic_real t463 = t461 - t217 * t462;
             const gic_real t464 = t460 + t216 * t462;
             const gic_real t465 = t259 * (t246 * t463 - t257 * t464);
-            const gic_real t466 = t265 * (t463 - t246 * t465);
-            motion[18] = t466;
-            const gic_real t467 = t258 * (t464 + t257 * t465 + t264 * t466);
-            const gic_real t468 = t466 + (t275 * turn[2] + t289 * turn[1]);
-            const gic_real t469 = t247 * t467 - (t459 + t238 * t462) - t250 * t466;
-            const gic_real t470 = t270 * turn[2] - t289 * turn[0] - t467;
-            const gic_real t471 = -t467;
-            motion[19] = t471;
-            const gic_real t472 = t239 * t469;
-            motion[20] = t472;
-            const gic_real t473 = t224 * t467 - (t453 + t203 * t458 + t223 * t472);
-            const gic_real t474 = t472 - (t270 * turn[1] + t275 * turn[0]);
+            const gic_real alpha_x = t265 * (t463 - t246 * t465);
+            motion[FIVE_LINK_ALPHA_X] = alpha_x;
+            const gic_real t467 = t258 * (t464 + t257 * t465 + t264 * alpha_x);
+            const gic_real t468 = alpha_x + (t275 * turn[2] + omega_z * turn[1]);
+            const gic_real t469 = t247 * t467 - (t459 + t238 * t462) - t250 * alpha_x;
+            const gic_real t470 = omega_x * turn[2] - omega_z * turn[0] - t467;
+            const gic_real alpha_y = -t467;
+            motion[FIVE_LINK_ALPHA_Y] = alpha_y;
+            const gic_real alpha_z = t239 * t469;
+            motion[FIVE_LINK_ALPHA_Z] = alpha_z;
+            const gic_real t473 = t224 * t467 - (t453 + t203 * t458 + t223 * alpha_z);
+            const gic_real t474 = alpha_z - (omega_x * turn[1] + t275 * turn[0]);
             const gic_real t475 = t383 * t474 + (t382 * t470 + t374 * t468) + (t283 * t400 - t311 * t409);
-            const gic_real t476 = t314 * (t473 - t233 * t466);
-            motion[21] = t476;
+            const gic_real acceleration_x = t314 * (t473 - t233 * alpha_x);
+            motion[FIVE_LINK_ACCELERATION_X] = acceleration_x;
             const gic_real t477 = t386 * t474 + (t381 * t470 + t382 * t468) + (t311 * t415 - t273 * t400);
             const gic_real t478 = t360 * t474 + (t386 * t470 + t383 * t468) + (t273 * t409 - t283 * t415);
-            const gic_real t479 = t425 + t155 * t445 + t190 * t476 + t191 * t472;
-            const gic_real t480 = R(90.555) * (t476 + (t418 - (t472 * t365 + t467 * t371)));
-            inertia[9] = t480;
-            const gic_real t481 = t315 * (t192 * t467 - t479 - t193 * t466);
-            motion[22] = t481;
-            const gic_real t482 = t391 + t95 * t419 + t141 * t481 + t142 * t476;
-            const gic_real t483 = R(90.555) * (t481 + (t421 + (t472 * t361 - t466 * t371)));
-            inertia[10] = t483;
-            const gic_real t484 = t149 * t472 - t482 - t152 * t467 + t153 * t466;
-            const gic_real t485 = t478 + (t373 * t483 - t377 * t480);
-            inertia[14] = t485;
-            const gic_real t486 = t316 * t484;
-            motion[23] = t486;
-            const gic_real t487 = R(90.555) * (t486 + (t422 + (t467 * t361 + t466 * t365)));
-            inertia[11] = t487;
-            const gic_real t488 = t286 * t478 + (t267 * t475 - t269 * t477) + (t487 * t417 + (t483 * t416 + t480 * t389));
-            inertia[21] = t488;
-            const gic_real t489 = t475 + (t377 * t487 - t406 * t483);
-            inertia[12] = t489;
-            const gic_real t490 = t477 + (t406 * t480 - t373 * t487);
-            inertia[13] = t490;
-            q[0] = t355;
-            q[1] = t372;
-            q[2] = t398;
-            q[3] = t323;
-            q[4] = t320;
-            q[5] = t321;
-            q[6] = t322;
+            const gic_real t479 = t425 + t155 * t445 + t190 * acceleration_x + t191 * alpha_z;
+            const gic_real inertia_force_x = R(90.555) * (acceleration_x + (t418 - (alpha_z * t365 + t467 * t371)));
+            inertia[FIVE_LINK_I_FORCE_X] = inertia_force_x;
+            const gic_real acceleration_y = t315 * (t192 * t467 - t479 - t193 * alpha_x);
+            motion[FIVE_LINK_ACCELERATION_Y] = acceleration_y;
+            const gic_real t482 = t391 + t95 * t419 + t141 * acceleration_y + t142 * acceleration_x;
+            const gic_real inertia_force_y = R(90.555) * (acceleration_y + (t421 + (alpha_z * t361 - alpha_x * t371)));
+            inertia[FIVE_LINK_I_FORCE_Y] = inertia_force_y;
+            const gic_real t484 = t149 * alpha_z - t482 - t152 * t467 + t153 * alpha_x;
+            const gic_real inertia_moment_z = t478 + (t373 * inertia_force_y - t377 * inertia_force_x);
+            inertia[FIVE_LINK_I_MOMENT_Z] = inertia_moment_z;
+            const gic_real acceleration_z = t316 * t484;
+            motion[FIVE_LINK_ACCELERATION_Z] = acceleration_z;
+            const gic_real inertia_force_z = R(90.555) * (acceleration_z + (t422 + (t467 * t361 + alpha_x * t365)));
+            inertia[FIVE_LINK_I_FORCE_Z] = inertia_force_z;
+            const gic_real along_0_bias = s_0_2 * t478 + (s_0_0 * t475 - t269 * t477) + (inertia_force_z * t417 +
+                (inertia_force_y * t416 + inertia_force_x * t389));
+            inertia[FIVE_LINK_I_COORDINATE + 6] = along_0_bias;
+            const gic_real inertia_moment_x = t475 + (t377 * inertia_force_z - t406 * inertia_force_y);
+            inertia[FIVE_LINK_I_MOMENT_X] = inertia_moment_x;
+            const gic_real inertia_moment_y = t477 + (t406 * inertia_force_x - t373 * inertia_force_z);
+            inertia[FIVE_LINK_I_MOMENT_Y] = inertia_moment_y;
+            q[FIVE_LINK_Q_X] = c_x;
+            q[FIVE_LINK_Q_Y] = c_y;
+            q[FIVE_LINK_Q_Z] = c_z;
+            q[FIVE_LINK_Q_P0] = t323;
+            q[FIVE_LINK_Q_P1] = t320;
+            q[FIVE_LINK_Q_P2] = t321;
+            q[FIVE_LINK_Q_P3] = t322;
         }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
         motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
         ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+        if (!GIC_LEADS_ON(step))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
+        if (GIC_IS_ENOUGH(step, enough) || GIC_IS_ROUNDING(step, before, enough)) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1275,165 +1481,218 @@ static int five_link_solve_wheel_r_l(five_link *self, const gic_real *GIC_RESTRI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_r_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = motion[1] - k[0];
-        const gic_real t2 = motion[0] - R(-1.465699);
-        const gic_real t3 = motion[2] * motion[2] + (t1 * t1 + t2 * t2) - R(0.26866948516099987);
-        const gic_real t4 = (GIC_FABS(t2) + GIC_FABS(t1) + GIC_FABS(motion[2])) * R(0.3467025903407703);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = motion[FIVE_LINK_C_Y] - k[0];
+        const gic_real t2 = motion[FIVE_LINK_C_X] - R(-1.465699);
+        const gic_real t3 = motion[FIVE_LINK_C_Z] * motion[FIVE_LINK_C_Z] + (t1 * t1 + t2 * t2) -
+            R(0.26866948516099987);
+        const gic_real t4 = (GIC_FABS(t2) + GIC_FABS(t1) + GIC_FABS(motion[FIVE_LINK_C_Z])) * R(0.3467025903407703);
         const gic_real t5 = R(2.0) / (t4 + R(0.16621788937412377));
-        const gic_real t6 = R(0.33401) * motion[11];
-        const gic_real t7 = k[1] * motion[10];
+        const gic_real t6 = R(0.33401) * motion[FIVE_LINK_A_ZZ];
+        const gic_real t7 = k[1] * motion[FIVE_LINK_A_ZY];
         const gic_real t8 = t6 + t7;
-        const gic_real t9 = motion[2] + t8 - R(0.22759419999999997);
-        const gic_real t10 = R(0.33401) * motion[8];
-        const gic_real t11 = k[1] * motion[7];
+        const gic_real t9 = motion[FIVE_LINK_C_Z] + t8 - R(0.22759419999999997);
+        const gic_real t10 = R(0.33401) * motion[FIVE_LINK_A_YZ];
+        const gic_real t11 = k[1] * motion[FIVE_LINK_A_YY];
         const gic_real t12 = t10 + t11;
-        const gic_real t13 = motion[1] + t12 - k[5];
-        const gic_real t14 = R(0.33401) * motion[5];
-        const gic_real t15 = k[1] * motion[4];
+        const gic_real t13 = motion[FIVE_LINK_C_Y] + t12 - k[5];
+        const gic_real t14 = R(0.33401) * motion[FIVE_LINK_A_XZ];
+        const gic_real t15 = k[1] * motion[FIVE_LINK_A_XY];
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = motion[0] + t16 - R(-1.3398547);
+        const gic_real t17 = motion[FIVE_LINK_C_X] + t16 - R(-1.3398547);
         const gic_real t18 = t9 * t9 + (t13 * t13 + t17 * t17) - R(0.14467861041253996);
         const gic_real t19 = R(0.3467025903407703) * (GIC_FABS(t17) + GIC_FABS(t13) + GIC_FABS(t9));
         const gic_real t20 = R(2.0) / (t19 + R(0.09830762350190249));
         const gic_real t21 = GIC_FABS(R(0.5) * t3 * t5) + GIC_FABS(R(0.5) * t18 * t20);
-        const gic_real t22 = R(-0.06000000000000005) * motion[9];
+        const gic_real t22 = R(-0.06000000000000005) * motion[FIVE_LINK_A_ZX];
         const gic_real t23 = t6 + (t7 + t22);
-        const gic_real t24 = motion[2] + t23 - R(0.22376380000000007);
-        const gic_real t25 = R(-0.06000000000000005) * motion[6];
+        const gic_real t24 = motion[FIVE_LINK_C_Z] + t23 - R(0.22376380000000007);
+        const gic_real t25 = R(-0.06000000000000005) * motion[FIVE_LINK_A_YX];
         const gic_real t26 = t10 + (t11 + t25);
-        const gic_real t27 = motion[1] + t26 - k[4];
-        const gic_real t28 = R(-0.06000000000000005) * motion[3];
+        const gic_real t27 = motion[FIVE_LINK_C_Y] + t26 - k[4];
+        const gic_real t28 = R(-0.06000000000000005) * motion[FIVE_LINK_A_XX];
         const gic_real t29 = t14 + (t15 + t28);
-        const gic_real t30 = motion[0] + t29 - R(-1.6118633);
+        const gic_real t30 = motion[FIVE_LINK_C_X] + t29 - R(-1.6118633);
         const gic_real t31 = t24 * t24 + (t27 * t27 + t30 * t30) - R(0.06942663884414002);
         const gic_real t32 = R(0.3467025903407703) * (GIC_FABS(t30) + GIC_FABS(t27) + GIC_FABS(t24));
         const gic_real t33 = R(2.0) / (t32 + R(0.08787839354134373));
-        const gic_real t34 = R(0.10883900000000002) * motion[11] + (k[2] * motion[10] + R(0.10472159999999997) * motion[9]);
-        const gic_real t35 = motion[2] + t34 - R(0.058674000000000004);
-        const gic_real t36 = R(0.10883900000000002) * motion[8] + (k[2] * motion[7] + R(0.10472159999999997) * motion[6]);
-        const gic_real t37 = motion[1] + t36 - k[6];
-        const gic_real t38 = R(0.10883900000000002) * motion[5] + (k[2] * motion[4] + R(0.10472159999999997) * motion[3]);
-        const gic_real t39 = motion[0] + t38 - R(-1.465699);
+        const gic_real t34 = R(0.10883900000000002) * motion[FIVE_LINK_A_ZZ] + (k[2] * motion[FIVE_LINK_A_ZY] +
+            R(0.10472159999999997) * motion[FIVE_LINK_A_ZX]);
+        const gic_real t35 = motion[FIVE_LINK_C_Z] + t34 - R(0.058674000000000004);
+        const gic_real t36 = R(0.10883900000000002) * motion[FIVE_LINK_A_YZ] + (k[2] * motion[FIVE_LINK_A_YY] +
+            R(0.10472159999999997) * motion[FIVE_LINK_A_YX]);
+        const gic_real t37 = motion[FIVE_LINK_C_Y] + t36 - k[6];
+        const gic_real t38 = R(0.10883900000000002) * motion[FIVE_LINK_A_XZ] + (k[2] * motion[FIVE_LINK_A_XY] +
+            R(0.10472159999999997) * motion[FIVE_LINK_A_XX]);
+        const gic_real t39 = motion[FIVE_LINK_C_X] + t38 - R(-1.465699);
         const gic_real t40 = t35 * t35 + (t37 * t37 + t39 * t39) - R(0.1714924505628);
         const gic_real t41 = R(0.3467025903407703) * (GIC_FABS(t39) + GIC_FABS(t37) + GIC_FABS(t35));
         const gic_real t42 = R(2.0) / (t41 + R(0.1404332016873723));
         const gic_real t43 = t21 + GIC_FABS(R(0.5) * t31 * t33) + GIC_FABS(R(0.5) * t40 * t42);
-        const gic_real t44 = motion[2] + t22;
-        const gic_real t45 = motion[1] + t25 - k[0];
-        const gic_real t46 = motion[0] + t28 - R(-1.912231);
+        const gic_real t44 = motion[FIVE_LINK_C_Z] + t22;
+        const gic_real t45 = motion[FIVE_LINK_C_Y] + t25 - k[0];
+        const gic_real t46 = motion[FIVE_LINK_C_X] + t28 - R(-1.912231);
         const gic_real t47 = t44 * t44 + (t45 * t45 + t46 * t46) - R(0.29615964100099984);
         const gic_real t48 = R(0.3467025903407703) * (GIC_FABS(t46) + GIC_FABS(t45) + GIC_FABS(t44));
         const gic_real t49 = R(2.0) / (R(0.16621788937412377) + t48);
-        const gic_real t50 = R(0.079756) * motion[11] + (k[3] * motion[10] + R(-0.16944599999999999) * motion[9]);
-        const gic_real t51 = motion[2] + t50 - R(0.32308800000000004);
-        const gic_real t52 = R(0.079756) * motion[8] + (k[3] * motion[7] + R(-0.16944599999999999) * motion[6]);
-        const gic_real t53 = motion[1] + t52 - k[7];
-        const gic_real t54 = R(0.079756) * motion[5] + (k[3] * motion[4] + R(-0.16944599999999999) * motion[3]);
-        const gic_real t55 = motion[0] + t54 - R(-1.792851);
+        const gic_real t50 = R(0.079756) * motion[FIVE_LINK_A_ZZ] + (k[3] * motion[FIVE_LINK_A_ZY] +
+            R(-0.16944599999999999) * motion[FIVE_LINK_A_ZX]);
+        const gic_real t51 = motion[FIVE_LINK_C_Z] + t50 - R(0.32308800000000004);
+        const gic_real t52 = R(0.079756) * motion[FIVE_LINK_A_YZ] + (k[3] * motion[FIVE_LINK_A_YY] +
+            R(-0.16944599999999999) * motion[FIVE_LINK_A_YX]);
+        const gic_real t53 = motion[FIVE_LINK_C_Y] + t52 - k[7];
+        const gic_real t54 = R(0.079756) * motion[FIVE_LINK_A_XZ] + (k[3] * motion[FIVE_LINK_A_XY] +
+            R(-0.16944599999999999) * motion[FIVE_LINK_A_XX]);
+        const gic_real t55 = motion[FIVE_LINK_C_X] + t54 - R(-1.792851);
         const gic_real t56 = t51 * t51 + (t53 * t53 + t55 * t55) - x[0] * x[0];
         const gic_real t57 = R(0.3467025903407703) * (GIC_FABS(t55) + GIC_FABS(t53) + GIC_FABS(t51));
         const gic_real t58 = R(2.0) / (t57 + R(0.1253128776579487));
         const gic_real t59 = t43 + GIC_FABS(R(0.5) * t47 * t49) + GIC_FABS(R(0.5) * t56 * t58);
-        const gic_real t60 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t61 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
-        const gic_real t62 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t63 = t59 + GIC_FABS(t60) + GIC_FABS(t61) + t62 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t64 = t63 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t65 = t64 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
-        const gic_real t66 = t5 * (t2 * motion[27] + t1 * motion[28] + motion[2] * motion[29]);
-        const gic_real t67 = (t12 * t9 - t8 * t13) * motion[24] + (t8 * t17 - t16 * t9) * motion[25];
-        const gic_real t68 = t67 + (t16 * t13 - t12 * t17) * motion[26] + t17 * motion[27];
-        const gic_real t69 = GIC_FABS(t20 * (t68 + t13 * motion[28] + t9 * motion[29]));
-        const gic_real t70 = (t26 * t24 - t23 * t27) * motion[24] + (t23 * t30 - t29 * t24) * motion[25];
-        const gic_real t71 = t70 + (t29 * t27 - t26 * t30) * motion[26] + t30 * motion[27];
-        const gic_real t72 = GIC_FABS(t33 * (t71 + t27 * motion[28] + t24 * motion[29]));
-        const gic_real t73 = (t36 * t35 - t34 * t37) * motion[24] + (t34 * t39 - t38 * t35) * motion[25];
-        const gic_real t74 = t73 + (t38 * t37 - t36 * t39) * motion[26] + t39 * motion[27];
-        const gic_real t75 = GIC_FABS(t42 * (t74 + t37 * motion[28] + t35 * motion[29]));
-        const gic_real t76 = (t25 * t44 - t22 * t45) * motion[24] + (t22 * t46 - t28 * t44) * motion[25];
-        const gic_real t77 = t76 + (t28 * t45 - t25 * t46) * motion[26] + t46 * motion[27];
-        const gic_real t78 = GIC_FABS(t49 * (t77 + t45 * motion[28] + t44 * motion[29]));
-        const gic_real t79 = (t52 * t51 - t50 * t53) * motion[24] - x[0] + (t50 * t55 - t54 * t51) * motion[25];
-        const gic_real t80 = t79 + (t54 * t53 - t52 * t55) * motion[26] + t55 * motion[27];
-        const gic_real t81 = GIC_FABS(t58 * (t80 + t53 * motion[28] + t51 * motion[29]));
+        const gic_real t60 = motion[FIVE_LINK_A_ZX] * motion[FIVE_LINK_A_ZX] + (motion[FIVE_LINK_A_YX] *
+            motion[FIVE_LINK_A_YX] + motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_XX]) - R(1.0);
+        const gic_real t61 = motion[FIVE_LINK_A_ZY] * motion[FIVE_LINK_A_ZY] + (motion[FIVE_LINK_A_YY] *
+            motion[FIVE_LINK_A_YY] + motion[FIVE_LINK_A_XY] * motion[FIVE_LINK_A_XY]) - R(1.0);
+        const gic_real t62 = GIC_FABS(motion[FIVE_LINK_A_ZX] * motion[FIVE_LINK_A_ZY] + (motion[FIVE_LINK_A_YX] *
+            motion[FIVE_LINK_A_YY] + motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_XY]));
+        const gic_real t63 = t59 + GIC_FABS(t60) + GIC_FABS(t61) + t62 + GIC_FABS(motion[FIVE_LINK_A_YX] *
+            motion[FIVE_LINK_A_ZY] - motion[FIVE_LINK_A_YY] * motion[FIVE_LINK_A_ZX] - motion[FIVE_LINK_A_XZ]);
+        const gic_real t64 = t63 + GIC_FABS(motion[FIVE_LINK_A_XY] * motion[FIVE_LINK_A_ZX] - motion[FIVE_LINK_A_XX] *
+            motion[FIVE_LINK_A_ZY] - motion[FIVE_LINK_A_YZ]);
+        const gic_real t65 = t64 + GIC_FABS(motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_YY] - motion[FIVE_LINK_A_XY] *
+            motion[FIVE_LINK_A_YX] - motion[FIVE_LINK_A_ZZ]);
+        const gic_real t66 = t5 * (t2 * motion[FIVE_LINK_S + 3] + t1 * motion[FIVE_LINK_S + 4] + motion[FIVE_LINK_C_Z] *
+            motion[FIVE_LINK_S + 5]);
+        const gic_real t67 = (t12 * t9 - t8 * t13) * motion[FIVE_LINK_S + 0] + (t8 * t17 - t16 * t9) *
+            motion[FIVE_LINK_S + 1];
+        const gic_real t68 = t67 + (t16 * t13 - t12 * t17) * motion[FIVE_LINK_S + 2] + t17 * motion[FIVE_LINK_S + 3];
+        const gic_real t69 = GIC_FABS(t20 * (t68 + t13 * motion[FIVE_LINK_S + 4] + t9 * motion[FIVE_LINK_S + 5]));
+        const gic_real t70 = (t26 * t24 - t23 * t27) * motion[FIVE_LINK_S + 0] + (t23 * t30 - t29 * t24) *
+            motion[FIVE_LINK_S + 1];
+        const gic_real t71 = t70 + (t29 * t27 - t26 * t30) * motion[FIVE_LINK_S + 2] + t30 * motion[FIVE_LINK_S + 3];
+        const gic_real t72 = GIC_FABS(t33 * (t71 + t27 * motion[FIVE_LINK_S + 4] + t24 * motion[FIVE_LINK_S + 5]));
+        const gic_real t73 = (t36 * t35 - t34 * t37) * motion[FIVE_LINK_S + 0] + (t34 * t39 - t38 * t35) *
+            motion[FIVE_LINK_S + 1];
+        const gic_real t74 = t73 + (t38 * t37 - t36 * t39) * motion[FIVE_LINK_S + 2] + t39 * motion[FIVE_LINK_S + 3];
+        const gic_real t75 = GIC_FABS(t42 * (t74 + t37 * motion[FIVE_LINK_S + 4] + t35 * motion[FIVE_LINK_S + 5]));
+        const gic_real t76 = (t25 * t44 - t22 * t45) * motion[FIVE_LINK_S + 0] + (t22 * t46 - t28 * t44) *
+            motion[FIVE_LINK_S + 1];
+        const gic_real t77 = t76 + (t28 * t45 - t25 * t46) * motion[FIVE_LINK_S + 2] + t46 * motion[FIVE_LINK_S + 3];
+        const gic_real t78 = GIC_FABS(t49 * (t77 + t45 * motion[FIVE_LINK_S + 4] + t44 * motion[FIVE_LINK_S + 5]));
+        const gic_real t79 = (t52 * t51 - t50 * t53) * motion[FIVE_LINK_S + 0] - x[0] + (t50 * t55 - t54 * t51) *
+            motion[FIVE_LINK_S + 1];
+        const gic_real t80 = t79 + (t54 * t53 - t52 * t55) * motion[FIVE_LINK_S + 2] + t55 * motion[FIVE_LINK_S + 3];
+        const gic_real t81 = GIC_FABS(t58 * (t80 + t53 * motion[FIVE_LINK_S + 4] + t51 * motion[FIVE_LINK_S + 5]));
         const gic_real t82 = GIC_FABS(t66) + t69 + t72 + t75 + t78 + t81;
-        const gic_real t83 = R(2.884316494483386) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28]) + GIC_FABS(motion[29]));
-        const gic_real t84 = t83 + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t83 = R(2.884316494483386) * (GIC_FABS(motion[FIVE_LINK_S + 3]) +
+            GIC_FABS(motion[FIVE_LINK_S + 4]) + GIC_FABS(motion[FIVE_LINK_S + 5]));
+        const gic_real t84 = t83 + (GIC_FABS(motion[FIVE_LINK_S + 0]) + GIC_FABS(motion[FIVE_LINK_S + 1]) +
+            GIC_FABS(motion[FIVE_LINK_S + 2]));
         const gic_real t85 = t84 + GIC_FABS(-(x[0] * t58));
-        const gic_real t86 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(motion[13] - rate[0] * motion[25]);
-        const gic_real t87 = t86 + GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(R(2.884316494483386) * (motion[15] - rate[0] * motion[27]));
-        const gic_real t88 = t87 + GIC_FABS(R(2.884316494483386) * (motion[16] - rate[0] * motion[28])) + GIC_FABS(R(2.884316494483386) * (motion[17] - rate[0] * motion[29]));
-        const gic_real t89 = R(2.884316494483386) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t90 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t86 = GIC_FABS(motion[FIVE_LINK_OMEGA_X] - rate[0] * motion[FIVE_LINK_S + 0]) +
+            GIC_FABS(motion[FIVE_LINK_OMEGA_Y] - rate[0] * motion[FIVE_LINK_S + 1]);
+        const gic_real t87 = t86 + GIC_FABS(motion[FIVE_LINK_OMEGA_Z] - rate[0] * motion[FIVE_LINK_S + 2]) +
+            GIC_FABS(R(2.884316494483386) * (motion[FIVE_LINK_VELOCITY_X] - rate[0] * motion[FIVE_LINK_S + 3]));
+        const gic_real t88 = t87 + GIC_FABS(R(2.884316494483386) * (motion[FIVE_LINK_VELOCITY_Y] - rate[0] *
+            motion[FIVE_LINK_S + 4])) + GIC_FABS(R(2.884316494483386) * (motion[FIVE_LINK_VELOCITY_Z] - rate[0] *
+            motion[FIVE_LINK_S + 5]));
+        const gic_real t89 = R(2.884316494483386) * (GIC_FABS(motion[FIVE_LINK_VELOCITY_X]) +
+            GIC_FABS(motion[FIVE_LINK_VELOCITY_Y]) + GIC_FABS(motion[FIVE_LINK_VELOCITY_Z]));
+        const gic_real t90 = GIC_FABS(motion[FIVE_LINK_OMEGA_X]) + GIC_FABS(motion[FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(motion[FIVE_LINK_OMEGA_Z]);
         const gic_real t91 = t85 * GIC_FABS(rate[0]);
         const gic_real t92 = t82 / (t85 + R(1e-30)) + t88 / (R(1e-30) + (t89 + t90 + t91));
-        const gic_real t93 = motion[17] * motion[17] + (motion[16] * motion[16] + motion[15] * motion[15]) + (motion[2] * motion[23] + (t1 * motion[22] + t2 * motion[21]));
-        const gic_real t94 = t12 * motion[12] - t16 * motion[13];
-        const gic_real t95 = motion[17] + t94;
-        const gic_real t96 = t16 * motion[14] - t8 * motion[12];
-        const gic_real t97 = motion[16] + t96;
-        const gic_real t98 = t8 * motion[13] - t12 * motion[14];
-        const gic_real t99 = motion[15] + t98;
-        const gic_real t100 = motion[12] * t96 - motion[13] * t98 + (t12 * motion[18] - t16 * motion[19]);
-        const gic_real t101 = motion[14] * t98 - motion[12] * t94 + (t16 * motion[20] - t8 * motion[18]);
-        const gic_real t102 = motion[13] * t94 - motion[14] * t96 + (t8 * motion[19] - t12 * motion[20]);
-        const gic_real t103 = t9 * (motion[23] + t100) + (t13 * (motion[22] + t101) + t17 * (motion[21] + t102));
+        const gic_real t93 = motion[FIVE_LINK_VELOCITY_Z] * motion[FIVE_LINK_VELOCITY_Z] +
+            (motion[FIVE_LINK_VELOCITY_Y] * motion[FIVE_LINK_VELOCITY_Y] + motion[FIVE_LINK_VELOCITY_X] *
+            motion[FIVE_LINK_VELOCITY_X]) + (motion[FIVE_LINK_C_Z] * motion[FIVE_LINK_ACCELERATION_Z] + (t1 *
+            motion[FIVE_LINK_ACCELERATION_Y] + t2 * motion[FIVE_LINK_ACCELERATION_X]));
+        const gic_real t94 = t12 * motion[FIVE_LINK_OMEGA_X] - t16 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t95 = motion[FIVE_LINK_VELOCITY_Z] + t94;
+        const gic_real t96 = t16 * motion[FIVE_LINK_OMEGA_Z] - t8 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t97 = motion[FIVE_LINK_VELOCITY_Y] + t96;
+        const gic_real t98 = t8 * motion[FIVE_LINK_OMEGA_Y] - t12 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t99 = motion[FIVE_LINK_VELOCITY_X] + t98;
+        const gic_real t100 = motion[FIVE_LINK_OMEGA_X] * t96 - motion[FIVE_LINK_OMEGA_Y] * t98 + (t12 *
+            motion[FIVE_LINK_ALPHA_X] - t16 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t101 = motion[FIVE_LINK_OMEGA_Z] * t98 - motion[FIVE_LINK_OMEGA_X] * t94 + (t16 *
+            motion[FIVE_LINK_ALPHA_Z] - t8 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t102 = motion[FIVE_LINK_OMEGA_Y] * t94 - motion[FIVE_LINK_OMEGA_Z] * t96 + (t8 *
+            motion[FIVE_LINK_ALPHA_Y] - t12 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t103 = t9 * (motion[FIVE_LINK_ACCELERATION_Z] + t100) + (t13 *
+            (motion[FIVE_LINK_ACCELERATION_Y] + t101) + t17 * (motion[FIVE_LINK_ACCELERATION_X] + t102));
         const gic_real t104 = t95 * t95 + (t97 * t97 + t99 * t99) + t103;
-        const gic_real t105 = t26 * motion[12] - t29 * motion[13];
-        const gic_real t106 = motion[17] + t105;
-        const gic_real t107 = t29 * motion[14] - t23 * motion[12];
-        const gic_real t108 = motion[16] + t107;
-        const gic_real t109 = t23 * motion[13] - t26 * motion[14];
-        const gic_real t110 = motion[15] + t109;
-        const gic_real t111 = motion[12] * t107 - motion[13] * t109 + (t26 * motion[18] - t29 * motion[19]);
-        const gic_real t112 = motion[14] * t109 - motion[12] * t105 + (t29 * motion[20] - t23 * motion[18]);
-        const gic_real t113 = motion[13] * t105 - motion[14] * t107 + (t23 * motion[19] - t26 * motion[20]);
-        const gic_real t114 = t24 * (motion[23] + t111) + (t27 * (motion[22] + t112) + t30 * (motion[21] + t113));
+        const gic_real t105 = t26 * motion[FIVE_LINK_OMEGA_X] - t29 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t106 = motion[FIVE_LINK_VELOCITY_Z] + t105;
+        const gic_real t107 = t29 * motion[FIVE_LINK_OMEGA_Z] - t23 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t108 = motion[FIVE_LINK_VELOCITY_Y] + t107;
+        const gic_real t109 = t23 * motion[FIVE_LINK_OMEGA_Y] - t26 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t110 = motion[FIVE_LINK_VELOCITY_X] + t109;
+        const gic_real t111 = motion[FIVE_LINK_OMEGA_X] * t107 - motion[FIVE_LINK_OMEGA_Y] * t109 + (t26 *
+            motion[FIVE_LINK_ALPHA_X] - t29 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t112 = motion[FIVE_LINK_OMEGA_Z] * t109 - motion[FIVE_LINK_OMEGA_X] * t105 + (t29 *
+            motion[FIVE_LINK_ALPHA_Z] - t23 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t113 = motion[FIVE_LINK_OMEGA_Y] * t105 - motion[FIVE_LINK_OMEGA_Z] * t107 + (t23 *
+            motion[FIVE_LINK_ALPHA_Y] - t26 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t114 = t24 * (motion[FIVE_LINK_ACCELERATION_Z] + t111) + (t27 *
+            (motion[FIVE_LINK_ACCELERATION_Y] + t112) + t30 * (motion[FIVE_LINK_ACCELERATION_X] + t113));
         const gic_real t115 = t106 * t106 + (t108 * t108 + t110 * t110) + t114;
         const gic_real t116 = GIC_FABS(t93 * t5) + GIC_FABS(t104 * t20) + GIC_FABS(t115 * t33);
-        const gic_real t117 = t36 * motion[12] - t38 * motion[13];
-        const gic_real t118 = motion[17] + t117;
-        const gic_real t119 = t38 * motion[14] - t34 * motion[12];
-        const gic_real t120 = motion[16] + t119;
-        const gic_real t121 = t34 * motion[13] - t36 * motion[14];
-        const gic_real t122 = motion[15] + t121;
-        const gic_real t123 = motion[12] * t119 - motion[13] * t121 + (t36 * motion[18] - t38 * motion[19]);
-        const gic_real t124 = motion[14] * t121 - motion[12] * t117 + (t38 * motion[20] - t34 * motion[18]);
-        const gic_real t125 = motion[13] * t117 - motion[14] * t119 + (t34 * motion[19] - t36 * motion[20]);
-        const gic_real t126 = t35 * (motion[23] + t123) + (t37 * (motion[22] + t124) + t39 * (motion[21] + t125));
+        const gic_real t117 = t36 * motion[FIVE_LINK_OMEGA_X] - t38 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t118 = motion[FIVE_LINK_VELOCITY_Z] + t117;
+        const gic_real t119 = t38 * motion[FIVE_LINK_OMEGA_Z] - t34 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t120 = motion[FIVE_LINK_VELOCITY_Y] + t119;
+        const gic_real t121 = t34 * motion[FIVE_LINK_OMEGA_Y] - t36 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t122 = motion[FIVE_LINK_VELOCITY_X] + t121;
+        const gic_real t123 = motion[FIVE_LINK_OMEGA_X] * t119 - motion[FIVE_LINK_OMEGA_Y] * t121 + (t36 *
+            motion[FIVE_LINK_ALPHA_X] - t38 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t124 = motion[FIVE_LINK_OMEGA_Z] * t121 - motion[FIVE_LINK_OMEGA_X] * t117 + (t38 *
+            motion[FIVE_LINK_ALPHA_Z] - t34 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t125 = motion[FIVE_LINK_OMEGA_Y] * t117 - motion[FIVE_LINK_OMEGA_Z] * t119 + (t34 *
+            motion[FIVE_LINK_ALPHA_Y] - t36 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t126 = t35 * (motion[FIVE_LINK_ACCELERATION_Z] + t123) + (t37 *
+            (motion[FIVE_LINK_ACCELERATION_Y] + t124) + t39 * (motion[FIVE_LINK_ACCELERATION_X] + t125));
         const gic_real t127 = t118 * t118 + (t120 * t120 + t122 * t122) + t126;
-        const gic_real t128 = t25 * motion[12] - t28 * motion[13];
-        const gic_real t129 = motion[17] + t128;
-        const gic_real t130 = t28 * motion[14] - t22 * motion[12];
-        const gic_real t131 = motion[16] + t130;
-        const gic_real t132 = t22 * motion[13] - t25 * motion[14];
-        const gic_real t133 = motion[15] + t132;
-        const gic_real t134 = motion[12] * t130 - motion[13] * t132 + (t25 * motion[18] - t28 * motion[19]);
-        const gic_real t135 = motion[14] * t132 - motion[12] * t128 + (t28 * motion[20] - t22 * motion[18]);
-        const gic_real t136 = motion[13] * t128 - motion[14] * t130 + (t22 * motion[19] - t25 * motion[20]);
-        const gic_real t137 = t44 * (motion[23] + t134) + (t45 * (motion[22] + t135) + t46 * (motion[21] + t136));
+        const gic_real t128 = t25 * motion[FIVE_LINK_OMEGA_X] - t28 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t129 = motion[FIVE_LINK_VELOCITY_Z] + t128;
+        const gic_real t130 = t28 * motion[FIVE_LINK_OMEGA_Z] - t22 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t131 = motion[FIVE_LINK_VELOCITY_Y] + t130;
+        const gic_real t132 = t22 * motion[FIVE_LINK_OMEGA_Y] - t25 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t133 = motion[FIVE_LINK_VELOCITY_X] + t132;
+        const gic_real t134 = motion[FIVE_LINK_OMEGA_X] * t130 - motion[FIVE_LINK_OMEGA_Y] * t132 + (t25 *
+            motion[FIVE_LINK_ALPHA_X] - t28 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t135 = motion[FIVE_LINK_OMEGA_Z] * t132 - motion[FIVE_LINK_OMEGA_X] * t128 + (t28 *
+            motion[FIVE_LINK_ALPHA_Z] - t22 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t136 = motion[FIVE_LINK_OMEGA_Y] * t128 - motion[FIVE_LINK_OMEGA_Z] * t130 + (t22 *
+            motion[FIVE_LINK_ALPHA_Y] - t25 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t137 = t44 * (motion[FIVE_LINK_ACCELERATION_Z] + t134) + (t45 *
+            (motion[FIVE_LINK_ACCELERATION_Y] + t135) + t46 * (motion[FIVE_LINK_ACCELERATION_X] + t136));
         const gic_real t138 = t129 * t129 + (t131 * t131 + t133 * t133) + t137;
         const gic_real t139 = t116 + GIC_FABS(t127 * t42) + GIC_FABS(t138 * t49);
-        const gic_real t140 = t52 * motion[12] - t54 * motion[13];
-        const gic_real t141 = motion[17] + t140;
-        const gic_real t142 = t54 * motion[14] - t50 * motion[12];
-        const gic_real t143 = motion[16] + t142;
-        const gic_real t144 = t50 * motion[13] - t52 * motion[14];
-        const gic_real t145 = motion[15] + t144;
-        const gic_real t146 = motion[12] * t142 - motion[13] * t144 + (t52 * motion[18] - t54 * motion[19]);
-        const gic_real t147 = motion[14] * t144 - motion[12] * t140 + (t54 * motion[20] - t50 * motion[18]);
-        const gic_real t148 = motion[13] * t140 - motion[14] * t142 + (t50 * motion[19] - t52 * motion[20]);
-        const gic_real t149 = t51 * (motion[23] + t146) + (t53 * (motion[22] + t147) + t55 * (motion[21] + t148));
+        const gic_real t140 = t52 * motion[FIVE_LINK_OMEGA_X] - t54 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t141 = motion[FIVE_LINK_VELOCITY_Z] + t140;
+        const gic_real t142 = t54 * motion[FIVE_LINK_OMEGA_Z] - t50 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t143 = motion[FIVE_LINK_VELOCITY_Y] + t142;
+        const gic_real t144 = t50 * motion[FIVE_LINK_OMEGA_Y] - t52 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t145 = motion[FIVE_LINK_VELOCITY_X] + t144;
+        const gic_real t146 = motion[FIVE_LINK_OMEGA_X] * t142 - motion[FIVE_LINK_OMEGA_Y] * t144 + (t52 *
+            motion[FIVE_LINK_ALPHA_X] - t54 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t147 = motion[FIVE_LINK_OMEGA_Z] * t144 - motion[FIVE_LINK_OMEGA_X] * t140 + (t54 *
+            motion[FIVE_LINK_ALPHA_Z] - t50 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t148 = motion[FIVE_LINK_OMEGA_Y] * t140 - motion[FIVE_LINK_OMEGA_Z] * t142 + (t50 *
+            motion[FIVE_LINK_ALPHA_Y] - t52 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t149 = t51 * (motion[FIVE_LINK_ACCELERATION_Z] + t146) + (t53 *
+            (motion[FIVE_LINK_ACCELERATION_Y] + t147) + t55 * (motion[FIVE_LINK_ACCELERATION_X] + t148));
         const gic_real t150 = t141 * t141 + (t143 * t143 + t145 * t145) + t149;
-        const gic_real t151 = R(2.884316494483386) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22]) + GIC_FABS(motion[23]));
-        const gic_real t152 = t151 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t151 = R(2.884316494483386) * (GIC_FABS(motion[FIVE_LINK_ACCELERATION_X]) +
+            GIC_FABS(motion[FIVE_LINK_ACCELERATION_Y]) + GIC_FABS(motion[FIVE_LINK_ACCELERATION_Z]));
+        const gic_real t152 = t151 + (GIC_FABS(motion[FIVE_LINK_ALPHA_X]) + GIC_FABS(motion[FIVE_LINK_ALPHA_Y]) +
+            GIC_FABS(motion[FIVE_LINK_ALPHA_Z]));
         const gic_real t153 = t89 * t89 + t90 * t90 + t152 + t91 * t91;
         const gic_real t154 = (t139 + GIC_FABS((t150 - rate[0] * rate[0]) * t58)) / (R(1e-30) + t153);
         const gic_real t155 = t92 + t154;
@@ -1442,6 +1701,23 @@ static GIC_COLD void five_link_residual_wheel_r_l(const gic_real *GIC_RESTRICT k
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.axis_a_y
+ *    5  upper_f_l.axis_a_y * (-0.059522)
+ *    6  sign
+ *    7  sign * 2.92808
+ *    8  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *    9  upper_f_l.point_b_y * 8.57363
+ *   10  from tierod_f_l.point_b, upper_f_l.point_b
+ *   11  from upper_f_l.point_b, tierod_f_l.point_b
+ *   12  wheel_f_l.com_y
+ *   13  tierod_f_l.point_b_y
+ *   14  upper_f_l.point_b_y
+ */
 static const gic_real five_link_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
@@ -1460,8 +1736,9 @@ static const gic_real five_link_k_wheel_f_l[2][15] = {
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -1470,37 +1747,40 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = t1 + k[2];
-        motion[1] = t4;
-        const gic_real t5 = R(0.23411769999999998) - t2;
-        const gic_real t6 = R(0.05422899999999997) - t2;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = k[3] - t4;
+        const gic_real t1 = k[0] * m1[FIVE_LINK_A_YY];
+        const gic_real c_z = k[0] * m1[FIVE_LINK_A_ZY];
+        motion[FIVE_LINK_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[FIVE_LINK_C_Y];
+        const gic_real c_y = t1 + k[2];
+        motion[FIVE_LINK_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t5 = R(0.23411769999999998) - c_z;
+        const gic_real t6 = R(0.05422899999999997) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[FIVE_LINK_S + 0] * c_z;
+        const gic_real s_1_5 = m1[FIVE_LINK_S + 0] * t1;
+        motion[FIVE_LINK_S + 11] = s_1_5;
+        const gic_real t9 = m1[FIVE_LINK_OMEGA_X] * (m1[FIVE_LINK_OMEGA_X] * t1) + m1[FIVE_LINK_ALPHA_X] * c_z;
+        const gic_real t10 = k[3] - c_y;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
-        const gic_real t12 = t3 - t4;
-        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t12 = t3 - c_y;
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * s_1_5;
         const gic_real t14 = rate[1] * t7;
         const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
         const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t19;
-        const gic_real t20 = rate[1] * t8;
-        motion[17] = t20;
-        const gic_real t21 = -t14;
-        motion[16] = t21;
-        const gic_real t22 = -t9;
-        motion[22] = t22;
-        const gic_real t23 = -t7;
-        motion[34] = t23;
+        const gic_real acceleration_z = m1[FIVE_LINK_ALPHA_X] * t1 - m1[FIVE_LINK_OMEGA_X] * (m1[FIVE_LINK_OMEGA_X] *
+            c_z);
+        motion[FIVE_LINK_ACCELERATION_Z] = acceleration_z;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[FIVE_LINK_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t14;
+        motion[FIVE_LINK_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t9;
+        motion[FIVE_LINK_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[FIVE_LINK_S + 10] = s_1_4;
         const gic_real t24 = R(0.5) * (R(0.04548219048831004) + t15);
         const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
         const gic_real t26 = R(4.3116545195287515e-08) + t16;
@@ -1518,8 +1798,9 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
         const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
         const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
-        const gic_real t37 = t34 + (t2 - R(0.23411769999999998));
-        const gic_real t38 = t35 + (t4 - k[3]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t37 = t34 + (c_z - R(0.23411769999999998));
+        const gic_real t38 = t35 + (c_y - k[3]);
         const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
         const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
         const gic_real t41 = t36 + R(0.059522000000000075);
@@ -1528,7 +1809,7 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t44 = t35 * t37 - t34 * t38;
         const gic_real t45 = t36 * t38 - t35 * t41;
         const gic_real t46 = t34 * t41 - t36 * t37;
-        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t47 = t7 * t38 - s_1_5 * t37;
         const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
         const gic_real t49 = R(8.573627050492615) * t40;
         const gic_real t50 = t44 * t43 - t45 * t39;
@@ -1554,39 +1835,40 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t66 = t35 * t62 - t34 * t61;
         const gic_real t67 = t63 + R(0.2910617987184667) * t36;
         const gic_real t68 = t34 * t63 - t36 * t62;
-        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t69 = t64 + (c_y - t3);
         const gic_real t70 = t36 * t61 - t35 * t63;
-        const gic_real t71 = t65 + (t2 - R(0.05422899999999997));
-        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
-        motion[4] = t72;
+        const gic_real t71 = t65 + (c_z - R(0.05422899999999997));
+        const gic_real a_xy = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[FIVE_LINK_A_XY] = a_xy;
         const gic_real t73 = t67 + R(0.2147570000000001);
-        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
-        motion[7] = t74;
-        const gic_real t75 = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
-        motion[8] = t75;
+        const gic_real a_yy = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[FIVE_LINK_A_YY] = a_yy;
+        const gic_real a_yz = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
+        motion[FIVE_LINK_A_YZ] = a_yz;
         const gic_real t76 = t67 * t69 - t64 * t73;
         const gic_real t77 = t65 * t73 - t67 * t71;
         const gic_real t78 = t64 * t71 - t65 * t69;
-        const gic_real t79 = t7 * t69 - t8 * t71;
-        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
-        motion[10] = t80;
-        const gic_real t81 = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
-        motion[11] = t81;
+        const gic_real t79 = t7 * t69 - s_1_5 * t71;
+        const gic_real a_zy = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[FIVE_LINK_A_ZY] = a_zy;
+        const gic_real a_zz = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
+        motion[FIVE_LINK_A_ZZ] = a_zz;
         const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
-        const gic_real t83 = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
-        motion[5] = t83;
-        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
-        motion[6] = t84;
-        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
-        motion[9] = t85;
-        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
-        motion[3] = t86;
+        const gic_real a_xz = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
+        motion[FIVE_LINK_A_XZ] = a_xz;
+        const gic_real a_yx = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
+        motion[FIVE_LINK_A_YX] = a_yx;
+        const gic_real a_zx = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
+        motion[FIVE_LINK_A_ZX] = a_zx;
+        const gic_real a_xx = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
+        motion[FIVE_LINK_A_XX] = a_xx;
         const gic_real t87 = R(1.0) / t82;
-        const gic_real t88 = R(2.8083995) * t74;
-        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182100000000004) * t75 + k[12] * t74);
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182100000000004) * t81 + k[12] * t80);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t83 + k[12] * t72);
-        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(2.8083995) * t80));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t88 = R(2.8083995) * a_yy;
+        const gic_real t89 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + k[12] * a_yy);
+        const gic_real t90 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz + k[12] * a_zy);
+        const gic_real t91 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + k[12] * a_xy);
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(2.8083995) * a_zy));
         const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
         const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
         const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
@@ -1596,173 +1878,175 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
         const gic_real t99 = t51 * t87;
         const gic_real t100 = t52 * t87;
         const gic_real t101 = t50 * t87;
-        const gic_real t102 = t4 + t89;
-        const gic_real t103 = t2 + t90;
+        const gic_real t102 = c_y + t89;
+        const gic_real t103 = c_z + t90;
         const gic_real t104 = R(1.653405) + t91;
-        const gic_real t105 = R(0.12192999999999987) * t86;
-        const gic_real t106 = R(2.8083995) * t72;
-        const gic_real t107 = t69 * t99;
-        motion[26] = t107;
-        const gic_real t108 = t69 * t100;
-        motion[24] = t108;
-        const gic_real t109 = t69 * t101;
-        motion[25] = t109;
-        const gic_real t110 = R(0.12192999999999987) * t84;
-        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
-        motion[32] = t111;
-        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
-        motion[30] = t112;
-        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
-        motion[31] = t113;
-        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
-        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
-        const gic_real t116 = t74 * t106 + t84 * t105;
-        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
-        motion[14] = t117;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[12] = t118;
-        const gic_real t119 = t80 * t106 + t85 * t105;
-        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
-        motion[13] = t120;
-        const gic_real t121 = t80 * t88 + t85 * t110;
-        const gic_real t122 = t108 * t89 - t109 * t91;
-        const gic_real t123 = turn[2] + t117;
-        const gic_real t124 = t36 * t117 - t34 * t118;
-        const gic_real t125 = t67 * t117 - t65 * t118;
-        const gic_real t126 = t65 * t120 - t64 * t117;
-        const gic_real t127 = t64 * t118 - t67 * t120;
-        const gic_real t128 = t34 * t120 - t35 * t117;
-        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t105 = R(0.12192999999999987) * a_xx;
+        const gic_real t106 = R(2.8083995) * a_xy;
+        const gic_real s_0_2 = t69 * t99;
+        motion[FIVE_LINK_S + 2] = s_0_2;
+        const gic_real s_0_0 = t69 * t100;
+        motion[FIVE_LINK_S + 0] = s_0_0;
+        const gic_real s_0_1 = t69 * t101;
+        motion[FIVE_LINK_S + 1] = s_0_1;
+        const gic_real t110 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[FIVE_LINK_S + 8] = s_1_2;
+        const gic_real s_1_0 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[FIVE_LINK_S + 6] = s_1_0;
+        const gic_real s_1_1 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[FIVE_LINK_S + 7] = s_1_1;
+        const gic_real t114 = a_yx * t110 + (R(4.7728205) + a_yy * t88);
+        const gic_real t115 = a_xx * t105 + (R(4.7728205) + a_xy * t106);
+        const gic_real t116 = a_yy * t106 + a_yx * t105;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[FIVE_LINK_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[FIVE_LINK_OMEGA_X] = omega_x;
+        const gic_real t119 = a_zy * t106 + a_zx * t105;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[FIVE_LINK_OMEGA_Y] = omega_y;
+        const gic_real t121 = a_zy * t88 + a_zx * t110;
+        const gic_real t122 = s_0_0 * t89 - s_0_1 * t91;
+        const gic_real t123 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t124 = t36 * omega_z - t34 * omega_x;
+        const gic_real t125 = t67 * omega_z - t65 * omega_x;
+        const gic_real t126 = t65 * omega_y - t64 * omega_z;
+        const gic_real t127 = t64 * omega_x - t67 * omega_y;
+        const gic_real t128 = t34 * omega_y - t35 * omega_z;
+        const gic_real t129 = t35 * omega_x - t36 * omega_y;
         const gic_real t130 = t124 - t14;
-        const gic_real t131 = t125 - (m0[16] + t14);
-        const gic_real t132 = t118 * t89 - t120 * t91;
-        const gic_real t133 = t117 * t91 - t118 * t90;
-        const gic_real t134 = t20 + t127;
-        const gic_real t135 = t118 * t124 - t120 * t128;
-        const gic_real t136 = t20 + t129;
-        const gic_real t137 = t120 * t129 - t117 * t124;
-        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
-        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
-        const gic_real t140 = t117 * t128 - t118 * t129;
-        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
-        const gic_real t142 = t120 * t90 - t117 * t89;
-        const gic_real t143 = t20 + t132;
-        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
-        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t131 = t125 - (m0[FIVE_LINK_VELOCITY_Y] + t14);
+        const gic_real t132 = omega_x * t89 - omega_y * t91;
+        const gic_real t133 = omega_z * t91 - omega_x * t90;
+        const gic_real t134 = velocity_z + t127;
+        const gic_real t135 = omega_x * t124 - omega_y * t128;
+        const gic_real t136 = velocity_z + t129;
+        const gic_real t137 = omega_y * t129 - omega_z * t124;
+        const gic_real t138 = t9 * t69 - acceleration_z * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - acceleration_z * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = omega_z * t128 - omega_x * t129;
+        const gic_real t141 = t71 * (omega_x * t125 - omega_y * t126) + t69 * (omega_z * t126 - omega_x * t127);
+        const gic_real t142 = omega_y * t90 - omega_z * t89;
+        const gic_real t143 = velocity_z + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * acceleration_z - R(0.21526024724178433) * t135 -
+            (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (omega_y * t127 - omega_z * t125);
         const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
         const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
         const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
         const gic_real t149 = t133 - t14;
-        const gic_real t150 = turn[1] + t120;
-        const gic_real t151 = turn[0] + t118;
-        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t150 = turn[1] + omega_y;
+        const gic_real t151 = turn[0] + omega_x;
+        const gic_real t152 = s_0_0 * t115 + (s_0_2 * t119 + s_0_1 * t116);
         const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
         const gic_real t154 = t145 - t141;
         const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
         const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
-        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
-        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
-        motion[18] = t158;
-        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
-        motion[19] = t159;
-        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
-        motion[20] = t160;
-        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t157 = acceleration_z + omega_x * t133 - omega_y * t142 - turn[1] * t147;
+        const gic_real alpha_x = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[FIVE_LINK_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[FIVE_LINK_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[FIVE_LINK_ALPHA_Z] = alpha_z;
+        const gic_real t161 = turn[2] * t147 + (omega_z * t142 - t9 - omega_x * t132);
         const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
-        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
-        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
-        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
-        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
-        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
-        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
-        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
-        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
-        inertia[9] = t170;
+        const gic_real t163 = turn[1] * t148 + (omega_y * t132 - omega_z * t133) - turn[2] * t153;
+        const gic_real t164 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t165 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t166 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t167 = alpha_x * t89 + (turn[0] * t153 + t157) - alpha_y * t91;
+        const gic_real t168 = alpha_z * t91 + (t161 - turn[0] * t148) - alpha_x * t90;
+        const gic_real t169 = s_0_0 * t116 + (s_0_2 * t121 + s_0_1 * t114);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t90 + t163 - alpha_z * t89);
+        inertia[FIVE_LINK_I_FORCE_X] = inertia_force_x;
         const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
         const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
         const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
-        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
-        const gic_real t175 = t113 * t90 - t111 * t89;
-        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
-        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
-        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
-        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
-        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
-        const gic_real t181 = t109 * t90 - t107 * t89;
-        const gic_real t182 = t107 * t91 - t108 * t90;
-        const gic_real t183 = R(90.555) * t167;
-        inertia[11] = t183;
-        const gic_real t184 = R(90.555) * t122;
-        inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t175;
-        inertia[22] = t185;
-        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
-        const gic_real t187 = R(90.555) * t104;
-        inertia[0] = t187;
-        const gic_real t188 = R(90.555) * t102;
-        inertia[1] = t188;
-        const gic_real t189 = R(90.555) * t168;
-        inertia[10] = t189;
-        const gic_real t190 = R(90.555) * t181;
-        inertia[15] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[16] = t191;
-        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
-        const gic_real t193 = R(90.555) * t176;
-        inertia[23] = t193;
-        const gic_real t194 = R(90.555) * t177;
-        inertia[24] = t194;
-        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        const gic_real t174 = s_0_0 * t119 + (s_0_2 * t92 + s_0_1 * t121);
+        const gic_real t175 = s_1_1 * t90 - s_1_2 * t89;
+        const gic_real t176 = s_1_2 * t91 - t7 - s_1_0 * t90;
+        const gic_real t177 = s_1_5 + s_1_0 * t89 - s_1_1 * t91;
+        const gic_real t178 = s_1_0 * t115 + (s_1_2 * t119 + s_1_1 * t116);
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t121 + s_1_1 * t114);
+        const gic_real t180 = s_1_0 * t119 + (s_1_2 * t92 + s_1_1 * t121);
+        const gic_real t181 = s_0_1 * t90 - s_0_2 * t89;
+        const gic_real t182 = s_0_2 * t91 - s_0_0 * t90;
+        const gic_real inertia_force_z = R(90.555) * t167;
+        inertia[FIVE_LINK_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t122;
+        inertia[FIVE_LINK_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t175;
+        inertia[FIVE_LINK_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t186 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t104;
+        inertia[FIVE_LINK_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t102;
+        inertia[FIVE_LINK_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t168;
+        inertia[FIVE_LINK_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t181;
+        inertia[FIVE_LINK_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t182;
+        inertia[FIVE_LINK_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t192 = s_0_2 * t173 + s_0_1 * t172 + (s_0_0 * t171 + inertia_force_z * t122);
+        const gic_real along_1_force_y = R(90.555) * t176;
+        inertia[FIVE_LINK_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t177;
+        inertia[FIVE_LINK_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t195 = s_1_2 * t173 + s_1_1 * t172 + (s_1_0 * t171 + inertia_force_z * t177);
         if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
-        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
-        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
-        const gic_real t199 = R(90.555) * t103;
-        inertia[2] = t199;
-        const gic_real t200 = t102 * t188;
-        const gic_real t201 = t104 * t187;
-        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
-        inertia[12] = t202;
-        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
-        inertia[13] = t203;
-        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
-        inertia[14] = t204;
-        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
-        inertia[18] = t205;
-        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
-        inertia[19] = t206;
-        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
-        inertia[20] = t207;
-        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
-        inertia[21] = t208;
-        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
-        inertia[25] = t209;
-        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
-        inertia[26] = t210;
-        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
-        inertia[27] = t211;
-        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
-        inertia[28] = t212;
-        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
-        inertia[29] = t213;
-        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
-        inertia[30] = t214;
-        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
-        inertia[31] = t215;
-        const gic_real t216 = t103 * t199;
-        const gic_real t217 = t200 + (t92 + t201);
-        inertia[5] = t217;
-        const gic_real t218 = t116 - t102 * t187;
-        inertia[6] = t218;
-        const gic_real t219 = t119 - t103 * t187;
-        inertia[7] = t219;
-        const gic_real t220 = t121 - t103 * t188;
-        inertia[8] = t220;
-        const gic_real t221 = t216 + (t115 + t200);
-        inertia[3] = t221;
-        const gic_real t222 = t216 + (t114 + t201);
-        inertia[4] = t222;
+        const gic_real t196 = s_0_2 * t174 + s_0_1 * t169 + (s_0_0 * t152 + t122 * along_0_force_z);
+        const gic_real t197 = s_0_2 * t180 + s_0_1 * t179 + (s_0_0 * t178 + t181 * along_1_force_x);
+        const gic_real t198 = s_1_2 * t180 + s_1_1 * t179 + (s_1_0 * t178 + t175 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t103;
+        inertia[FIVE_LINK_I_FIRST_Z] = inertia_first_z;
+        const gic_real t200 = t102 * inertia_first_y;
+        const gic_real t201 = t104 * inertia_first_x;
+        const gic_real inertia_moment_x = t171 + t102 * inertia_force_z - t103 * inertia_force_y;
+        inertia[FIVE_LINK_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t172 + t103 * inertia_force_x - t104 * inertia_force_z;
+        inertia[FIVE_LINK_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t173 + t104 * inertia_force_y - t102 * inertia_force_x;
+        inertia[FIVE_LINK_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t152 + t102 * along_0_force_z - t103 * along_0_force_y;
+        inertia[FIVE_LINK_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t169 + t103 * along_0_force_x - t104 * along_0_force_z;
+        inertia[FIVE_LINK_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t174 + t104 * along_0_force_y - t102 * along_0_force_x;
+        inertia[FIVE_LINK_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t182 + inertia_force_x * t181 + t192;
+        inertia[FIVE_LINK_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t178 + t102 * along_1_force_z - t103 * along_1_force_y;
+        inertia[FIVE_LINK_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t179 + t103 * along_1_force_x - t104 * along_1_force_z;
+        inertia[FIVE_LINK_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t104 * along_1_force_y + (t180 - t102 * along_1_force_x);
+        inertia[FIVE_LINK_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t176 + inertia_force_x * t175 + t195;
+        inertia[FIVE_LINK_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t182 * along_0_force_y + t181 * along_0_force_x + t196;
+        inertia[FIVE_LINK_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t197 + (t122 * along_1_force_z + t182 * along_1_force_y);
+        inertia[FIVE_LINK_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t198 + (t177 * along_1_force_z + t176 * along_1_force_y);
+        inertia[FIVE_LINK_I_COORDINATE + 16] = mass_2;
+        const gic_real t216 = t103 * inertia_first_z;
+        const gic_real inertia_second_zz = t200 + (t92 + t201);
+        inertia[FIVE_LINK_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t116 - t102 * inertia_first_x;
+        inertia[FIVE_LINK_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t119 - t103 * inertia_first_x;
+        inertia[FIVE_LINK_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t121 - t103 * inertia_first_y;
+        inertia[FIVE_LINK_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t216 + (t115 + t200);
+        inertia[FIVE_LINK_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t216 + (t114 + t201);
+        inertia[FIVE_LINK_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1773,106 +2057,152 @@ static int five_link_solve_wheel_f_l(five_link *self, const gic_real *GIC_RESTRI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const five_link_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void five_link_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const five_link_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[FIVE_LINK_A_YY];
+        const gic_real t2 = k[0] * m1[FIVE_LINK_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[FIVE_LINK_C_Y] - (t1 + k[2]))) +
+            GIC_FABS(R(2.928075656552032) * (motion[FIVE_LINK_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[FIVE_LINK_A_ZZ] + (k[13] * motion[FIVE_LINK_A_ZY] +
+            R(-0.14025880000000002) * motion[FIVE_LINK_A_ZX]);
+        const gic_real t5 = motion[FIVE_LINK_C_Z] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[FIVE_LINK_A_YZ] + (k[13] * motion[FIVE_LINK_A_YY] +
+            R(-0.14025880000000002) * motion[FIVE_LINK_A_YX]);
+        const gic_real t7 = motion[FIVE_LINK_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[FIVE_LINK_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[FIVE_LINK_A_XZ] + (k[13] * motion[FIVE_LINK_A_XY] +
+            R(-0.14025880000000002) * motion[FIVE_LINK_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
-        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[3];
-        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.33360360000000006) * motion[FIVE_LINK_A_ZZ] + (k[14] * motion[FIVE_LINK_A_ZY] +
+            R(-0.017475200000000024) * motion[FIVE_LINK_A_ZX]);
+        const gic_real t16 = motion[FIVE_LINK_C_Z] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[FIVE_LINK_A_YZ] + (k[14] * motion[FIVE_LINK_A_YY] +
+            R(-0.017475200000000024) * motion[FIVE_LINK_A_YX]);
+        const gic_real t18 = motion[FIVE_LINK_C_Y] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[FIVE_LINK_A_XZ] + (k[14] * motion[FIVE_LINK_A_XY] +
+            R(-0.017475200000000024) * motion[FIVE_LINK_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[FIVE_LINK_A_ZX] * motion[FIVE_LINK_A_ZX] + (motion[FIVE_LINK_A_YX] *
+            motion[FIVE_LINK_A_YX] + motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_XX]) - R(1.0);
+        const gic_real t27 = motion[FIVE_LINK_A_ZY] * motion[FIVE_LINK_A_ZY] + (motion[FIVE_LINK_A_YY] *
+            motion[FIVE_LINK_A_YY] + motion[FIVE_LINK_A_XY] * motion[FIVE_LINK_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[FIVE_LINK_A_ZX] * motion[FIVE_LINK_A_ZY] + (motion[FIVE_LINK_A_YX] *
+            motion[FIVE_LINK_A_YY] + motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[FIVE_LINK_A_YX] * motion[FIVE_LINK_A_ZY] -
+            motion[FIVE_LINK_A_YY] * motion[FIVE_LINK_A_ZX] - motion[FIVE_LINK_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[FIVE_LINK_A_XY] * motion[FIVE_LINK_A_ZX] - motion[FIVE_LINK_A_XX] *
+            motion[FIVE_LINK_A_ZY] - motion[FIVE_LINK_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[FIVE_LINK_A_XX] * motion[FIVE_LINK_A_YY] - motion[FIVE_LINK_A_XY] *
+            motion[FIVE_LINK_A_YX] - motion[FIVE_LINK_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[FIVE_LINK_S + 0] + t34 * motion[FIVE_LINK_S + 1] + t35 *
+            motion[FIVE_LINK_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[FIVE_LINK_S + 0] + t38 * motion[FIVE_LINK_S + 1] + t39 *
+            motion[FIVE_LINK_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[FIVE_LINK_S + 0] + t42 * motion[FIVE_LINK_S + 1] +
+            t43 * motion[FIVE_LINK_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
-        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t53 = t52 + GIC_FABS(m1[24]);
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[FIVE_LINK_S + 0]) +
+            GIC_FABS(motion[FIVE_LINK_S + 1]) + GIC_FABS(motion[FIVE_LINK_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[FIVE_LINK_S + 0] * t2 + motion[FIVE_LINK_S + 10])) +
+            GIC_FABS(R(2.928075656552032) * (motion[FIVE_LINK_S + 11] - m1[FIVE_LINK_S + 0] * t1));
+        const gic_real t48 = t33 * motion[FIVE_LINK_S + 6] + t34 * motion[FIVE_LINK_S + 7] + t35 *
+            motion[FIVE_LINK_S + 8] + t9 * motion[FIVE_LINK_S + 10];
+        const gic_real t49 = t37 * motion[FIVE_LINK_S + 6] + t38 * motion[FIVE_LINK_S + 7] + t39 *
+            motion[FIVE_LINK_S + 8] + t18 * motion[FIVE_LINK_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[FIVE_LINK_S + 11])) + GIC_FABS(t23 * (t49 + t16 *
+            motion[FIVE_LINK_S + 11]));
+        const gic_real t51 = t41 * motion[FIVE_LINK_S + 6] + t42 * motion[FIVE_LINK_S + 7] + t43 *
+            motion[FIVE_LINK_S + 8] + k[4] * motion[FIVE_LINK_S + 10];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[FIVE_LINK_S + 10]) +
+            GIC_FABS(motion[FIVE_LINK_S + 11])) + (GIC_FABS(motion[FIVE_LINK_S + 6]) +
+            GIC_FABS(motion[FIVE_LINK_S + 7]) + GIC_FABS(motion[FIVE_LINK_S + 8]));
+        const gic_real t53 = t52 + GIC_FABS(m1[FIVE_LINK_S + 0]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[FIVE_LINK_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[FIVE_LINK_OMEGA_X] - rate[0] * motion[FIVE_LINK_S + 0] - rate[1] *
+            motion[FIVE_LINK_S + 6]) + GIC_FABS(motion[FIVE_LINK_OMEGA_Y] - rate[0] * motion[FIVE_LINK_S + 1] -
+            rate[1] * motion[FIVE_LINK_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[FIVE_LINK_OMEGA_Z] - rate[0] * motion[FIVE_LINK_S + 2] - rate[1] *
+            motion[FIVE_LINK_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[FIVE_LINK_VELOCITY_Y] - rate[1] *
+            motion[FIVE_LINK_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[FIVE_LINK_VELOCITY_Z] - rate[1] *
+            motion[FIVE_LINK_S + 11]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[FIVE_LINK_VELOCITY_Y]) +
+            GIC_FABS(motion[FIVE_LINK_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[FIVE_LINK_OMEGA_X]) + GIC_FABS(motion[FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(motion[FIVE_LINK_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t66 = motion[17] + t65;
-        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t68 = motion[16] + t67 - m0[16];
-        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t63 = R(2.928075656552032) * (m1[FIVE_LINK_OMEGA_X] * (m1[FIVE_LINK_OMEGA_X] * t1) +
+            m1[FIVE_LINK_ALPHA_X] * t2 + motion[FIVE_LINK_ACCELERATION_Y]);
+        const gic_real t64 = R(2.928075656552032) * (motion[FIVE_LINK_ACCELERATION_Z] - (m1[FIVE_LINK_ALPHA_X] * t1 -
+            m1[FIVE_LINK_OMEGA_X] * (m1[FIVE_LINK_OMEGA_X] * t2)));
+        const gic_real t65 = t6 * motion[FIVE_LINK_OMEGA_X] - t10 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t66 = motion[FIVE_LINK_VELOCITY_Z] + t65;
+        const gic_real t67 = t10 * motion[FIVE_LINK_OMEGA_Z] - t4 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t68 = motion[FIVE_LINK_VELOCITY_Y] + t67 - m0[FIVE_LINK_VELOCITY_Y];
+        const gic_real t69 = t4 * motion[FIVE_LINK_OMEGA_Y] - t6 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t70 = motion[FIVE_LINK_OMEGA_X] * t67 - motion[FIVE_LINK_OMEGA_Y] * t69 + (t6 *
+            motion[FIVE_LINK_ALPHA_X] - t10 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t71 = motion[FIVE_LINK_OMEGA_Z] * t69 - motion[FIVE_LINK_OMEGA_X] * t65 + (t10 *
+            motion[FIVE_LINK_ALPHA_Z] - t4 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t72 = motion[FIVE_LINK_OMEGA_Y] * t65 - motion[FIVE_LINK_OMEGA_Z] * t67 + (t4 *
+            motion[FIVE_LINK_ALPHA_Y] - t6 * motion[FIVE_LINK_ALPHA_Z]);
+        const gic_real t73 = t5 * (motion[FIVE_LINK_ACCELERATION_Z] + t70) + (t9 * (motion[FIVE_LINK_ACCELERATION_Y] +
+            t71) + t11 * t72);
         const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
         const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
-        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t77 = motion[17] + t76;
-        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t79 = motion[16] + t78;
-        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t82 = motion[23] + t81;
-        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t84 = motion[22] + t83;
-        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t76 = t17 * motion[FIVE_LINK_OMEGA_X] - t19 * motion[FIVE_LINK_OMEGA_Y];
+        const gic_real t77 = motion[FIVE_LINK_VELOCITY_Z] + t76;
+        const gic_real t78 = t19 * motion[FIVE_LINK_OMEGA_Z] - t15 * motion[FIVE_LINK_OMEGA_X];
+        const gic_real t79 = motion[FIVE_LINK_VELOCITY_Y] + t78;
+        const gic_real t80 = t15 * motion[FIVE_LINK_OMEGA_Y] - t17 * motion[FIVE_LINK_OMEGA_Z];
+        const gic_real t81 = motion[FIVE_LINK_OMEGA_X] * t78 - motion[FIVE_LINK_OMEGA_Y] * t80 + (t17 *
+            motion[FIVE_LINK_ALPHA_X] - t19 * motion[FIVE_LINK_ALPHA_Y]);
+        const gic_real t82 = motion[FIVE_LINK_ACCELERATION_Z] + t81;
+        const gic_real t83 = motion[FIVE_LINK_OMEGA_Z] * t80 - motion[FIVE_LINK_OMEGA_X] * t76 + (t19 *
+            motion[FIVE_LINK_ALPHA_Z] - t15 * motion[FIVE_LINK_ALPHA_X]);
+        const gic_real t84 = motion[FIVE_LINK_ACCELERATION_Y] + t83;
+        const gic_real t85 = motion[FIVE_LINK_OMEGA_Y] * t76 - motion[FIVE_LINK_OMEGA_Z] * t78 + (t15 *
+            motion[FIVE_LINK_ALPHA_Y] - t17 * motion[FIVE_LINK_ALPHA_Z]);
         const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
-        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
-        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) *
+            R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[FIVE_LINK_ACCELERATION_Y]) +
+            GIC_FABS(motion[FIVE_LINK_ACCELERATION_Z])) + (GIC_FABS(motion[FIVE_LINK_ALPHA_X]) +
+            GIC_FABS(motion[FIVE_LINK_ALPHA_Y]) + GIC_FABS(motion[FIVE_LINK_ALPHA_Z]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[FIVE_LINK_VELOCITY_Y]);
         const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
-        const gic_real t91 = GIC_FABS(m1[12]);
-        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t91 = GIC_FABS(m1[FIVE_LINK_OMEGA_X]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[FIVE_LINK_ALPHA_X])) + t60 * t60;
         const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
         const gic_real t94 = t62 + t93;
         worst[0] = t32;
@@ -1902,96 +2232,104 @@ static int five_link_recover_piece(five_link *self, five_link_links *links, cons
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[FIVE_LINK_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = five_link_solve_rack(self, five_link_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[FIVE_LINK_X_RACK];
+        links->rate[0] = xd[FIVE_LINK_X_RACK];
+        status = five_link_solve_rack(self, five_link_k_rack[0], links, start + 5, self->motion + FIVE_LINK_MOTION_RACK,
+            self->inertia + FIVE_LINK_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = FIVE_LINK_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[FIVE_LINK_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[FIVE_LINK_X_SPRING_F_L];
+        links->rate[0] = xd[FIVE_LINK_X_SPRING_F_L];
+        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[0], links, start + 5, self->motion +
+            FIVE_LINK_MOTION_LCA_F_L, self->inertia + FIVE_LINK_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = FIVE_LINK_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[FIVE_LINK_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[FIVE_LINK_X_SPRING_F_R];
+        links->rate[0] = xd[FIVE_LINK_X_SPRING_F_R];
+        status = five_link_solve_lca_f_l(self, five_link_k_lca_f_l[1], links, start + 5, self->motion +
+            FIVE_LINK_MOTION_LCA_F_R, self->inertia + FIVE_LINK_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = FIVE_LINK_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: wheel_r_l */
-    links->x[0] = start[2]; /* spring_r_l */
-    links->rate[0] = xd[2];
-    links->change[0] = start[2] - old[2];
-    status = five_link_solve_wheel_r_l(self, five_link_k_wheel_r_l[0], links, old + 5, start + 5, self->motion + 90, self->inertia + 69);
+    links->x[0] = start[FIVE_LINK_X_SPRING_R_L];
+    links->rate[0] = xd[FIVE_LINK_X_SPRING_R_L];
+    links->change[0] = start[FIVE_LINK_X_SPRING_R_L] - old[FIVE_LINK_X_SPRING_R_L];
+    status = five_link_solve_wheel_r_l(self, five_link_k_wheel_r_l[0], links, old + 5, start + 5, self->motion +
+        FIVE_LINK_MOTION_WHEEL_R_L, self->inertia + FIVE_LINK_INERTIA_WHEEL_R_L);
     if (status != GIC_OK) {
-        self->head.subset = 4;
+        self->head.subset = FIVE_LINK_SUBSET_WHEEL_R_L;
         return status;
     }
     /* stage 2: wheel_r_r */
-    links->x[0] = start[3]; /* spring_r_r */
-    links->rate[0] = xd[3];
-    links->change[0] = start[3] - old[3];
-    status = five_link_solve_wheel_r_l(self, five_link_k_wheel_r_l[1], links, old + 64, start + 64, self->motion + 120, self->inertia + 92);
+    links->x[0] = start[FIVE_LINK_X_SPRING_R_R];
+    links->rate[0] = xd[FIVE_LINK_X_SPRING_R_R];
+    links->change[0] = start[FIVE_LINK_X_SPRING_R_R] - old[FIVE_LINK_X_SPRING_R_R];
+    status = five_link_solve_wheel_r_l(self, five_link_k_wheel_r_l[1], links, old + 64, start + 64, self->motion +
+        FIVE_LINK_MOTION_WHEEL_R_R, self->inertia + FIVE_LINK_INERTIA_WHEEL_R_R);
     if (status != GIC_OK) {
-        self->head.subset = 5;
+        self->head.subset = FIVE_LINK_SUBSET_WHEEL_R_R;
         return status;
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[FIVE_LINK_X_RACK] && links->same[FIVE_LINK_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[0], links, start + 123, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + FIVE_LINK_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + FIVE_LINK_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[FIVE_LINK_X_RACK];
+        links->rate[0] = xd[FIVE_LINK_X_RACK];
+        links->x[1] = start[FIVE_LINK_X_SPRING_F_L];
+        links->rate[1] = xd[FIVE_LINK_X_SPRING_F_L];
+        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[0], links, start + 123, self->motion +
+            FIVE_LINK_MOTION_WHEEL_F_L, self->inertia + FIVE_LINK_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = FIVE_LINK_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[FIVE_LINK_X_RACK] && links->same[FIVE_LINK_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[1], links, start + 123, self->motion + 186, self->inertia + 147);
+        links->known[0] = self->motion + FIVE_LINK_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + FIVE_LINK_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[FIVE_LINK_X_RACK];
+        links->rate[0] = xd[FIVE_LINK_X_RACK];
+        links->x[1] = start[FIVE_LINK_X_SPRING_F_R];
+        links->rate[1] = xd[FIVE_LINK_X_SPRING_F_R];
+        status = five_link_solve_wheel_f_l(self, five_link_k_wheel_f_l[1], links, start + 123, self->motion +
+            FIVE_LINK_MOTION_WHEEL_F_R, self->inertia + FIVE_LINK_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = FIVE_LINK_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
 static int five_link_recover_way(five_link *self, five_link_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
@@ -2014,13 +2352,11 @@ static int five_link_recover_way(five_link *self, five_link_links *links, const 
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (FIVE_LINK_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -2081,15 +2417,15 @@ static void five_link_gather(five_link *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
-    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
+    memcpy(x + FIVE_LINK_X_SPRING_F_L, y + FIVE_LINK_STATE_SPRING_F_L, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + FIVE_LINK_X_SPRING_F_L, y + FIVE_LINK_STATE_SPRING_F_L_RATE, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int five_link_orient(const five_link *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -2126,7 +2462,8 @@ static GIC_COLD int five_link_about(five_link *self, int status, int32_t subset,
 
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2136,85 +2473,155 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[91] > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, 4, 9);
-        if (!(n[114] > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t1 = n[45] + n[146];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        if (!(n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 7] > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, FIVE_LINK_SUBSET_WHEEL_R_L, FIVE_LINK_STATE_SPRING_R_L);
+        if (!(n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 7] > R(0.0)))
+            return five_link_about(self, GIC_ERROR_MASS, FIVE_LINK_SUBSET_WHEEL_R_R, FIVE_LINK_STATE_SPRING_R_R);
+        const gic_real t1 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 7] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 16];
         if (!(t1 > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, 2, 7);
-        const gic_real t2 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
+            return five_link_about(self, GIC_ERROR_MASS, FIVE_LINK_SUBSET_LCA_F_L, FIVE_LINK_STATE_SPRING_F_L);
+        const gic_real t2 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_XX] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_XX];
         const gic_real t3 = t2 + R(1173.18332588);
-        const gic_real t4 = R(1.0) / n[91];
-        const gic_real t5 = n[87] * t4;
-        const gic_real t6 = R(1.0) / n[114];
-        const gic_real t7 = n[110] * t6;
-        const gic_real t8 = n[41] + n[140];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
+        const gic_real t4 = R(1.0) / n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 7];
+        const gic_real t5 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 3] * t4;
+        const gic_real t6 = R(1.0) / n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 7];
+        const gic_real t7 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 3] * t6;
+        const gic_real t8 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 3] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 10];
         const gic_real t9 = R(1.0) / t1;
         const gic_real t10 = t8 * t9;
-        const gic_real t11 = t3 - n[87] * t5 - n[110] * t7 - t8 * t10;
+        const gic_real t11 = t3 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 3] * t5 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 3] * t7 - t8 * t10;
         if (!(t11 - t3 * R(1e-06) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t12 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_OMEGA_X);
+        const gic_real t12 = R(19.803070388473838) + n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_YY] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_YY] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_YY] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_YY] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_YY] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_YY];
         const gic_real t13 = t12 + R(3056.8666525999997);
-        const gic_real t14 = n[88] * t4;
-        const gic_real t15 = n[111] * t6;
-        const gic_real t16 = n[42] + n[141];
+        const gic_real t14 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 4] * t4;
+        const gic_real t15 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 4] * t6;
+        const gic_real t16 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 4] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 11];
         const gic_real t17 = t16 * t9;
-        const gic_real t18 = t13 - n[88] * t14 - n[111] * t15 - t16 * t17;
-        const gic_real t19 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t20 = t19 - n[88] * t5 - n[111] * t7 - t16 * t10;
+        const gic_real t18 = t13 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 4] * t14 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 4] * t15 - t16 * t17;
+        const gic_real t19 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_XY] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_XY];
+        const gic_real t20 = t19 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 4] * t5 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 4] * t7 - t16 * t10;
         const gic_real t21 = R(1.0) / t11;
         const gic_real t22 = t20 * t21;
         const gic_real t23 = t18 - t20 * t22;
         if (!(t23 - t13 * R(1e-06) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 16);
-        const gic_real t24 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_OMEGA_Y);
+        const gic_real t24 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_ZZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_ZZ];
         const gic_real t25 = t24 + R(3576.74332672);
-        const gic_real t26 = n[89] * t4;
-        const gic_real t27 = n[112] * t6;
-        const gic_real t28 = n[43] + n[142];
+        const gic_real t26 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 5] * t4;
+        const gic_real t27 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 5] * t6;
+        const gic_real t28 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 5] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 12];
         const gic_real t29 = t28 * t9;
-        const gic_real t30 = t25 - n[89] * t26 - n[112] * t27 - t28 * t29;
-        const gic_real t31 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t32 = t31 + R(-24.88801056000001) - n[89] * t5 - n[112] * t7 - t28 * t10;
+        const gic_real t30 = t25 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 5] * t26 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 5] * t27 - t28 * t29;
+        const gic_real t31 = R(-0.7077651653802236) + n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_XZ] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_XZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_XZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_XZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_XZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_XZ];
+        const gic_real t32 = t31 + R(-24.88801056000001) - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 5] *
+            t5 - n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 5] * t7 - t28 * t10;
         const gic_real t33 = t32 * t21;
-        const gic_real t34 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t35 = t34 - n[89] * t14 - n[112] * t15 - t28 * t17;
+        const gic_real t34 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_SECOND_YZ] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_SECOND_YZ];
+        const gic_real t35 = t34 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 5] * t14 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 5] * t15 - t28 * t17;
         const gic_real t36 = t35 - t32 * t22;
         const gic_real t37 = R(1.0) / t23;
         const gic_real t38 = t36 * t37;
         const gic_real t39 = t30 - t32 * t33 - t36 * t38;
-        const gic_real t40 = n[84] * t4;
-        const gic_real t41 = n[107] * t6;
-        const gic_real t42 = n[137] * t9;
-        const gic_real t43 = R(2505.7419999999997) - n[84] * t40 - n[107] * t41 - n[137] * t42;
-        const gic_real t44 = n[84] * t5 + n[107] * t7 + n[137] * t10;
+        const gic_real t40 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 0] * t4;
+        const gic_real t41 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 0] * t6;
+        const gic_real t42 = n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 7] * t9;
+        const gic_real t43 = R(2505.7419999999997) - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 0] * t40 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 0] * t41 -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 7] * t42;
+        const gic_real t44 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 0] * t5 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 0] * t7 +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 7] * t10;
         const gic_real t45 = t44 * t21;
-        const gic_real t46 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
+        const gic_real t46 = R(0.4919654879999997) + n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_FIRST_Z] +
+            n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_FIRST_Z] + n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FIRST_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FIRST_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FIRST_Z] + n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FIRST_Z];
         const gic_real t47 = t46 + R(444.4287600000002);
-        const gic_real t48 = t47 - n[84] * t14 - n[107] * t15 - n[137] * t17;
+        const gic_real t48 = t47 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 0] * t14 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 0] * t15 -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 7] * t17;
         const gic_real t49 = t48 + t44 * t22;
         const gic_real t50 = t49 * t37;
         const gic_real t51 = t43 - t44 * t45 - t49 * t50;
-        const gic_real t52 = n[85] * t4;
-        const gic_real t53 = n[108] * t6;
-        const gic_real t54 = n[39] + n[138];
+        const gic_real t52 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t4;
+        const gic_real t53 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t6;
+        const gic_real t54 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 1] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 8];
         const gic_real t55 = t54 * t9;
-        const gic_real t56 = R(2505.7419999999997) - n[85] * t52 - n[108] * t53 - t54 * t55;
-        const gic_real t57 = t47 + n[85] * t5 + n[108] * t7 + t54 * t10;
+        const gic_real t56 = R(2505.7419999999997) - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t52 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t53 - t54 * t55;
+        const gic_real t57 = t47 + n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t5 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t7 + t54 * t10;
         const gic_real t58 = t57 * t21;
-        const gic_real t59 = t57 * t22 - (n[85] * t14 + n[108] * t15 + t54 * t17);
+        const gic_real t59 = t57 * t22 - (n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t14 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t15 + t54 * t17);
         const gic_real t60 = t59 * t37;
         const gic_real t61 = t56 - t57 * t58 - t59 * t60;
-        const gic_real t62 = n[85] * t40 + n[108] * t41 + t54 * t42 + t57 * t45;
+        const gic_real t62 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t40 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t41 + t54 * t42 + t57 * t45;
         const gic_real t63 = t62 + t59 * t50;
         const gic_real t64 = t51 * t61 - t63 * t63;
-        const gic_real t65 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
-        const gic_real t66 = t65 + n[84] * t26 + n[107] * t27 + n[137] * t29;
+        const gic_real t65 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_FIRST_Y] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_FIRST_Y] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_FIRST_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FIRST_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FIRST_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FIRST_Y] + n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FIRST_Y];
+        const gic_real t66 = t65 + n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 0] * t26 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 0] * t27 +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 7] * t29;
         const gic_real t67 = t44 * t33 - t66 - t49 * t38;
-        const gic_real t68 = R(94.003507106) + n[69] + n[92] + n[115] + n[147] + R(116.84512);
-        const gic_real t69 = t68 - n[85] * t26 - n[108] * t27 - t54 * t29;
+        const gic_real t68 = R(94.003507106) + n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FIRST_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FIRST_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FIRST_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FIRST_X] + R(116.84512);
+        const gic_real t69 = t68 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 1] * t26 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 1] * t27 - t54 * t29;
         const gic_real t70 = t69 + t57 * t33 - t59 * t38;
         const gic_real t71 = t67 * t61 + t70 * t63;
         const gic_real t72 = t70 * t51 + t67 * t63;
@@ -2222,71 +2629,99 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t74 = t39 * t51;
         const gic_real t75 = t74 - t67 * t67;
         if (!(t73 - t75 * R(0.0025057419999999996) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 13);
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_V_Y);
         const gic_real t76 = t39 * t61 - t70 * t70;
         if (!(t73 - t76 * R(0.0025057419999999996) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 12);
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_V_X);
         if (!(t73 - R(1e-06) * (t25 * t64) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 17);
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_OMEGA_Z);
         if (!(t73 - R(1e-06) * (t61 * t74) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 17);
-        const gic_real t77 = n[40] + n[139];
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_OMEGA_Z);
+        const gic_real t77 = n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 2] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 9];
         const gic_real t78 = t77 * t9;
-        const gic_real t79 = R(-0.4919654879999997) + n[133] + n[165] - n[145] * t10;
-        const gic_real t80 = t65 - n[86] * t5 - n[109] * t7 - t77 * t10;
+        const gic_real t79 = R(-0.4919654879999997) + n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 3] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 3] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t10;
+        const gic_real t80 = t65 - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t5 -
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t7 - t77 * t10;
         const gic_real t81 = t80 * t21;
-        const gic_real t82 = n[134] + n[166] - n[145] * t17 - t79 * t22;
-        const gic_real t83 = t68 + n[86] * t14 + n[109] * t15 + t77 * t17;
+        const gic_real t82 = n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 4] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 4] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t17 - t79 * t22;
+        const gic_real t83 = t68 + n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t14 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t15 + t77 * t17;
         const gic_real t84 = t83 + t80 * t22;
         const gic_real t85 = t84 * t37;
-        const gic_real t86 = n[132] + n[164] - n[145] * t78 - t79 * t81 + t82 * t85;
+        const gic_real t86 = n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 2] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 2] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t78 - t79 * t81 + t82 * t85;
         const gic_real t87 = R(1.0) / t73;
-        const gic_real t88 = n[86] * t26 + n[109] * t27 + t77 * t29 + t80 * t33;
+        const gic_real t88 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t26 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t27 + t77 * t29 + t80 * t33;
         const gic_real t89 = t84 * t38 - t88;
-        const gic_real t90 = R(13.051414655999999) + n[135] + n[167] - n[145] * t29 - t79 * t33;
+        const gic_real t90 = R(13.051414655999999) + n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 5] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 5] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t29 - t79 * t33;
         const gic_real t91 = t90 - t82 * t38;
-        const gic_real t92 = n[130] + n[162] - n[145] * t42 + t79 * t45 - t82 * t50;
-        const gic_real t93 = R(9.072) + n[131] + n[163] - n[145] * t55 + t79 * t58;
+        const gic_real t92 = n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 0] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 0] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t42 + t79 * t45 - t82 * t50;
+        const gic_real t93 = R(9.072) + n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 1] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 1] -
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t55 + t79 * t58;
         const gic_real t94 = t93 - t82 * t60;
         const gic_real t95 = t91 * t64 - t92 * t71 - t94 * t72;
-        const gic_real t96 = t80 * t45 - (n[86] * t40 + n[109] * t41 + t77 * t42);
+        const gic_real t96 = t80 * t45 - (n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t40 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t41 + t77 * t42);
         const gic_real t97 = t96 + t84 * t50;
         const gic_real t98 = t39 * t63 + t67 * t70;
         const gic_real t99 = t92 * t76 - t91 * t71 + t94 * t98;
-        const gic_real t100 = t80 * t58 - (n[86] * t52 + n[109] * t53 + t77 * t55);
+        const gic_real t100 = t80 * t58 - (n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t52 +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t53 + t77 * t55);
         const gic_real t101 = t100 + t84 * t60;
         const gic_real t102 = t92 * t98 - t91 * t72 + t94 * t75;
         const gic_real t103 = t87 * (t89 * t95 + t97 * t99 + t101 * t102);
         const gic_real t104 = t86 - t103;
-        const gic_real t105 = n[64] + n[172];
-        const gic_real t106 = n[65] + n[173] - t105 * t22;
-        const gic_real t107 = n[66] + n[174] - t105 * t33 - t106 * t38;
-        const gic_real t108 = n[169] + t105 * t45 - t106 * t50;
-        const gic_real t109 = n[62] + n[170] + t105 * t58 - t106 * t60;
+        const gic_real t105 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 3] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 10];
+        const gic_real t106 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 4] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 11] - t105 * t22;
+        const gic_real t107 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 5] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 12] - t105 * t33 - t106 * t38;
+        const gic_real t108 = n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 7] + t105 * t45 - t106 * t50;
+        const gic_real t109 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 1] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 8] + t105 * t58 - t106 * t60;
         const gic_real t110 = t107 * t64 - t108 * t71 - t109 * t72;
         const gic_real t111 = t108 * t76 - t107 * t71 + t109 * t98;
         const gic_real t112 = t108 * t98 - t107 * t72 + t109 * t75;
         const gic_real t113 = t87 * (t89 * t110 + t97 * t111 + t101 * t112);
-        const gic_real t114 = n[63] + n[171] - t105 * t81 + t106 * t85 - t113;
+        const gic_real t114 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 2] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 9] - t105 * t81 + t106 * t85 - t113;
         const gic_real t115 = t105 * t21;
         const gic_real t116 = t106 * t37;
         const gic_real t117 = t87 * (t107 * t95 + t108 * t99 + t109 * t102);
-        const gic_real t118 = n[177] - t79 * t115 - t82 * t116 - t117;
-        const gic_real t119 = n[68] + n[178];
+        const gic_real t118 = n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 15] - t79 * t115 - t82 * t116 -
+            t117;
+        const gic_real t119 = n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 7] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 16];
         const gic_real t120 = t87 * (t107 * t110 + t108 * t111 + t109 * t112);
         const gic_real t121 = t119 - t105 * t115 - t106 * t116 - t120;
         const gic_real t122 = t114 * t118 - t104 * t121;
-        const gic_real t123 = R(9.072) + n[144] + n[176];
-        const gic_real t124 = n[145] * t9;
+        const gic_real t123 = R(9.072) + n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 14] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 14];
+        const gic_real t124 = n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t9;
         const gic_real t125 = t79 * t21;
         const gic_real t126 = t82 * t37;
-        const gic_real t127 = t123 - n[145] * t124 - t79 * t125 - t82 * t126;
+        const gic_real t127 = t123 - n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 15] * t124 - t79 * t125 -
+            t82 * t126;
         const gic_real t128 = t87 * (t91 * t95 + t92 * t99 + t94 * t102);
         const gic_real t129 = t127 - t128;
         const gic_real t130 = t104 * t118 - t114 * t129;
-        const gic_real t131 = n[86] * t4;
-        const gic_real t132 = n[109] * t6;
-        const gic_real t133 = R(2505.7419999999997) - n[86] * t131 - n[109] * t132 - t77 * t78;
+        const gic_real t131 = n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] * t4;
+        const gic_real t132 = n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t6;
+        const gic_real t133 = R(2505.7419999999997) - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 2] *
+            t131 - n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 2] * t132 - t77 * t78;
         const gic_real t134 = t89 * t64 - t97 * t71 - t101 * t72;
         const gic_real t135 = t97 * t76 - t89 * t71 + t101 * t98;
         const gic_real t136 = t97 * t98 - t89 * t72 + t101 * t75;
@@ -2297,18 +2732,19 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t141 = t138 * t121;
         const gic_real t142 = t141 - t114 * t114;
         if (!(t140 - R(1e-06) * (t123 * t142) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, 1, 11);
+            return five_link_about(self, GIC_ERROR_MASS, FIVE_LINK_SUBSET_RACK, FIVE_LINK_STATE_RACK);
         const gic_real t143 = t138 * t129 - t104 * t104;
         if (!(t140 - R(1e-06) * (t119 * t143) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, 3, 8);
+            return five_link_about(self, GIC_ERROR_MASS, FIVE_LINK_SUBSET_LCA_F_R, FIVE_LINK_STATE_SPRING_F_R);
         if (!(t140 - t139 * R(0.0025057419999999996) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 14);
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_V_Z);
         if (!(t140 - R(1e-06) * (t129 * t141) > R(0.0)))
-            return five_link_about(self, GIC_ERROR_MASS, -1, 14);
-        const gic_real t144 = y[17] * R(0.5);
-        const gic_real t145 = y[16] * R(0.5);
-        const gic_real t146 = y[15] * R(0.5);
-        const gic_real t147 = -(e[3] * t144 + (e[2] * t145 + e[1] * t146));
+            return five_link_about(self, GIC_ERROR_MASS, -1, FIVE_LINK_STATE_V_Z);
+        /* rates of the state */
+        const gic_real t144 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t145 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t146 = y[FIVE_LINK_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t144 + (e[2] * t145 + e[1] * t146));
         const gic_real t148 = e[3] + e[3];
         const gic_real t149 = e[1] * t148;
         const gic_real t150 = e[2] + e[2];
@@ -2322,241 +2758,378 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
         const gic_real t158 = e[3] * t150;
         const gic_real t159 = e[0] * t154;
         const gic_real t160 = t158 - t159;
-        const gic_real t161 = m[128] * R(0.09182100000000004) + (m[127] * R(-0.12319000000000002) + m[126] * R(-0.030000000000000027));
-        const gic_real t162 = m[125] * R(0.09182100000000004) + (m[124] * R(-0.12319000000000002) + m[123] * R(-0.030000000000000027));
-        const gic_real t163 = m[121] + t161;
-        const gic_real t164 = m[120] + t162;
-        const gic_real t165 = m[137] + (m[132] * t161 - m[133] * t162) + (y[15] * t163 - y[16] * t164);
+        /* wheel tire_r_r */
+        const gic_real t161 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027));
+        const gic_real t162 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027));
+        const gic_real t163 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t161;
+        const gic_real t164 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t162;
+        const gic_real t165 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t161 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t162) + (y[FIVE_LINK_STATE_OMEGA_X] * t163 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t164);
         const gic_real t166 = e[3] * t148;
         const gic_real t167 = R(1.0) - (t155 + t166);
-        const gic_real t168 = m[131] * R(0.09182100000000004) + (m[130] * R(-0.12319000000000002) + m[129] * R(-0.030000000000000027));
-        const gic_real t169 = m[122] + t168;
-        const gic_real t170 = m[136] + (m[134] * t162 - m[132] * t168) + (y[17] * t164 - y[15] * t169);
+        const gic_real t168 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027));
+        const gic_real t169 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t168;
+        const gic_real t170 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t162 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t168) + (y[FIVE_LINK_STATE_OMEGA_Z] * t164 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t169);
         const gic_real t171 = e[2] * t154;
         const gic_real t172 = e[0] * t148;
         const gic_real t173 = t171 + t172;
-        const gic_real t174 = m[135] + (m[133] * t168 - m[134] * t161) + (y[16] * t169 - y[17] * t163);
-        const gic_real t175 = y[13] + (t160 * t165 + (t167 * t170 + t173 * t174));
+        const gic_real t174 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t168 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t161) + (y[FIVE_LINK_STATE_OMEGA_Y] * t169 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t163);
+        const gic_real t175 = y[FIVE_LINK_STATE_V_Y] + (t160 * t165 + (t167 * t170 + t173 * t174));
         const gic_real t176 = t171 - t172;
         const gic_real t177 = R(1.0) - (t156 + t166);
-        const gic_real t178 = y[0] + (t152 * t169 + (t176 * t163 + t177 * t164));
-        const gic_real t179 = y[1] + (t160 * t169 + (t167 * t163 + t173 * t164));
+        const gic_real t178 = y[FIVE_LINK_STATE_R_X] + (t152 * t169 + (t176 * t163 + t177 * t164));
+        const gic_real t179 = y[FIVE_LINK_STATE_R_Y] + (t160 * t169 + (t167 * t163 + t173 * t164));
         gic_real road180[3];
         if (!five_link_road_height(self, time, t178, t179, road180))
             return GIC_ERROR_ROAD;
-        const gic_real t181 = y[12] + (t152 * t165 + (t176 * t170 + t177 * t174));
+        const gic_real t181 = y[FIVE_LINK_STATE_V_X] + (t152 * t165 + (t176 * t170 + t177 * t174));
         const gic_real t182 = t158 + t159;
         const gic_real t183 = t149 - t151;
-        const gic_real t184 = y[14] + (t157 * t165 + (t182 * t170 + t183 * t174));
+        const gic_real t184 = y[FIVE_LINK_STATE_V_Z] + (t157 * t165 + (t182 * t170 + t183 * t174));
         const gic_real t185 = t175 * road180[2] + t181 * road180[1] - t184;
-        const gic_real t186 = y[2] + (t157 * t169 + (t182 * t163 + t183 * t164));
+        const gic_real t186 = y[FIVE_LINK_STATE_R_Z] + (t157 * t169 + (t182 * t163 + t183 * t164));
         const gic_real t187 = R(0.4699) + road180[0] - t186;
         const gic_real t188 = GIC_MIN(GIC_MAX(R(100.0) * t187, R(0.0)), R(1.0));
         const gic_real t189 = t185 * (R(500.0) * ((R(3.0) - (t188 + t188)) * (t188 * t188)));
         const gic_real t190 = GIC_MAX(t189 + R(283000.0) * t187, R(0.0));
         const gic_real t191 = t157 * t190;
-        const gic_real t192 = m[98] * R(0.09182100000000004) + (m[97] * R(0.12319000000000002) + m[96] * R(-0.030000000000000027));
-        const gic_real t193 = m[95] * R(0.09182100000000004) + (m[94] * R(0.12319000000000002) + m[93] * R(-0.030000000000000027));
-        const gic_real t194 = m[91] + t192;
-        const gic_real t195 = m[90] + t193;
-        const gic_real t196 = m[107] + (m[102] * t192 - m[103] * t193) + (y[15] * t194 - y[16] * t195);
-        const gic_real t197 = m[101] * R(0.09182100000000004) + (m[100] * R(0.12319000000000002) + m[99] * R(-0.030000000000000027));
-        const gic_real t198 = m[92] + t197;
-        const gic_real t199 = m[106] + (m[104] * t193 - m[102] * t197) + (y[17] * t195 - y[15] * t198);
-        const gic_real t200 = m[105] + (m[103] * t197 - m[104] * t192) + (y[16] * t198 - y[17] * t194);
-        const gic_real t201 = y[13] + (t160 * t196 + (t167 * t199 + t173 * t200));
-        const gic_real t202 = y[0] + (t152 * t198 + (t176 * t194 + t177 * t195));
-        const gic_real t203 = y[1] + (t160 * t198 + (t167 * t194 + t173 * t195));
+        /* wheel tire_r_l */
+        const gic_real t192 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027));
+        const gic_real t193 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027));
+        const gic_real t194 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t192;
+        const gic_real t195 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t193;
+        const gic_real t196 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t192 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t193) + (y[FIVE_LINK_STATE_OMEGA_X] * t194 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t195);
+        const gic_real t197 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027));
+        const gic_real t198 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t197;
+        const gic_real t199 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t193 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t197) + (y[FIVE_LINK_STATE_OMEGA_Z] * t195 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t198);
+        const gic_real t200 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t197 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t192) + (y[FIVE_LINK_STATE_OMEGA_Y] * t198 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t194);
+        const gic_real t201 = y[FIVE_LINK_STATE_V_Y] + (t160 * t196 + (t167 * t199 + t173 * t200));
+        const gic_real t202 = y[FIVE_LINK_STATE_R_X] + (t152 * t198 + (t176 * t194 + t177 * t195));
+        const gic_real t203 = y[FIVE_LINK_STATE_R_Y] + (t160 * t198 + (t167 * t194 + t173 * t195));
         gic_real road204[3];
         if (!five_link_road_height(self, time, t202, t203, road204))
             return GIC_ERROR_ROAD;
-        const gic_real t205 = y[12] + (t152 * t196 + (t176 * t199 + t177 * t200));
-        const gic_real t206 = y[14] + (t157 * t196 + (t182 * t199 + t183 * t200));
+        const gic_real t205 = y[FIVE_LINK_STATE_V_X] + (t152 * t196 + (t176 * t199 + t177 * t200));
+        const gic_real t206 = y[FIVE_LINK_STATE_V_Z] + (t157 * t196 + (t182 * t199 + t183 * t200));
         const gic_real t207 = t201 * road204[2] + t205 * road204[1] - t206;
-        const gic_real t208 = y[2] + (t157 * t198 + (t182 * t194 + t183 * t195));
+        const gic_real t208 = y[FIVE_LINK_STATE_R_Z] + (t157 * t198 + (t182 * t194 + t183 * t195));
         const gic_real t209 = R(0.4699) + road204[0] - t208;
         const gic_real t210 = GIC_MIN(GIC_MAX(R(100.0) * t209, R(0.0)), R(1.0));
         const gic_real t211 = t207 * (R(500.0) * ((R(3.0) - (t210 + t210)) * (t210 * t210)));
         const gic_real t212 = GIC_MAX(t211 + R(283000.0) * t209, R(0.0));
         const gic_real t213 = t157 * t212;
-        const gic_real t214 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t215 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t216 = m[151] + t214;
+        /* wheel tire_f_l */
+        const gic_real t214 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997));
+        const gic_real t215 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997));
+        const gic_real t216 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t214;
         const gic_real t217 = R(1.653405) + t215;
-        const gic_real t218 = m[167] + (m[162] * t214 - m[163] * t215) + (y[15] * t216 - y[16] * t217);
-        const gic_real t219 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t220 = m[152] + t219;
-        const gic_real t221 = m[166] + (m[164] * t215 - m[162] * t219) + (y[17] * t217 - y[15] * t220);
-        const gic_real t222 = m[163] * t219 - m[164] * t214 + (y[16] * t220 - y[17] * t216);
-        const gic_real t223 = y[13] + (t160 * t218 + (t167 * t221 + t173 * t222));
-        const gic_real t224 = y[0] + (t152 * t220 + (t176 * t216 + t177 * t217));
-        const gic_real t225 = y[1] + (t160 * t220 + (t167 * t216 + t173 * t217));
+        const gic_real t218 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t214 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t215) + (y[FIVE_LINK_STATE_OMEGA_X] * t216 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t217);
+        const gic_real t219 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997));
+        const gic_real t220 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t219;
+        const gic_real t221 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t215 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t219) + (y[FIVE_LINK_STATE_OMEGA_Z] * t217 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t220);
+        const gic_real t222 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t219 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t214 + (y[FIVE_LINK_STATE_OMEGA_Y] * t220 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t216);
+        const gic_real t223 = y[FIVE_LINK_STATE_V_Y] + (t160 * t218 + (t167 * t221 + t173 * t222));
+        const gic_real t224 = y[FIVE_LINK_STATE_R_X] + (t152 * t220 + (t176 * t216 + t177 * t217));
+        const gic_real t225 = y[FIVE_LINK_STATE_R_Y] + (t160 * t220 + (t167 * t216 + t173 * t217));
         gic_real road226[3];
         if (!five_link_road_height(self, time, t224, t225, road226))
             return GIC_ERROR_ROAD;
-        const gic_real t227 = y[12] + (t152 * t218 + (t176 * t221 + t177 * t222));
-        const gic_real t228 = y[14] + (t157 * t218 + (t182 * t221 + t183 * t222));
+        const gic_real t227 = y[FIVE_LINK_STATE_V_X] + (t152 * t218 + (t176 * t221 + t177 * t222));
+        const gic_real t228 = y[FIVE_LINK_STATE_V_Z] + (t157 * t218 + (t182 * t221 + t183 * t222));
         const gic_real t229 = t223 * road226[2] + t227 * road226[1] - t228;
-        const gic_real t230 = y[2] + (t157 * t220 + (t182 * t216 + t183 * t217));
+        const gic_real t230 = y[FIVE_LINK_STATE_R_Z] + (t157 * t220 + (t182 * t216 + t183 * t217));
         const gic_real t231 = road226[0] + R(0.4699) - t230;
         const gic_real t232 = GIC_MIN(GIC_MAX(t231 * R(100.0), R(0.0)), R(1.0));
         const gic_real t233 = t229 * ((R(3.0) - (t232 + t232)) * (t232 * t232) * R(500.0));
         const gic_real t234 = GIC_MAX(t233 + t231 * R(283000.0), R(0.0));
         const gic_real t235 = t157 * t234;
-        const gic_real t236 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t237 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t238 = m[187] + t236;
+        /* wheel tire_f_r */
+        const gic_real t236 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997));
+        const gic_real t237 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997));
+        const gic_real t238 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t236;
         const gic_real t239 = R(1.653405) + t237;
-        const gic_real t240 = m[203] + (m[198] * t236 - m[199] * t237) + (y[15] * t238 - y[16] * t239);
-        const gic_real t241 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t242 = m[188] + t241;
-        const gic_real t243 = m[202] + (m[200] * t237 - m[198] * t241) + (y[17] * t239 - y[15] * t242);
-        const gic_real t244 = m[199] * t241 - m[200] * t236 + (y[16] * t242 - y[17] * t238);
-        const gic_real t245 = y[13] + (t160 * t240 + (t167 * t243 + t173 * t244));
-        const gic_real t246 = y[0] + (t152 * t242 + (t176 * t238 + t177 * t239));
-        const gic_real t247 = y[1] + (t160 * t242 + (t167 * t238 + t173 * t239));
+        const gic_real t240 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t236 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t237) + (y[FIVE_LINK_STATE_OMEGA_X] * t238 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t239);
+        const gic_real t241 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997));
+        const gic_real t242 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t241;
+        const gic_real t243 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t237 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t241) + (y[FIVE_LINK_STATE_OMEGA_Z] * t239 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t242);
+        const gic_real t244 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t241 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t236 + (y[FIVE_LINK_STATE_OMEGA_Y] * t242 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t238);
+        const gic_real t245 = y[FIVE_LINK_STATE_V_Y] + (t160 * t240 + (t167 * t243 + t173 * t244));
+        const gic_real t246 = y[FIVE_LINK_STATE_R_X] + (t152 * t242 + (t176 * t238 + t177 * t239));
+        const gic_real t247 = y[FIVE_LINK_STATE_R_Y] + (t160 * t242 + (t167 * t238 + t173 * t239));
         gic_real road248[3];
         if (!five_link_road_height(self, time, t246, t247, road248))
             return GIC_ERROR_ROAD;
-        const gic_real t249 = y[12] + (t152 * t240 + (t176 * t243 + t177 * t244));
-        const gic_real t250 = y[14] + (t157 * t240 + (t182 * t243 + t183 * t244));
+        const gic_real t249 = y[FIVE_LINK_STATE_V_X] + (t152 * t240 + (t176 * t243 + t177 * t244));
+        const gic_real t250 = y[FIVE_LINK_STATE_V_Z] + (t157 * t240 + (t182 * t243 + t183 * t244));
         const gic_real t251 = t245 * road248[2] + t249 * road248[1] - t250;
-        const gic_real t252 = y[2] + (t157 * t242 + (t182 * t238 + t183 * t239));
+        const gic_real t252 = y[FIVE_LINK_STATE_R_Z] + (t157 * t242 + (t182 * t238 + t183 * t239));
         const gic_real t253 = R(0.4699) + road248[0] - t252;
         const gic_real t254 = GIC_MIN(GIC_MAX(R(100.0) * t253, R(0.0)), R(1.0));
         const gic_real t255 = t251 * (R(500.0) * ((R(3.0) - (t254 + t254)) * (t254 * t254)));
         const gic_real t256 = GIC_MAX(t255 + R(283000.0) * t253, R(0.0));
         const gic_real t257 = t157 * t256;
-        const gic_real t258 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t259 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t260 = y[16] * R(0.21300000000000008);
-        const gic_real t261 = t191 + (t213 + (t235 + t257)) - (t258 + R(2086.52) * (y[15] * t259 - y[16] * t260));
+        const gic_real t258 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_FORCE_Z] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_FORCE_Z] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_FORCE_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FORCE_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FORCE_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FORCE_Z] + n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FORCE_Z];
+        const gic_real t259 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - y[FIVE_LINK_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t260 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
+        const gic_real t261 = t191 + (t213 + (t235 + t257)) - (t258 + R(2086.52) * (y[FIVE_LINK_STATE_OMEGA_X] * t259 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t260));
         const gic_real t262 = t182 * t212;
         const gic_real t263 = t183 * t212;
         const gic_real t264 = t193 * t262 - t192 * t263;
         const gic_real t265 = t197 * t263 - t193 * t213;
         const gic_real t266 = t192 * t213 - t197 * t262;
-        const gic_real t267 = m[119] * t213 + (m[118] * t262 + m[117] * t263) + (m[116] * t264 + (m[115] * t265 + m[114] * t266));
-        const gic_real t268 = t267 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)) - n[90];
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t267 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] * t213 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] * t262 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] *
+            t263) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t264 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t265 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t266));
+        const gic_real t268 = t267 - ((x[FIVE_LINK_X_SPRING_R_L] - R(0.4321)) * R(89500.0) +
+            xd[FIVE_LINK_X_SPRING_R_L] * R(6010.0)) - n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_COORDINATE + 6];
         const gic_real t269 = t182 * t190;
         const gic_real t270 = t183 * t190;
         const gic_real t271 = t162 * t269 - t161 * t270;
         const gic_real t272 = t168 * t270 - t162 * t191;
         const gic_real t273 = t161 * t191 - t168 * t269;
-        const gic_real t274 = m[149] * t191 + (m[148] * t269 + m[147] * t270) + (m[146] * t271 + (m[145] * t272 + m[144] * t273));
-        const gic_real t275 = t274 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)) - n[113];
+        const gic_real t274 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] * t191 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] *
+            t270) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t271 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t272 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t273));
+        const gic_real t275 = t274 - (R(89500.0) * (x[FIVE_LINK_X_SPRING_R_R] - R(0.4321)) +
+            xd[FIVE_LINK_X_SPRING_R_R] * R(6010.0)) - n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_COORDINATE + 6];
         const gic_real t276 = t182 * t234;
         const gic_real t277 = t183 * t234;
         const gic_real t278 = t215 * t276 - t214 * t277;
         const gic_real t279 = t219 * t277 - t215 * t235;
         const gic_real t280 = t214 * t235 - t219 * t276;
-        const gic_real t281 = m[185] * t235 + m[184] * t276 + (m[182] * t278 + (m[181] * t279 + m[180] * t280));
-        const gic_real t282 = t281 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
+        const gic_real t281 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] * t235 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] * t276 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t278 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t279 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t280));
+        const gic_real t282 = t281 - ((x[FIVE_LINK_X_SPRING_F_L] - R(0.31907)) * R(167070.9) +
+            xd[FIVE_LINK_X_SPRING_F_L] * R(17490.8)) - (n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_COORDINATE + 6] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 13]);
+        /* accelerations */
         const gic_real t283 = t261 - t268 * t131 - t275 * t132 - t282 * t78;
         const gic_real t284 = t182 * t256;
         const gic_real t285 = t236 * t257 - t241 * t284;
-        const gic_real t286 = t280 + (m[151] * t235 - m[152] * t276) + (m[187] * t257 - m[188] * t284);
-        const gic_real t287 = t266 + (t285 + t286 + (m[91] * t213 - m[92] * t262));
-        const gic_real t288 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t289 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t290 = y[16] * R(3056.8666525999997);
-        const gic_real t291 = t273 + (t287 + (m[121] * t191 - m[122] * t269)) - (t288 + (y[16] * t289 - y[17] * t290));
+        const gic_real t286 = t280 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t235 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t276) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] *
+            t257 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t284);
+        const gic_real t287 = t266 + (t285 + t286 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t213 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t262));
+        const gic_real t288 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_MOMENT_X] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_MOMENT_X] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_MOMENT_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_MOMENT_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_MOMENT_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_MOMENT_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_MOMENT_X];
+        const gic_real t289 = y[FIVE_LINK_STATE_OMEGA_Z] * R(3576.74332672) + y[FIVE_LINK_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t290 = y[FIVE_LINK_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t291 = t273 + (t287 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t191 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t269)) - (t288 + (y[FIVE_LINK_STATE_OMEGA_Y] * t289 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t290));
         const gic_real t292 = t291 - t268 * t5 - t275 * t7 - t282 * t10;
         const gic_real t293 = t183 * t256;
         const gic_real t294 = t241 * t293 - t237 * t257;
-        const gic_real t295 = t279 + (m[152] * t277 - R(1.653405) * t235) + (m[188] * t293 - R(1.653405) * t257);
-        const gic_real t296 = t265 + (t294 + t295 + (m[92] * t263 - m[90] * t213));
-        const gic_real t297 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t298 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t299 = t272 + (t296 + (m[122] * t270 - m[120] * t191)) - (t297 + (y[17] * t298 - y[15] * t289));
+        const gic_real t295 = t279 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t277 - R(1.653405) * t235) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t293 - R(1.653405) * t257);
+        const gic_real t296 = t265 + (t294 + t295 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t263 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t213));
+        const gic_real t297 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_MOMENT_Y] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_MOMENT_Y] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_MOMENT_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_MOMENT_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_MOMENT_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_MOMENT_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_MOMENT_Y];
+        const gic_real t298 = y[FIVE_LINK_STATE_OMEGA_Z] * R(-24.88801056000001) + y[FIVE_LINK_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t299 = t272 + (t296 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t270 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t191)) - (t297 + (y[FIVE_LINK_STATE_OMEGA_Z] * t298 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t289));
         const gic_real t300 = t299 - t268 * t14 - t275 * t15 - t282 * t17;
         const gic_real t301 = t300 - t22 * t292;
         const gic_real t302 = t237 * t284 - t236 * t293;
-        const gic_real t303 = t278 + (R(1.653405) * t276 - m[151] * t277) + (R(1.653405) * t284 - m[187] * t293);
-        const gic_real t304 = t264 + (t302 + t303 + (m[90] * t262 - m[91] * t263));
-        const gic_real t305 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t306 = t271 + (t304 + (m[120] * t269 - m[121] * t270)) - (t305 + (y[15] * t290 - y[16] * t298));
+        const gic_real t303 = t278 + (R(1.653405) * t276 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t277) +
+            (R(1.653405) * t284 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] * t293);
+        const gic_real t304 = t264 + (t302 + t303 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t262 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t263));
+        const gic_real t305 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_MOMENT_Z] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_MOMENT_Z] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_MOMENT_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_MOMENT_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_MOMENT_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_MOMENT_Z] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_MOMENT_Z];
+        const gic_real t306 = t271 + (t304 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t269 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t270)) - (t305 + (y[FIVE_LINK_STATE_OMEGA_X] * t290 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t298));
         const gic_real t307 = t306 - t268 * t26 - t275 * t27 - t282 * t29;
         const gic_real t308 = t307 - t33 * t292 - t38 * t301;
-        const gic_real t309 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t310 = y[16] * R(0.056);
-        const gic_real t311 = t270 + (t263 + (t277 + t293)) - (t309 - R(2086.52) * (y[17] * t259 + y[16] * t310));
+        const gic_real t309 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_FORCE_X] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_FORCE_X] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_FORCE_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FORCE_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FORCE_X] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FORCE_X] + n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FORCE_X];
+        const gic_real t310 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t311 = t270 + (t263 + (t277 + t293)) - (t309 - R(2086.52) * (y[FIVE_LINK_STATE_OMEGA_Z] * t259 +
+            y[FIVE_LINK_STATE_OMEGA_Y] * t310));
         const gic_real t312 = t311 - t268 * t40 - t275 * t41 - t282 * t42;
         const gic_real t313 = t312 + t45 * t292 - t50 * t301;
-        const gic_real t314 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t315 = t269 + (t262 + (t276 + t284)) - (t314 + R(2086.52) * (y[15] * t310 + y[17] * t260));
+        const gic_real t314 = n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_FORCE_Y] +
+            n[FIVE_LINK_INERTIA_LCA_F_L + FIVE_LINK_I_FORCE_Y] + n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_FORCE_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_L + FIVE_LINK_I_FORCE_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_R_R + FIVE_LINK_I_FORCE_Y] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_FORCE_Y] + n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_FORCE_Y];
+        const gic_real t315 = t269 + (t262 + (t276 + t284)) - (t314 + R(2086.52) * (y[FIVE_LINK_STATE_OMEGA_X] * t310 +
+            y[FIVE_LINK_STATE_OMEGA_Z] * t260));
         const gic_real t316 = t315 - t268 * t52 - t275 * t53 - t282 * t55;
         const gic_real t317 = t316 + t58 * t292 - t60 * t301;
         const gic_real t318 = t87 * (t134 * t308 + t135 * t313 + t136 * t317);
         const gic_real t319 = t283 - t81 * t292 + t85 * t301 - t318;
-        const gic_real t320 = m[221] * t257 + m[220] * t284 + (m[218] * t302 + (m[217] * t294 + m[216] * t285));
-        const gic_real t321 = t320 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
+        const gic_real t320 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] * t257 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] * t284 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t302 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t294 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t285));
+        const gic_real t321 = t320 - (R(167070.9) * (x[FIVE_LINK_X_SPRING_F_R] - R(0.31907)) +
+            xd[FIVE_LINK_X_SPRING_F_R] * R(17490.8)) - (n[FIVE_LINK_INERTIA_LCA_F_R + FIVE_LINK_I_COORDINATE + 6] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 13]);
         const gic_real t322 = t87 * (t110 * t308 + t111 * t313 + t112 * t317);
         const gic_real t323 = t321 - t115 * t292 - t116 * t301 - t322;
-        const gic_real t324 = m[176] * t278 + (m[175] * t279 + m[174] * t280) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t325 = t324 + (m[212] * t302 + (m[211] * t294 + m[210] * t285));
-        const gic_real t326 = t325 - (n[21] + n[136] + n[168]) - t282 * t124 - t125 * t292;
+        const gic_real t324 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t278 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t279 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t280) - (x[FIVE_LINK_X_RACK] * R(100000.0) + xd[FIVE_LINK_X_RACK] * R(12000.0));
+        const gic_real t325 = t324 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t302 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t294 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t285));
+        const gic_real t326 = t325 - (n[FIVE_LINK_INERTIA_RACK + FIVE_LINK_I_COORDINATE + 6] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_L + FIVE_LINK_I_COORDINATE + 6] +
+            n[FIVE_LINK_INERTIA_WHEEL_F_R + FIVE_LINK_I_COORDINATE + 6]) - t282 * t124 - t125 * t292;
         const gic_real t327 = t87 * (t95 * t308 + t99 * t313 + t102 * t317);
         const gic_real t328 = t326 - t126 * t301 - t327;
         const gic_real t329 = t153 * (t139 * t319 + t130 * t323 + t122 * t328);
         const gic_real t330 = t98 * t313 - t72 * t308 + t75 * t317 - t136 * t329;
         const gic_real t331 = t114 * t104 - t138 * t118;
-        const gic_real t332 = t153 * (t130 * t319 + t143 * t323 + t331 * t328);
-        const gic_real t333 = t153 * (t122 * t319 + t331 * t323 + t142 * t328);
-        const gic_real t334 = t87 * (t330 - t112 * t332 - t102 * t333);
+        const gic_real rate_of_spring_f_r_rate = t153 * (t130 * t319 + t143 * t323 + t331 * t328);
+        const gic_real rate_of_rack_rate = t153 * (t122 * t319 + t331 * t323 + t142 * t328);
+        const gic_real t334 = t87 * (t330 - t112 * rate_of_spring_f_r_rate - t102 * rate_of_rack_rate);
         const gic_real t335 = t76 * t313 - t71 * t308 + t98 * t317 - t135 * t329;
-        const gic_real t336 = t87 * (t335 - t111 * t332 - t99 * t333);
+        const gic_real t336 = t87 * (t335 - t111 * rate_of_spring_f_r_rate - t99 * rate_of_rack_rate);
         const gic_real t337 = t64 * t308 - t71 * t313 - t72 * t317 - t134 * t329;
-        const gic_real t338 = t87 * (t337 - t110 * t332 - t95 * t333);
-        const gic_real t339 = t37 * t301 - t38 * t338 - t50 * t336 - t60 * t334;
-        const gic_real t340 = t339 + t85 * t329 - t116 * t332 - t126 * t333;
-        const gic_real t341 = t21 * t292 - t22 * t340 - t33 * t338 + t45 * t336;
-        const gic_real t342 = t341 + t58 * t334 - t81 * t329 - t115 * t332;
-        const gic_real t343 = t342 - t125 * t333;
-        const gic_real t344 = R(-9.81) + (t157 * t329 + (t182 * t334 + t183 * t336));
-        const gic_real t345 = t282 * t9 - t10 * t343 - t17 * t340 - t29 * t338;
+        const gic_real rate_of_omega_z = t87 * (t337 - t110 * rate_of_spring_f_r_rate - t95 * rate_of_rack_rate);
+        const gic_real t339 = t37 * t301 - t38 * rate_of_omega_z - t50 * t336 - t60 * t334;
+        const gic_real rate_of_omega_y = t339 + t85 * t329 - t116 * rate_of_spring_f_r_rate - t126 * rate_of_rack_rate;
+        const gic_real t341 = t21 * t292 - t22 * rate_of_omega_y - t33 * rate_of_omega_z + t45 * t336;
+        const gic_real t342 = t341 + t58 * t334 - t81 * t329 - t115 * rate_of_spring_f_r_rate;
+        const gic_real rate_of_omega_x = t342 - t125 * rate_of_rack_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t157 * t329 + (t182 * t334 + t183 * t336));
+        const gic_real t345 = t282 * t9 - t10 * rate_of_omega_x - t17 * rate_of_omega_y - t29 * rate_of_omega_z;
         const gic_real t346 = t345 - t42 * t336 - t55 * t334 - t78 * t329;
-        const gic_real t347 = t268 * t4 - t5 * t343 - t14 * t340 - t26 * t338;
-        const gic_real t348 = t347 - t40 * t336 - t52 * t334 - t131 * t329;
-        const gic_real t349 = t275 * t6 - t7 * t343 - t15 * t340 - t27 * t338;
-        const gic_real t350 = t349 - t41 * t336 - t53 * t334 - t132 * t329;
-        const gic_real t351 = y[12];
-        const gic_real t352 = y[13];
-        const gic_real t353 = y[14];
-        const gic_real t354 = e[2] * t144 - e[3] * t145 + e[0] * t146;
-        const gic_real t355 = e[3] * t146 - e[1] * t144 + e[0] * t145;
-        const gic_real t356 = e[1] * t145 - e[2] * t146 + e[0] * t144;
-        const gic_real t357 = t152 * t329 + (t176 * t334 + t177 * t336);
-        const gic_real t358 = t160 * t329 + (t167 * t334 + t173 * t336);
-        const gic_real t359 = xd[0];
-        const gic_real t360 = t346 - t124 * t333;
-        const gic_real t361 = xd[1];
-        const gic_real t362 = xd[2];
-        const gic_real t363 = xd[3];
-        const gic_real t364 = xd[4];
-        rate[0] = t351;
-        rate[1] = t352;
-        rate[2] = t353;
-        rate[3] = t147;
-        rate[4] = t354;
-        rate[5] = t355;
-        rate[6] = t356;
-        rate[12] = t357;
-        rate[15] = t343;
-        rate[13] = t358;
-        rate[16] = t340;
-        rate[14] = t344;
-        rate[17] = t338;
-        rate[7] = t359;
-        rate[18] = t360;
-        rate[8] = t361;
-        rate[19] = t332;
-        rate[9] = t362;
-        rate[20] = t348;
-        rate[10] = t363;
-        rate[21] = t350;
-        rate[11] = t364;
-        rate[22] = t333;
+        const gic_real t347 = t268 * t4 - t5 * rate_of_omega_x - t14 * rate_of_omega_y - t26 * rate_of_omega_z;
+        const gic_real rate_of_spring_r_l_rate = t347 - t40 * t336 - t52 * t334 - t131 * t329;
+        const gic_real t349 = t275 * t6 - t7 * rate_of_omega_x - t15 * rate_of_omega_y - t27 * rate_of_omega_z;
+        const gic_real rate_of_spring_r_r_rate = t349 - t41 * t336 - t53 * t334 - t132 * t329;
+        const gic_real rate_of_r_x = y[FIVE_LINK_STATE_V_X];
+        const gic_real rate_of_r_y = y[FIVE_LINK_STATE_V_Y];
+        const gic_real rate_of_r_z = y[FIVE_LINK_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t144 - e[3] * t145 + e[0] * t146;
+        const gic_real rate_of_e2 = e[3] * t146 - e[1] * t144 + e[0] * t145;
+        const gic_real rate_of_e3 = e[1] * t145 - e[2] * t146 + e[0] * t144;
+        const gic_real rate_of_v_x = t152 * t329 + (t176 * t334 + t177 * t336);
+        const gic_real rate_of_v_y = t160 * t329 + (t167 * t334 + t173 * t336);
+        const gic_real rate_of_spring_f_l = xd[FIVE_LINK_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_l_rate = t346 - t124 * rate_of_rack_rate;
+        const gic_real rate_of_spring_f_r = xd[FIVE_LINK_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[FIVE_LINK_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_r = xd[FIVE_LINK_X_SPRING_R_R];
+        const gic_real rate_of_rack = xd[FIVE_LINK_X_RACK];
+        rate[FIVE_LINK_STATE_R_X] = rate_of_r_x;
+        rate[FIVE_LINK_STATE_R_Y] = rate_of_r_y;
+        rate[FIVE_LINK_STATE_R_Z] = rate_of_r_z;
+        rate[FIVE_LINK_STATE_E0] = rate_of_e0;
+        rate[FIVE_LINK_STATE_E1] = rate_of_e1;
+        rate[FIVE_LINK_STATE_E2] = rate_of_e2;
+        rate[FIVE_LINK_STATE_E3] = rate_of_e3;
+        rate[FIVE_LINK_STATE_V_X] = rate_of_v_x;
+        rate[FIVE_LINK_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[FIVE_LINK_STATE_V_Y] = rate_of_v_y;
+        rate[FIVE_LINK_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[FIVE_LINK_STATE_V_Z] = rate_of_v_z;
+        rate[FIVE_LINK_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[FIVE_LINK_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[FIVE_LINK_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[FIVE_LINK_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[FIVE_LINK_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[FIVE_LINK_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[FIVE_LINK_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[FIVE_LINK_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[FIVE_LINK_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
+        rate[FIVE_LINK_STATE_RACK] = rate_of_rack;
+        rate[FIVE_LINK_STATE_RACK_RATE] = rate_of_rack_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -2568,8 +3141,8 @@ static GIC_APART int five_link_dynamics(five_link *self, gic_real time, const gi
     return GIC_OK;
 }
 
-static int five_link_measure(const five_link *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int five_link_measure(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2586,471 +3159,662 @@ static int five_link_measure(const five_link *self, gic_real time, const gic_rea
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[14] - R(-9.81);
+        const gic_real t10 = rate[FIVE_LINK_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[13] + t5 * rate[12]));
+        /* output chassis_acceleration */
+        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[FIVE_LINK_STATE_V_Y] + t5 *
+            rate[FIVE_LINK_STATE_V_X]));
         const gic_real t15 = e[2] * t6;
         const gic_real t16 = e[0] * t1;
         const gic_real t17 = t15 - t16;
         const gic_real t18 = t11 + t12;
         const gic_real t19 = e[3] * t1;
         const gic_real t20 = R(1.0) - (t7 + t19);
-        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[13] + t17 * rate[12]));
+        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[FIVE_LINK_STATE_V_Y] + t17 *
+            rate[FIVE_LINK_STATE_V_X]));
         const gic_real t22 = R(1.0) - (t8 + t19);
         const gic_real t23 = t2 - t4;
         const gic_real t24 = t15 + t16;
-        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[13] + t22 * rate[12]));
-        const gic_real t26 = m[161] * R(0.09182100000000004);
-        const gic_real t27 = m[159] * R(-0.004825999999999997);
-        const gic_real t28 = t26 + (m[160] * R(0.12319000000000002) + t27);
-        const gic_real t29 = m[152] + t28;
-        const gic_real t30 = m[158] * R(0.09182100000000004);
-        const gic_real t31 = m[156] * R(-0.004825999999999997);
-        const gic_real t32 = t30 + (m[157] * R(0.12319000000000002) + t31);
-        const gic_real t33 = m[151] + t32;
-        const gic_real t34 = m[155] * R(0.09182100000000004);
-        const gic_real t35 = m[153] * R(-0.004825999999999997);
-        const gic_real t36 = t34 + (m[154] * R(0.12319000000000002) + t35);
+        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[FIVE_LINK_STATE_V_Y] + t22 *
+            rate[FIVE_LINK_STATE_V_X]));
+        /* wheel tire_f_l */
+        const gic_real t26 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t27 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t28 = t26 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t27);
+        const gic_real t29 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t28;
+        const gic_real t30 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t31 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t32 = t30 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t31);
+        const gic_real t33 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t32;
+        const gic_real t34 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t35 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = t34 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t35);
         const gic_real t37 = R(1.653405) + t36;
-        const gic_real t38 = y[0] + (t5 * t29 + (t17 * t33 + t22 * t37));
-        const gic_real t39 = y[1] + (t13 * t29 + (t20 * t33 + t24 * t37));
-        const gic_real t40 = y[2] + (t9 * t29 + (t18 * t33 + t23 * t37));
-        const gic_real t41 = m[197] * R(0.09182100000000004);
-        const gic_real t42 = m[195] * R(-0.004825999999999997);
-        const gic_real t43 = t41 + (m[196] * R(-0.12319000000000002) + t42);
-        const gic_real t44 = m[188] + t43;
-        const gic_real t45 = m[194] * R(0.09182100000000004);
-        const gic_real t46 = m[192] * R(-0.004825999999999997);
-        const gic_real t47 = t45 + (m[193] * R(-0.12319000000000002) + t46);
-        const gic_real t48 = m[187] + t47;
-        const gic_real t49 = m[191] * R(0.09182100000000004);
-        const gic_real t50 = m[189] * R(-0.004825999999999997);
-        const gic_real t51 = t49 + (m[190] * R(-0.12319000000000002) + t50);
+        const gic_real output_wheel_f_l_x = y[FIVE_LINK_STATE_R_X] + (t5 * t29 + (t17 * t33 + t22 * t37));
+        const gic_real output_wheel_f_l_y = y[FIVE_LINK_STATE_R_Y] + (t13 * t29 + (t20 * t33 + t24 * t37));
+        const gic_real output_wheel_f_l_z = y[FIVE_LINK_STATE_R_Z] + (t9 * t29 + (t18 * t33 + t23 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t42 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t43 = t41 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t42);
+        const gic_real t44 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t43;
+        const gic_real t45 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t46 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t47 = t45 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t46);
+        const gic_real t48 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t47;
+        const gic_real t49 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t50 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t51 = t49 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t50);
         const gic_real t52 = R(1.653405) + t51;
-        const gic_real t53 = y[0] + (t5 * t44 + (t17 * t48 + t22 * t52));
-        const gic_real t54 = y[1] + (t13 * t44 + (t20 * t48 + t24 * t52));
-        const gic_real t55 = y[2] + (t9 * t44 + (t18 * t48 + t23 * t52));
-        const gic_real t56 = m[101] * R(0.09182100000000004);
-        const gic_real t57 = m[99] * R(-0.030000000000000027);
-        const gic_real t58 = t56 + (m[100] * R(0.12319000000000002) + t57);
-        const gic_real t59 = m[92] + t58;
-        const gic_real t60 = m[98] * R(0.09182100000000004);
-        const gic_real t61 = m[96] * R(-0.030000000000000027);
-        const gic_real t62 = t60 + (m[97] * R(0.12319000000000002) + t61);
-        const gic_real t63 = m[91] + t62;
-        const gic_real t64 = m[95] * R(0.09182100000000004);
-        const gic_real t65 = m[93] * R(-0.030000000000000027);
-        const gic_real t66 = t64 + (m[94] * R(0.12319000000000002) + t65);
-        const gic_real t67 = m[90] + t66;
-        const gic_real t68 = y[0] + (t5 * t59 + (t17 * t63 + t22 * t67));
-        const gic_real t69 = y[1] + (t13 * t59 + (t20 * t63 + t24 * t67));
-        const gic_real t70 = y[2] + (t9 * t59 + (t18 * t63 + t23 * t67));
-        const gic_real t71 = m[131] * R(0.09182100000000004);
-        const gic_real t72 = m[129] * R(-0.030000000000000027);
-        const gic_real t73 = t71 + (m[130] * R(-0.12319000000000002) + t72);
-        const gic_real t74 = m[122] + t73;
-        const gic_real t75 = m[128] * R(0.09182100000000004);
-        const gic_real t76 = m[126] * R(-0.030000000000000027);
-        const gic_real t77 = t75 + (m[127] * R(-0.12319000000000002) + t76);
-        const gic_real t78 = m[121] + t77;
-        const gic_real t79 = m[125] * R(0.09182100000000004);
-        const gic_real t80 = m[123] * R(-0.030000000000000027);
-        const gic_real t81 = t79 + (m[124] * R(-0.12319000000000002) + t80);
-        const gic_real t82 = m[120] + t81;
-        const gic_real t83 = y[0] + (t5 * t74 + (t17 * t78 + t22 * t82));
-        const gic_real t84 = y[1] + (t13 * t74 + (t20 * t78 + t24 * t82));
-        const gic_real t85 = y[2] + (t9 * t74 + (t18 * t78 + t23 * t82));
-        const gic_real t86 = GIC_ATAN2(m[100] * t9 + (m[97] * t18 + m[94] * t23), m[101] * t9 + (m[98] * t18 + m[95] * t23));
-        const gic_real t87 = -(m[99] * t9 + (m[96] * t18 + m[93] * t23));
-        const gic_real t88 = GIC_ATAN2(m[99] * t13 + (m[96] * t20 + m[93] * t24), m[99] * t5 + (m[96] * t17 + m[93] * t22));
-        const gic_real t89 = GIC_ATAN2(m[130] * t9 + (m[127] * t18 + m[124] * t23), m[131] * t9 + (m[128] * t18 + m[125] * t23));
-        const gic_real t90 = -(m[129] * t9 + (m[126] * t18 + m[123] * t23));
-        const gic_real t91 = GIC_ATAN2(m[129] * t13 + (m[126] * t20 + m[123] * t24), m[129] * t5 + (m[126] * t17 + m[123] * t22));
-        const gic_real t92 = x[0] - R(0.31907);
+        const gic_real output_wheel_f_r_x = y[FIVE_LINK_STATE_R_X] + (t5 * t44 + (t17 * t48 + t22 * t52));
+        const gic_real output_wheel_f_r_y = y[FIVE_LINK_STATE_R_Y] + (t13 * t44 + (t20 * t48 + t24 * t52));
+        const gic_real output_wheel_f_r_z = y[FIVE_LINK_STATE_R_Z] + (t9 * t44 + (t18 * t48 + t23 * t52));
+        /* wheel tire_r_l */
+        const gic_real t56 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t57 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t58 = t56 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t57);
+        const gic_real t59 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t58;
+        const gic_real t60 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t61 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t62 = t60 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t61);
+        const gic_real t63 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t62;
+        const gic_real t64 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t65 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t66 = t64 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t65);
+        const gic_real t67 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t66;
+        const gic_real output_wheel_r_l_x = y[FIVE_LINK_STATE_R_X] + (t5 * t59 + (t17 * t63 + t22 * t67));
+        const gic_real output_wheel_r_l_y = y[FIVE_LINK_STATE_R_Y] + (t13 * t59 + (t20 * t63 + t24 * t67));
+        const gic_real output_wheel_r_l_z = y[FIVE_LINK_STATE_R_Z] + (t9 * t59 + (t18 * t63 + t23 * t67));
+        /* wheel tire_r_r */
+        const gic_real t71 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t72 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t73 = t71 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t72);
+        const gic_real t74 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t73;
+        const gic_real t75 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t76 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t77 = t75 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t76);
+        const gic_real t78 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t77;
+        const gic_real t79 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t80 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t81 = t79 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t80);
+        const gic_real t82 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t81;
+        const gic_real output_wheel_r_r_x = y[FIVE_LINK_STATE_R_X] + (t5 * t74 + (t17 * t78 + t22 * t82));
+        const gic_real output_wheel_r_r_y = y[FIVE_LINK_STATE_R_Y] + (t13 * t74 + (t20 * t78 + t24 * t82));
+        const gic_real output_wheel_r_r_z = y[FIVE_LINK_STATE_R_Z] + (t9 * t74 + (t18 * t78 + t23 * t82));
+        /* output attitude_r_l */
+        const gic_real output_attitude_r_l_roll = GIC_ATAN2(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] *
+            t23), m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] *
+            t23));
+        const gic_real t87 = -(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t23));
+        const gic_real output_attitude_r_l_yaw = GIC_ATAN2(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * t13 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * t20 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t24), m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * t5 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * t17 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t22));
+        /* output attitude_r_r */
+        const gic_real output_attitude_r_r_roll = GIC_ATAN2(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] *
+            t23), m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] *
+            t23));
+        const gic_real t90 = -(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * t9 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * t18 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t23));
+        const gic_real output_attitude_r_r_yaw = GIC_ATAN2(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * t13 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * t20 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t24), m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * t5 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * t17 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t22));
+        /* force spring_f_l */
+        const gic_real t92 = x[FIVE_LINK_X_SPRING_F_L] - R(0.31907);
         const gic_real t93 = t92 * R(167070.9);
-        const gic_real t94 = xd[0] * R(17490.8);
-        const gic_real t95 = x[1] - R(0.31907);
+        const gic_real t94 = xd[FIVE_LINK_X_SPRING_F_L] * R(17490.8);
+        /* force spring_f_r */
+        const gic_real t95 = x[FIVE_LINK_X_SPRING_F_R] - R(0.31907);
         const gic_real t96 = R(167070.9) * t95;
-        const gic_real t97 = xd[1] * R(17490.8);
-        const gic_real t98 = x[2] - R(0.4321);
+        const gic_real t97 = xd[FIVE_LINK_X_SPRING_F_R] * R(17490.8);
+        /* force spring_r_l */
+        const gic_real t98 = x[FIVE_LINK_X_SPRING_R_L] - R(0.4321);
         const gic_real t99 = t98 * R(89500.0);
-        const gic_real t100 = xd[2] * R(6010.0);
-        const gic_real t101 = x[3] - R(0.4321);
+        const gic_real t100 = xd[FIVE_LINK_X_SPRING_R_L] * R(6010.0);
+        /* force spring_r_r */
+        const gic_real t101 = x[FIVE_LINK_X_SPRING_R_R] - R(0.4321);
         const gic_real t102 = R(89500.0) * t101;
-        const gic_real t103 = xd[3] * R(6010.0);
-        const gic_real t104 = x[4] * R(100000.0);
-        const gic_real t105 = xd[4] * R(12000.0);
-        const gic_real t106 = m[167] + (m[162] * t32 - m[163] * t36) + (y[15] * t33 - y[16] * t37);
-        const gic_real t107 = m[166] + (m[164] * t36 - m[162] * t28) + (y[17] * t37 - y[15] * t29);
-        const gic_real t108 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
-        const gic_real t109 = y[13] + (t13 * t106 + (t20 * t107 + t24 * t108));
+        const gic_real t103 = xd[FIVE_LINK_X_SPRING_R_R] * R(6010.0);
+        /* force rack */
+        const gic_real t104 = x[FIVE_LINK_X_RACK] * R(100000.0);
+        const gic_real t105 = xd[FIVE_LINK_X_RACK] * R(12000.0);
+        const gic_real t106 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t32 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t36) + (y[FIVE_LINK_STATE_OMEGA_X] * t33 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t37);
+        const gic_real t107 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t36 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t28) + (y[FIVE_LINK_STATE_OMEGA_Z] * t37 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t29);
+        const gic_real t108 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t28 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t32 + (y[FIVE_LINK_STATE_OMEGA_Y] * t29 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t33);
+        const gic_real t109 = y[FIVE_LINK_STATE_V_Y] + (t13 * t106 + (t20 * t107 + t24 * t108));
         gic_real road110[3];
-        if (!five_link_road_height(self, time, t38, t39, road110))
+        if (!five_link_road_height(self, time, output_wheel_f_l_x, output_wheel_f_l_y, road110))
             return GIC_ERROR_ROAD;
-        const gic_real t111 = y[12] + (t5 * t106 + (t17 * t107 + t22 * t108));
-        const gic_real t112 = y[14] + (t9 * t106 + (t18 * t107 + t23 * t108));
-        const gic_real t113 = t109 * road110[2] + t111 * road110[1] - t112;
-        const gic_real t114 = road110[0] + R(0.4699) - t40;
-        const gic_real t115 = GIC_MIN(GIC_MAX(t114 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t116 = t113 * ((R(3.0) - (t115 + t115)) * (t115 * t115) * R(500.0));
-        const gic_real t117 = GIC_MAX(t116 + t114 * R(283000.0), R(0.0));
-        const gic_real t118 = m[203] + (m[198] * t47 - m[199] * t51) + (y[15] * t48 - y[16] * t52);
-        const gic_real t119 = m[202] + (m[200] * t51 - m[198] * t43) + (y[17] * t52 - y[15] * t44);
-        const gic_real t120 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
-        const gic_real t121 = y[13] + (t13 * t118 + (t20 * t119 + t24 * t120));
+        const gic_real t111 = y[FIVE_LINK_STATE_V_X] + (t5 * t106 + (t17 * t107 + t22 * t108));
+        const gic_real t112 = y[FIVE_LINK_STATE_V_Z] + (t9 * t106 + (t18 * t107 + t23 * t108));
+        const gic_real output_tire_f_l_deflection_rate = t109 * road110[2] + t111 * road110[1] - t112;
+        const gic_real output_tire_f_l_deflection = road110[0] + R(0.4699) - output_wheel_f_l_z;
+        const gic_real t115 = GIC_MIN(GIC_MAX(output_tire_f_l_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t116 = output_tire_f_l_deflection_rate * ((R(3.0) - (t115 + t115)) * (t115 * t115) * R(500.0));
+        const gic_real output_tire_f_l_fz = GIC_MAX(t116 + output_tire_f_l_deflection * R(283000.0), R(0.0));
+        const gic_real t118 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t47 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t51) + (y[FIVE_LINK_STATE_OMEGA_X] * t48 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t52);
+        const gic_real t119 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t51 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t43) + (y[FIVE_LINK_STATE_OMEGA_Z] * t52 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t44);
+        const gic_real t120 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t43 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t47 + (y[FIVE_LINK_STATE_OMEGA_Y] * t44 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t48);
+        const gic_real t121 = y[FIVE_LINK_STATE_V_Y] + (t13 * t118 + (t20 * t119 + t24 * t120));
         gic_real road122[3];
-        if (!five_link_road_height(self, time, t53, t54, road122))
+        if (!five_link_road_height(self, time, output_wheel_f_r_x, output_wheel_f_r_y, road122))
             return GIC_ERROR_ROAD;
-        const gic_real t123 = y[12] + (t5 * t118 + (t17 * t119 + t22 * t120));
-        const gic_real t124 = y[14] + (t9 * t118 + (t18 * t119 + t23 * t120));
-        const gic_real t125 = t121 * road122[2] + t123 * road122[1] - t124;
-        const gic_real t126 = R(0.4699) + road122[0] - t55;
-        const gic_real t127 = GIC_MIN(GIC_MAX(R(100.0) * t126, R(0.0)), R(1.0));
-        const gic_real t128 = t125 * (R(500.0) * ((R(3.0) - (t127 + t127)) * (t127 * t127)));
-        const gic_real t129 = GIC_MAX(t128 + R(283000.0) * t126, R(0.0));
-        const gic_real t130 = m[107] + (m[102] * t62 - m[103] * t66) + (y[15] * t63 - y[16] * t67);
-        const gic_real t131 = m[106] + (m[104] * t66 - m[102] * t58) + (y[17] * t67 - y[15] * t59);
-        const gic_real t132 = m[105] + (m[103] * t58 - m[104] * t62) + (y[16] * t59 - y[17] * t63);
-        const gic_real t133 = y[13] + (t13 * t130 + (t20 * t131 + t24 * t132));
+        const gic_real t123 = y[FIVE_LINK_STATE_V_X] + (t5 * t118 + (t17 * t119 + t22 * t120));
+        const gic_real t124 = y[FIVE_LINK_STATE_V_Z] + (t9 * t118 + (t18 * t119 + t23 * t120));
+        const gic_real output_tire_f_r_deflection_rate = t121 * road122[2] + t123 * road122[1] - t124;
+        const gic_real output_tire_f_r_deflection = R(0.4699) + road122[0] - output_wheel_f_r_z;
+        const gic_real t127 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_f_r_deflection, R(0.0)), R(1.0));
+        const gic_real t128 = output_tire_f_r_deflection_rate * (R(500.0) * ((R(3.0) - (t127 + t127)) * (t127 * t127)));
+        const gic_real output_tire_f_r_fz = GIC_MAX(t128 + R(283000.0) * output_tire_f_r_deflection, R(0.0));
+        const gic_real t130 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t62 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t66) + (y[FIVE_LINK_STATE_OMEGA_X] * t63 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t67);
+        const gic_real t131 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t66 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t58) + (y[FIVE_LINK_STATE_OMEGA_Z] * t67 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t59);
+        const gic_real t132 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t58 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t62) + (y[FIVE_LINK_STATE_OMEGA_Y] * t59 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t63);
+        const gic_real t133 = y[FIVE_LINK_STATE_V_Y] + (t13 * t130 + (t20 * t131 + t24 * t132));
         gic_real road134[3];
-        if (!five_link_road_height(self, time, t68, t69, road134))
+        if (!five_link_road_height(self, time, output_wheel_r_l_x, output_wheel_r_l_y, road134))
             return GIC_ERROR_ROAD;
-        const gic_real t135 = y[12] + (t5 * t130 + (t17 * t131 + t22 * t132));
-        const gic_real t136 = y[14] + (t9 * t130 + (t18 * t131 + t23 * t132));
-        const gic_real t137 = t133 * road134[2] + t135 * road134[1] - t136;
-        const gic_real t138 = R(0.4699) + road134[0] - t70;
-        const gic_real t139 = GIC_MIN(GIC_MAX(R(100.0) * t138, R(0.0)), R(1.0));
-        const gic_real t140 = t137 * (R(500.0) * ((R(3.0) - (t139 + t139)) * (t139 * t139)));
-        const gic_real t141 = GIC_MAX(t140 + R(283000.0) * t138, R(0.0));
-        const gic_real t142 = m[137] + (m[132] * t77 - m[133] * t81) + (y[15] * t78 - y[16] * t82);
-        const gic_real t143 = m[136] + (m[134] * t81 - m[132] * t73) + (y[17] * t82 - y[15] * t74);
-        const gic_real t144 = m[135] + (m[133] * t73 - m[134] * t77) + (y[16] * t74 - y[17] * t78);
-        const gic_real t145 = y[13] + (t13 * t142 + (t20 * t143 + t24 * t144));
+        const gic_real t135 = y[FIVE_LINK_STATE_V_X] + (t5 * t130 + (t17 * t131 + t22 * t132));
+        const gic_real t136 = y[FIVE_LINK_STATE_V_Z] + (t9 * t130 + (t18 * t131 + t23 * t132));
+        const gic_real output_tire_r_l_deflection_rate = t133 * road134[2] + t135 * road134[1] - t136;
+        const gic_real output_tire_r_l_deflection = R(0.4699) + road134[0] - output_wheel_r_l_z;
+        const gic_real t139 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_l_deflection, R(0.0)), R(1.0));
+        const gic_real t140 = output_tire_r_l_deflection_rate * (R(500.0) * ((R(3.0) - (t139 + t139)) * (t139 * t139)));
+        const gic_real output_tire_r_l_fz = GIC_MAX(t140 + R(283000.0) * output_tire_r_l_deflection, R(0.0));
+        const gic_real t142 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t77 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t81) + (y[FIVE_LINK_STATE_OMEGA_X] * t78 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t82);
+        const gic_real t143 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t81 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t73) + (y[FIVE_LINK_STATE_OMEGA_Z] * t82 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t74);
+        const gic_real t144 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t73 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t77) + (y[FIVE_LINK_STATE_OMEGA_Y] * t74 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t78);
+        const gic_real t145 = y[FIVE_LINK_STATE_V_Y] + (t13 * t142 + (t20 * t143 + t24 * t144));
         gic_real road146[3];
-        if (!five_link_road_height(self, time, t83, t84, road146))
+        if (!five_link_road_height(self, time, output_wheel_r_r_x, output_wheel_r_r_y, road146))
             return GIC_ERROR_ROAD;
-        const gic_real t147 = y[12] + (t5 * t142 + (t17 * t143 + t22 * t144));
-        const gic_real t148 = y[14] + (t9 * t142 + (t18 * t143 + t23 * t144));
-        const gic_real t149 = t145 * road146[2] + t147 * road146[1] - t148;
-        const gic_real t150 = R(0.4699) + road146[0] - t85;
-        const gic_real t151 = GIC_MIN(GIC_MAX(R(100.0) * t150, R(0.0)), R(1.0));
-        const gic_real t152 = t149 * (R(500.0) * ((R(3.0) - (t151 + t151)) * (t151 * t151)));
-        const gic_real t153 = GIC_MAX(t152 + R(283000.0) * t150, R(0.0));
-        const gic_real t154 = y[17] * (y[17] * R(3570.2)) + (y[16] * (y[16] * R(2955.66)) + y[15] * (y[15] * R(1078.52)));
-        const gic_real t155 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t156 = y[16] * R(0.21300000000000008);
-        const gic_real t157 = y[16] * R(0.056);
-        const gic_real t158 = y[14] + (t18 * t155 + t23 * t156 - t9 * t157);
-        const gic_real t159 = y[13] + (t20 * t155 + t24 * t156 - t13 * t157);
-        const gic_real t160 = y[12] + (t17 * t155 + t22 * t156 - t5 * t157);
+        const gic_real t147 = y[FIVE_LINK_STATE_V_X] + (t5 * t142 + (t17 * t143 + t22 * t144));
+        const gic_real t148 = y[FIVE_LINK_STATE_V_Z] + (t9 * t142 + (t18 * t143 + t23 * t144));
+        const gic_real output_tire_r_r_deflection_rate = t145 * road146[2] + t147 * road146[1] - t148;
+        const gic_real output_tire_r_r_deflection = R(0.4699) + road146[0] - output_wheel_r_r_z;
+        const gic_real t151 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_r_deflection, R(0.0)), R(1.0));
+        const gic_real t152 = output_tire_r_r_deflection_rate * (R(500.0) * ((R(3.0) - (t151 + t151)) * (t151 * t151)));
+        const gic_real output_tire_r_r_fz = GIC_MAX(t152 + R(283000.0) * output_tire_r_r_deflection, R(0.0));
+        /* output energy */
+        const gic_real t154 = y[FIVE_LINK_STATE_OMEGA_Z] * (y[FIVE_LINK_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[FIVE_LINK_STATE_OMEGA_Y] * (y[FIVE_LINK_STATE_OMEGA_Y] * R(2955.66)) + y[FIVE_LINK_STATE_OMEGA_X] *
+            (y[FIVE_LINK_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t155 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - y[FIVE_LINK_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t156 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t157 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t158 = y[FIVE_LINK_STATE_V_Z] + (t18 * t155 + t23 * t156 - t9 * t157);
+        const gic_real t159 = y[FIVE_LINK_STATE_V_Y] + (t20 * t155 + t24 * t156 - t13 * t157);
+        const gic_real t160 = y[FIVE_LINK_STATE_V_X] + (t17 * t155 + t22 * t156 - t5 * t157);
         const gic_real t161 = R(2086.52) * (t158 * t158 + (t159 * t159 + t160 * t160));
-        const gic_real t162 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t163 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t164 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t165 = y[14] + (t9 * t162 + (t18 * t163 + t23 * t164));
-        const gic_real t166 = y[13] + (t13 * t162 + (t20 * t163 + t24 * t164));
-        const gic_real t167 = y[12] + (t5 * t162 + (t17 * t163 + t22 * t164));
+        const gic_real t162 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t163 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] + (R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Z] - R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t164 = R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t165 = y[FIVE_LINK_STATE_V_Z] + (t9 * t162 + (t18 * t163 + t23 * t164));
+        const gic_real t166 = y[FIVE_LINK_STATE_V_Y] + (t13 * t162 + (t20 * t163 + t24 * t164));
+        const gic_real t167 = y[FIVE_LINK_STATE_V_X] + (t5 * t162 + (t17 * t163 + t22 * t164));
         const gic_real t168 = R(9.072) * (t165 * t165 + (t166 * t166 + t167 * t167));
-        const gic_real t169 = y[17] * y[17] + (y[16] * y[16] + y[15] * y[15]) + t168;
-        const gic_real t170 = y[17] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t171 = m[38] * R(0.8938);
-        const gic_real t172 = m[37] * R(0.4469);
-        const gic_real t173 = m[41] * t171 + m[40] * t172;
-        const gic_real t174 = y[17] * t173 + y[16] * (m[38] * t171 + m[37] * t172);
-        const gic_real t175 = m[42] + y[15];
-        const gic_real t176 = y[17] * (t170 + y[16] * t173) + (y[16] * t174 + t175 * (t175 * R(0.4469)));
-        const gic_real t177 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t169 = y[FIVE_LINK_STATE_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Z] + (y[FIVE_LINK_STATE_OMEGA_Y] *
+            y[FIVE_LINK_STATE_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_X]) + t168;
+        const gic_real t170 = y[FIVE_LINK_STATE_OMEGA_Z] * (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.4469)));
+        const gic_real t171 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t172 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t173 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * t171 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * t172;
+        const gic_real t174 = y[FIVE_LINK_STATE_OMEGA_Z] * t173 + y[FIVE_LINK_STATE_OMEGA_Y] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * t171 + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * t172);
+        const gic_real t175 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t176 = y[FIVE_LINK_STATE_OMEGA_Z] * (t170 + y[FIVE_LINK_STATE_OMEGA_Y] * t173) +
+            (y[FIVE_LINK_STATE_OMEGA_Y] * t174 + t175 * (t175 * R(0.4469)));
+        const gic_real t177 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.24689200985615367);
         const gic_real t178 = R(0.307086) + t177;
-        const gic_real t179 = R(1.688965) * y[16];
-        const gic_real t180 = m[42] * t177 + (y[15] * t178 - t179);
-        const gic_real t181 = R(1.688965) * y[17];
-        const gic_real t182 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t183 = t181 - y[15] * t182 - m[42] * t182;
-        const gic_real t184 = y[16] * t182 - y[17] * t178;
-        const gic_real t185 = y[14] + (t9 * t180 + (t18 * t183 + t23 * t184));
-        const gic_real t186 = y[13] + (t13 * t180 + (t20 * t183 + t24 * t184));
-        const gic_real t187 = y[12] + (t5 * t180 + (t17 * t183 + t22 * t184));
+        const gic_real t179 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t180 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t177 + (y[FIVE_LINK_STATE_OMEGA_X] *
+            t178 - t179);
+        const gic_real t181 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t182 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.24689200985615367);
+        const gic_real t183 = t181 - y[FIVE_LINK_STATE_OMEGA_X] * t182 -
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t182;
+        const gic_real t184 = y[FIVE_LINK_STATE_OMEGA_Y] * t182 - y[FIVE_LINK_STATE_OMEGA_Z] * t178;
+        const gic_real t185 = y[FIVE_LINK_STATE_V_Z] + (t9 * t180 + (t18 * t183 + t23 * t184));
+        const gic_real t186 = y[FIVE_LINK_STATE_V_Y] + (t13 * t180 + (t20 * t183 + t24 * t184));
+        const gic_real t187 = y[FIVE_LINK_STATE_V_X] + (t5 * t180 + (t17 * t183 + t22 * t184));
         const gic_real t188 = R(23.965) * (t185 * t185 + (t186 * t186 + t187 * t187));
         const gic_real t189 = R(0.5) * (t154 + t161) + R(0.5) * t169 + R(0.5) * (t176 + t188);
-        const gic_real t190 = y[17] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t191 = m[68] * R(0.8938);
-        const gic_real t192 = m[67] * R(0.4469);
-        const gic_real t193 = m[71] * t191 + m[70] * t192;
-        const gic_real t194 = y[17] * t193 + y[16] * (m[68] * t191 + m[67] * t192);
-        const gic_real t195 = m[72] + y[15];
-        const gic_real t196 = y[17] * (t190 + y[16] * t193) + (y[16] * t194 + t195 * (R(0.4469) * t195));
-        const gic_real t197 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t190 = y[FIVE_LINK_STATE_OMEGA_Z] * (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(0.4469)));
+        const gic_real t191 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t192 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t193 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * t191 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * t192;
+        const gic_real t194 = y[FIVE_LINK_STATE_OMEGA_Z] * t193 + y[FIVE_LINK_STATE_OMEGA_Y] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * t191 + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * t192);
+        const gic_real t195 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t196 = y[FIVE_LINK_STATE_OMEGA_Z] * (t190 + y[FIVE_LINK_STATE_OMEGA_Y] * t193) +
+            (y[FIVE_LINK_STATE_OMEGA_Y] * t194 + t195 * (R(0.4469) * t195));
+        const gic_real t197 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(-0.24689200985615367);
         const gic_real t198 = R(-0.307086) + t197;
-        const gic_real t199 = m[72] * t197 + (y[15] * t198 - t179);
-        const gic_real t200 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t201 = t181 - y[15] * t200 - m[72] * t200;
-        const gic_real t202 = y[16] * t200 - y[17] * t198;
-        const gic_real t203 = y[14] + (t9 * t199 + (t18 * t201 + t23 * t202));
-        const gic_real t204 = y[13] + (t13 * t199 + (t20 * t201 + t24 * t202));
-        const gic_real t205 = y[12] + (t5 * t199 + (t17 * t201 + t22 * t202));
+        const gic_real t199 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t197 + (y[FIVE_LINK_STATE_OMEGA_X] *
+            t198 - t179);
+        const gic_real t200 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(-0.24689200985615367);
+        const gic_real t201 = t181 - y[FIVE_LINK_STATE_OMEGA_X] * t200 -
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t200;
+        const gic_real t202 = y[FIVE_LINK_STATE_OMEGA_Y] * t200 - y[FIVE_LINK_STATE_OMEGA_Z] * t198;
+        const gic_real t203 = y[FIVE_LINK_STATE_V_Z] + (t9 * t199 + (t18 * t201 + t23 * t202));
+        const gic_real t204 = y[FIVE_LINK_STATE_V_Y] + (t13 * t199 + (t20 * t201 + t24 * t202));
+        const gic_real t205 = y[FIVE_LINK_STATE_V_X] + (t5 * t199 + (t17 * t201 + t22 * t202));
         const gic_real t206 = R(23.965) * (t203 * t203 + (t204 * t204 + t205 * t205));
-        const gic_real t207 = m[164] + y[17];
-        const gic_real t208 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t209 = m[163] + y[16];
-        const gic_real t210 = m[158] * R(4.7728205);
-        const gic_real t211 = m[157] * R(7.58122);
-        const gic_real t212 = m[156] * R(4.8947505);
-        const gic_real t213 = m[161] * t210 + (m[160] * t211 + m[159] * t212);
-        const gic_real t214 = m[162] + y[15];
-        const gic_real t215 = m[155] * R(4.7728205);
-        const gic_real t216 = m[154] * R(7.58122);
-        const gic_real t217 = m[153] * R(4.8947505);
-        const gic_real t218 = m[161] * t215 + (m[160] * t216 + m[159] * t217);
+        const gic_real t207 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t208 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t209 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t210 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t211 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t212 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t213 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t210 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t211 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t212);
+        const gic_real t214 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t215 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t216 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t217 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t218 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t215 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t216 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t217);
         const gic_real t219 = t207 * (t207 * t208 + (t209 * t213 + t214 * t218));
-        const gic_real t220 = t209 * (m[158] * t210 + (m[157] * t211 + m[156] * t212));
-        const gic_real t221 = m[158] * t215 + (m[157] * t216 + m[156] * t217);
-        const gic_real t222 = t214 * (m[155] * t215 + (m[154] * t216 + m[153] * t217));
+        const gic_real t220 = t209 * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t210 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t211 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t212));
+        const gic_real t221 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t215 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t216 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t217);
+        const gic_real t222 = t214 * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * t215 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * t216 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] *
+            t217));
         const gic_real t223 = t209 * (t207 * t213 + (t220 + t214 * t221)) + t214 * (t207 * t218 + (t209 * t221 + t222));
-        const gic_real t224 = t30 + (t31 + m[157] * R(0.08910630000000008));
-        const gic_real t225 = t34 + (t35 + m[154] * R(0.08910630000000008));
-        const gic_real t226 = m[151] + t224;
+        const gic_real t224 = t30 + (t31 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t225 = t34 + (t35 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t226 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t224;
         const gic_real t227 = R(1.653405) + t225;
-        const gic_real t228 = m[167] + (m[162] * t224 - m[163] * t225) + (y[15] * t226 - y[16] * t227);
-        const gic_real t229 = t26 + (t27 + m[160] * R(0.08910630000000008));
-        const gic_real t230 = m[152] + t229;
-        const gic_real t231 = m[166] + (m[164] * t225 - m[162] * t229) + (y[17] * t227 - y[15] * t230);
-        const gic_real t232 = m[163] * t229 - m[164] * t224 + (y[16] * t230 - y[17] * t226);
-        const gic_real t233 = y[14] + (t9 * t228 + (t18 * t231 + t23 * t232));
-        const gic_real t234 = y[13] + (t13 * t228 + (t20 * t231 + t24 * t232));
-        const gic_real t235 = y[12] + (t5 * t228 + (t17 * t231 + t22 * t232));
+        const gic_real t228 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t224 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t225) + (y[FIVE_LINK_STATE_OMEGA_X] * t226 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t227);
+        const gic_real t229 = t26 + (t27 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t230 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t229;
+        const gic_real t231 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t225 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t229) + (y[FIVE_LINK_STATE_OMEGA_Z] * t227 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t230);
+        const gic_real t232 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t229 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t224 + (y[FIVE_LINK_STATE_OMEGA_Y] * t230 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t226);
+        const gic_real t233 = y[FIVE_LINK_STATE_V_Z] + (t9 * t228 + (t18 * t231 + t23 * t232));
+        const gic_real t234 = y[FIVE_LINK_STATE_V_Y] + (t13 * t228 + (t20 * t231 + t24 * t232));
+        const gic_real t235 = y[FIVE_LINK_STATE_V_X] + (t5 * t228 + (t17 * t231 + t22 * t232));
         const gic_real t236 = R(90.555) * (t233 * t233 + (t234 * t234 + t235 * t235));
         const gic_real t237 = t189 + R(0.5) * (t196 + t206) + R(0.5) * (t219 + t223 + t236);
-        const gic_real t238 = m[200] + y[17];
-        const gic_real t239 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t240 = m[199] + y[16];
-        const gic_real t241 = m[194] * R(4.7728205);
-        const gic_real t242 = m[193] * R(7.58122);
-        const gic_real t243 = m[192] * R(4.8947505);
-        const gic_real t244 = m[197] * t241 + (m[196] * t242 + m[195] * t243);
-        const gic_real t245 = m[198] + y[15];
-        const gic_real t246 = m[191] * R(4.7728205);
-        const gic_real t247 = m[190] * R(7.58122);
-        const gic_real t248 = m[189] * R(4.8947505);
-        const gic_real t249 = m[197] * t246 + (m[196] * t247 + m[195] * t248);
+        const gic_real t238 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t239 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t240 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t241 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t242 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t243 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t244 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t241 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t242 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t243);
+        const gic_real t245 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t246 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t247 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t248 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t249 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t246 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t247 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t248);
         const gic_real t250 = t238 * (t238 * t239 + (t240 * t244 + t245 * t249));
-        const gic_real t251 = t240 * (m[194] * t241 + (m[193] * t242 + m[192] * t243));
-        const gic_real t252 = m[194] * t246 + (m[193] * t247 + m[192] * t248);
-        const gic_real t253 = t245 * (m[191] * t246 + (m[190] * t247 + m[189] * t248));
+        const gic_real t251 = t240 * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t241 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t242 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t243));
+        const gic_real t252 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t246 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t247 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t248);
+        const gic_real t253 = t245 * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * t246 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * t247 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] *
+            t248));
         const gic_real t254 = t240 * (t238 * t244 + (t251 + t245 * t252)) + t245 * (t238 * t249 + (t240 * t252 + t253));
-        const gic_real t255 = t45 + (t46 + m[193] * R(-0.08910630000000008));
-        const gic_real t256 = t49 + (t50 + m[190] * R(-0.08910630000000008));
-        const gic_real t257 = m[187] + t255;
+        const gic_real t255 = t45 + (t46 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t256 = t49 + (t50 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t257 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t255;
         const gic_real t258 = R(1.653405) + t256;
-        const gic_real t259 = m[203] + (m[198] * t255 - m[199] * t256) + (y[15] * t257 - y[16] * t258);
-        const gic_real t260 = t41 + (t42 + m[196] * R(-0.08910630000000008));
-        const gic_real t261 = m[188] + t260;
-        const gic_real t262 = m[202] + (m[200] * t256 - m[198] * t260) + (y[17] * t258 - y[15] * t261);
-        const gic_real t263 = m[199] * t260 - m[200] * t255 + (y[16] * t261 - y[17] * t257);
-        const gic_real t264 = y[14] + (t9 * t259 + (t18 * t262 + t23 * t263));
-        const gic_real t265 = y[13] + (t13 * t259 + (t20 * t262 + t24 * t263));
-        const gic_real t266 = y[12] + (t5 * t259 + (t17 * t262 + t22 * t263));
+        const gic_real t259 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t255 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t256) + (y[FIVE_LINK_STATE_OMEGA_X] * t257 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t258);
+        const gic_real t260 = t41 + (t42 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t261 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t260;
+        const gic_real t262 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t256 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t260) + (y[FIVE_LINK_STATE_OMEGA_Z] * t258 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t261);
+        const gic_real t263 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t260 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t255 + (y[FIVE_LINK_STATE_OMEGA_Y] * t261 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t257);
+        const gic_real t264 = y[FIVE_LINK_STATE_V_Z] + (t9 * t259 + (t18 * t262 + t23 * t263));
+        const gic_real t265 = y[FIVE_LINK_STATE_V_Y] + (t13 * t259 + (t20 * t262 + t24 * t263));
+        const gic_real t266 = y[FIVE_LINK_STATE_V_X] + (t5 * t259 + (t17 * t262 + t22 * t263));
         const gic_real t267 = R(90.555) * (t264 * t264 + (t265 * t265 + t266 * t266));
-        const gic_real t268 = m[104] + y[17];
-        const gic_real t269 = m[101] * (m[101] * R(4.7728205)) + (m[100] * (m[100] * R(7.58122)) + m[99] * (m[99] * R(4.8947505)));
-        const gic_real t270 = m[103] + y[16];
-        const gic_real t271 = m[98] * R(4.7728205);
-        const gic_real t272 = m[97] * R(7.58122);
-        const gic_real t273 = m[96] * R(4.8947505);
-        const gic_real t274 = m[101] * t271 + (m[100] * t272 + m[99] * t273);
-        const gic_real t275 = m[102] + y[15];
-        const gic_real t276 = m[95] * R(4.7728205);
-        const gic_real t277 = m[94] * R(7.58122);
-        const gic_real t278 = m[93] * R(4.8947505);
-        const gic_real t279 = m[101] * t276 + (m[100] * t277 + m[99] * t278);
+        const gic_real t268 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t269 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t270 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t271 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t272 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t273 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t274 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t271 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t272 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t273);
+        const gic_real t275 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t276 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t277 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t278 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t279 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t276 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t277 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t278);
         const gic_real t280 = t268 * (t268 * t269 + (t270 * t274 + t275 * t279));
-        const gic_real t281 = t270 * (m[98] * t271 + (m[97] * t272 + m[96] * t273));
-        const gic_real t282 = m[98] * t276 + (m[97] * t277 + m[96] * t278);
-        const gic_real t283 = t275 * (m[95] * t276 + (m[94] * t277 + m[93] * t278));
+        const gic_real t281 = t270 * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t271 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t272 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t273));
+        const gic_real t282 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t276 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t277 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t278);
+        const gic_real t283 = t275 * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * t276 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * t277 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t278));
         const gic_real t284 = t270 * (t268 * t274 + (t281 + t275 * t282)) + t275 * (t268 * t279 + (t270 * t282 + t283));
-        const gic_real t285 = t60 + (t61 + m[97] * R(0.08910630000000008));
-        const gic_real t286 = t64 + (t65 + m[94] * R(0.08910630000000008));
-        const gic_real t287 = m[91] + t285;
-        const gic_real t288 = m[90] + t286;
-        const gic_real t289 = m[107] + (m[102] * t285 - m[103] * t286) + (y[15] * t287 - y[16] * t288);
-        const gic_real t290 = t56 + (t57 + m[100] * R(0.08910630000000008));
-        const gic_real t291 = m[92] + t290;
-        const gic_real t292 = m[106] + (m[104] * t286 - m[102] * t290) + (y[17] * t288 - y[15] * t291);
-        const gic_real t293 = m[105] + (m[103] * t290 - m[104] * t285) + (y[16] * t291 - y[17] * t287);
-        const gic_real t294 = y[14] + (t9 * t289 + (t18 * t292 + t23 * t293));
-        const gic_real t295 = y[13] + (t13 * t289 + (t20 * t292 + t24 * t293));
-        const gic_real t296 = y[12] + (t5 * t289 + (t17 * t292 + t22 * t293));
+        const gic_real t285 = t60 + (t61 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t286 = t64 + (t65 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t287 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t285;
+        const gic_real t288 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t286;
+        const gic_real t289 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t285 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t286) + (y[FIVE_LINK_STATE_OMEGA_X] * t287 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t288);
+        const gic_real t290 = t56 + (t57 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t291 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t290;
+        const gic_real t292 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t286 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t290) + (y[FIVE_LINK_STATE_OMEGA_Z] * t288 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t291);
+        const gic_real t293 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t285) + (y[FIVE_LINK_STATE_OMEGA_Y] * t291 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t287);
+        const gic_real t294 = y[FIVE_LINK_STATE_V_Z] + (t9 * t289 + (t18 * t292 + t23 * t293));
+        const gic_real t295 = y[FIVE_LINK_STATE_V_Y] + (t13 * t289 + (t20 * t292 + t24 * t293));
+        const gic_real t296 = y[FIVE_LINK_STATE_V_X] + (t5 * t289 + (t17 * t292 + t22 * t293));
         const gic_real t297 = R(90.555) * (t294 * t294 + (t295 * t295 + t296 * t296));
         const gic_real t298 = t237 + R(0.5) * (t250 + t254 + t267) + R(0.5) * (t280 + t284 + t297);
-        const gic_real t299 = m[134] + y[17];
-        const gic_real t300 = m[131] * (m[131] * R(4.7728205)) + (m[130] * (m[130] * R(7.58122)) + m[129] * (m[129] * R(4.8947505)));
-        const gic_real t301 = m[133] + y[16];
-        const gic_real t302 = m[128] * R(4.7728205);
-        const gic_real t303 = m[127] * R(7.58122);
-        const gic_real t304 = m[126] * R(4.8947505);
-        const gic_real t305 = m[131] * t302 + (m[130] * t303 + m[129] * t304);
-        const gic_real t306 = m[132] + y[15];
-        const gic_real t307 = m[125] * R(4.7728205);
-        const gic_real t308 = m[124] * R(7.58122);
-        const gic_real t309 = m[123] * R(4.8947505);
-        const gic_real t310 = m[131] * t307 + (m[130] * t308 + m[129] * t309);
+        const gic_real t299 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t300 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t301 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t302 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t303 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t304 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t305 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t302 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t303 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t304);
+        const gic_real t306 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t307 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t308 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t309 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t310 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t307 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t308 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t309);
         const gic_real t311 = t299 * (t299 * t300 + (t301 * t305 + t306 * t310));
-        const gic_real t312 = t301 * (m[128] * t302 + (m[127] * t303 + m[126] * t304));
-        const gic_real t313 = m[128] * t307 + (m[127] * t308 + m[126] * t309);
-        const gic_real t314 = t306 * (m[125] * t307 + (m[124] * t308 + m[123] * t309));
+        const gic_real t312 = t301 * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t302 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t303 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t304));
+        const gic_real t313 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t307 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t308 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t309);
+        const gic_real t314 = t306 * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * t307 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * t308 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t309));
         const gic_real t315 = t301 * (t299 * t305 + (t312 + t306 * t313)) + t306 * (t299 * t310 + (t301 * t313 + t314));
-        const gic_real t316 = t75 + (t76 + m[127] * R(-0.08910630000000008));
-        const gic_real t317 = t79 + (t80 + m[124] * R(-0.08910630000000008));
-        const gic_real t318 = m[121] + t316;
-        const gic_real t319 = m[120] + t317;
-        const gic_real t320 = m[137] + (m[132] * t316 - m[133] * t317) + (y[15] * t318 - y[16] * t319);
-        const gic_real t321 = t71 + (t72 + m[130] * R(-0.08910630000000008));
-        const gic_real t322 = m[122] + t321;
-        const gic_real t323 = m[136] + (m[134] * t317 - m[132] * t321) + (y[17] * t319 - y[15] * t322);
-        const gic_real t324 = m[135] + (m[133] * t321 - m[134] * t316) + (y[16] * t322 - y[17] * t318);
-        const gic_real t325 = y[14] + (t9 * t320 + (t18 * t323 + t23 * t324));
-        const gic_real t326 = y[13] + (t13 * t320 + (t20 * t323 + t24 * t324));
-        const gic_real t327 = y[12] + (t5 * t320 + (t17 * t323 + t22 * t324));
+        const gic_real t316 = t75 + (t76 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t317 = t79 + (t80 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t318 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t316;
+        const gic_real t319 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t317;
+        const gic_real t320 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t316 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t317) + (y[FIVE_LINK_STATE_OMEGA_X] * t318 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t319);
+        const gic_real t321 = t71 + (t72 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t322 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t321;
+        const gic_real t323 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t317 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t321) + (y[FIVE_LINK_STATE_OMEGA_Z] * t319 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t322);
+        const gic_real t324 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t321 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t316) + (y[FIVE_LINK_STATE_OMEGA_Y] * t322 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t318);
+        const gic_real t325 = y[FIVE_LINK_STATE_V_Z] + (t9 * t320 + (t18 * t323 + t23 * t324));
+        const gic_real t326 = y[FIVE_LINK_STATE_V_Y] + (t13 * t320 + (t20 * t323 + t24 * t324));
+        const gic_real t327 = y[FIVE_LINK_STATE_V_X] + (t5 * t320 + (t17 * t323 + t22 * t324));
         const gic_real t328 = R(90.555) * (t325 * t325 + (t326 * t326 + t327 * t327));
         const gic_real t329 = t92 * t93 * R(0.5) + R(0.5) * (t95 * t96) + R(0.5) * (t98 * t99);
-        const gic_real t330 = t329 + R(0.5) * (t101 * t102) + R(0.5) * (x[4] * t104);
-        const gic_real t331 = t330 - (y[2] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) * R(-20468.7612);
-        const gic_real t332 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t18 + R(1.438648) * t23));
+        const gic_real t330 = t329 + R(0.5) * (t101 * t102) + R(0.5) * (x[FIVE_LINK_X_RACK] * t104);
+        const gic_real t331 = t330 - (y[FIVE_LINK_STATE_R_Z] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) *
+            R(-20468.7612);
+        const gic_real t332 = y[FIVE_LINK_STATE_R_Z] + (R(0.05422899999999997) * t9 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t18 + R(1.438648) * t23));
         const gic_real t333 = R(1.688965) * t23;
-        const gic_real t334 = (y[2] + (t9 * t182 + (t18 * t178 + t333))) * R(-235.09665);
-        const gic_real t335 = R(-235.09665) * (y[2] + (t9 * t200 + (t333 + t18 * t198)));
-        const gic_real t336 = y[2] + (t9 * t230 + (t18 * t226 + t23 * t227));
+        const gic_real t334 = (y[FIVE_LINK_STATE_R_Z] + (t9 * t182 + (t18 * t178 + t333))) * R(-235.09665);
+        const gic_real t335 = R(-235.09665) * (y[FIVE_LINK_STATE_R_Z] + (t9 * t200 + (t333 + t18 * t198)));
+        const gic_real t336 = y[FIVE_LINK_STATE_R_Z] + (t9 * t230 + (t18 * t226 + t23 * t227));
         const gic_real t337 = t331 - t332 * R(-88.99632) - t334 - t335 - t336 * R(-888.3445500000001);
-        const gic_real t338 = y[2] + (t9 * t261 + (t18 * t257 + t23 * t258));
-        const gic_real t339 = y[2] + (t9 * t291 + (t18 * t287 + t23 * t288));
-        const gic_real t340 = y[2] + (t9 * t322 + (t18 * t318 + t23 * t319));
-        const gic_real t341 = t337 - R(-888.3445500000001) * t338 - R(-888.3445500000001) * t339 - R(-888.3445500000001) * t340;
-        const gic_real t342 = xd[0] * t94 + xd[1] * t97 + xd[2] * t100 + xd[3] * t103;
-        const gic_real t343 = t112 * t117 - (t342 + xd[4] * t105) + t124 * t129;
-        const gic_real t344 = y[0];
-        const gic_real t345 = y[1];
-        const gic_real t346 = y[2];
-        const gic_real t347 = y[12];
-        const gic_real t348 = y[13];
-        const gic_real t349 = y[14];
-        const gic_real t350 = t5 * t14 + (t17 * t21 + t22 * t25);
-        const gic_real t351 = t13 * t14 + (t20 * t21 + t24 * t25);
-        const gic_real t352 = t9 * t14 + (t18 * t21 + t23 * t25);
-        const gic_real t353 = e[0];
-        const gic_real t354 = e[1];
-        const gic_real t355 = e[2];
-        const gic_real t356 = e[3];
-        const gic_real t357 = GIC_ATAN2(t18, t9);
-        const gic_real t358 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t359 = GIC_ATAN2(t24, t22);
-        const gic_real t360 = y[15];
-        const gic_real t361 = y[16];
-        const gic_real t362 = y[17];
-        const gic_real t363 = GIC_ASIN(GIC_MIN(GIC_MAX(t87, R(-1.0)), R(1.0)));
-        const gic_real t364 = GIC_ASIN(GIC_MIN(GIC_MAX(t90, R(-1.0)), R(1.0)));
-        const gic_real t365 = x[0];
-        const gic_real t366 = xd[0];
-        const gic_real t367 = rate[18];
-        const gic_real t368 = x[1];
-        const gic_real t369 = xd[1];
-        const gic_real t370 = rate[19];
-        const gic_real t371 = x[2];
-        const gic_real t372 = xd[2];
-        const gic_real t373 = rate[20];
-        const gic_real t374 = x[3];
-        const gic_real t375 = xd[3];
-        const gic_real t376 = rate[21];
-        const gic_real t377 = x[4];
-        const gic_real t378 = xd[4];
-        const gic_real t379 = rate[22];
-        const gic_real t380 = -(t93 + t94);
-        const gic_real t381 = -(t96 + t97);
-        const gic_real t382 = -(t99 + t100);
-        const gic_real t383 = -(t102 + t103);
-        const gic_real t384 = -(t104 + t105);
-        const gic_real t385 = road110[0];
-        const gic_real t386 = road122[0];
-        const gic_real t387 = road134[0];
-        const gic_real t388 = road146[0];
-        const gic_real t389 = t298 + R(0.5) * (t311 + t315 + t328);
-        const gic_real t390 = t343 + t136 * t141 + t148 * t153;
-        out[0] = t344;
-        out[1] = t345;
-        out[2] = t346;
-        out[3] = t347;
-        out[4] = t348;
-        out[5] = t349;
-        out[6] = t350;
-        out[7] = t351;
-        out[8] = t352;
-        out[9] = t353;
-        out[10] = t354;
-        out[11] = t355;
-        out[12] = t356;
-        out[13] = t357;
-        out[14] = t358;
-        out[15] = t359;
-        out[16] = t360;
-        out[17] = t361;
-        out[18] = t362;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t53;
-        out[23] = t54;
-        out[24] = t55;
-        out[25] = t68;
-        out[26] = t69;
-        out[27] = t70;
-        out[28] = t83;
-        out[29] = t84;
-        out[30] = t85;
-        out[31] = t86;
-        out[32] = t363;
-        out[33] = t88;
-        out[34] = t89;
-        out[35] = t364;
-        out[36] = t91;
-        out[37] = t365;
-        out[38] = t366;
-        out[39] = t367;
-        out[40] = t368;
-        out[41] = t369;
-        out[42] = t370;
-        out[43] = t371;
-        out[44] = t372;
-        out[45] = t373;
-        out[46] = t374;
-        out[47] = t375;
-        out[48] = t376;
-        out[49] = t377;
-        out[50] = t378;
-        out[51] = t379;
-        out[52] = t380;
-        out[53] = t381;
-        out[54] = t382;
-        out[55] = t383;
-        out[56] = t384;
-        out[57] = t117;
-        out[58] = t114;
-        out[59] = t113;
-        out[60] = t385;
-        out[61] = t129;
-        out[62] = t126;
-        out[63] = t125;
-        out[64] = t386;
-        out[65] = t141;
-        out[66] = t138;
-        out[67] = t137;
-        out[68] = t387;
-        out[69] = t153;
-        out[70] = t150;
-        out[71] = t149;
-        out[72] = t388;
-        out[73] = t389;
-        out[74] = t341;
-        out[75] = t390;
+        const gic_real t338 = y[FIVE_LINK_STATE_R_Z] + (t9 * t261 + (t18 * t257 + t23 * t258));
+        const gic_real t339 = y[FIVE_LINK_STATE_R_Z] + (t9 * t291 + (t18 * t287 + t23 * t288));
+        const gic_real t340 = y[FIVE_LINK_STATE_R_Z] + (t9 * t322 + (t18 * t318 + t23 * t319));
+        const gic_real output_energy_potential = t337 - R(-888.3445500000001) * t338 - R(-888.3445500000001) * t339 -
+            R(-888.3445500000001) * t340;
+        const gic_real t342 = xd[FIVE_LINK_X_SPRING_F_L] * t94 + xd[FIVE_LINK_X_SPRING_F_R] * t97 +
+            xd[FIVE_LINK_X_SPRING_R_L] * t100 + xd[FIVE_LINK_X_SPRING_R_R] * t103;
+        const gic_real t343 = t112 * output_tire_f_l_fz - (t342 + xd[FIVE_LINK_X_RACK] * t105) + t124 *
+            output_tire_f_r_fz;
+        const gic_real output_chassis_x = y[FIVE_LINK_STATE_R_X];
+        const gic_real output_chassis_y = y[FIVE_LINK_STATE_R_Y];
+        const gic_real output_chassis_z = y[FIVE_LINK_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[FIVE_LINK_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[FIVE_LINK_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[FIVE_LINK_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t14 + (t17 * t21 + t22 * t25);
+        const gic_real output_chassis_acceleration_y = t13 * t14 + (t20 * t21 + t24 * t25);
+        const gic_real output_chassis_acceleration_z = t9 * t14 + (t18 * t21 + t23 * t25);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t18, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t24, t22);
+        const gic_real output_chassis_angular_velocity_x = y[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real output_attitude_r_l_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t87, R(-1.0)), R(1.0)));
+        const gic_real output_attitude_r_r_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t90, R(-1.0)), R(1.0)));
+        const gic_real output_spring_f_l_value = x[FIVE_LINK_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[FIVE_LINK_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[FIVE_LINK_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[FIVE_LINK_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[FIVE_LINK_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[FIVE_LINK_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[FIVE_LINK_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[FIVE_LINK_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[FIVE_LINK_X_RACK];
+        const gic_real output_rack_rate = xd[FIVE_LINK_X_RACK];
+        const gic_real output_rack_acceleration = rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real force_spring_f_l = -(t93 + t94);
+        const gic_real force_spring_f_r = -(t96 + t97);
+        const gic_real force_spring_r_l = -(t99 + t100);
+        const gic_real force_spring_r_r = -(t102 + t103);
+        const gic_real force_rack = -(t104 + t105);
+        const gic_real output_tire_f_l_height = road110[0];
+        const gic_real output_tire_f_r_height = road122[0];
+        const gic_real output_tire_r_l_height = road134[0];
+        const gic_real output_tire_r_r_height = road146[0];
+        const gic_real output_energy_kinetic = t298 + R(0.5) * (t311 + t315 + t328);
+        const gic_real output_energy_power = t343 + t136 * output_tire_r_l_fz + t148 * output_tire_r_r_fz;
+        out[FIVE_LINK_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[FIVE_LINK_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[FIVE_LINK_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[FIVE_LINK_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[FIVE_LINK_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[FIVE_LINK_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[FIVE_LINK_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[FIVE_LINK_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[FIVE_LINK_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_L_ROLL] = output_attitude_r_l_roll;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_L_PITCH] = output_attitude_r_l_pitch;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_L_YAW] = output_attitude_r_l_yaw;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_R_ROLL] = output_attitude_r_r_roll;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_R_PITCH] = output_attitude_r_r_pitch;
+        out[FIVE_LINK_OUTPUT_ATTITUDE_R_R_YAW] = output_attitude_r_r_yaw;
+        out[FIVE_LINK_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[FIVE_LINK_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[FIVE_LINK_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[FIVE_LINK_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[FIVE_LINK_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[FIVE_LINK_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[FIVE_LINK_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[FIVE_LINK_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[FIVE_LINK_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[FIVE_LINK_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[FIVE_LINK_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[FIVE_LINK_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[FIVE_LINK_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[FIVE_LINK_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[FIVE_LINK_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[FIVE_LINK_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[FIVE_LINK_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[FIVE_LINK_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[FIVE_LINK_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[FIVE_LINK_OUTPUT_FORCE_RACK] = force_rack;
+        out[FIVE_LINK_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[FIVE_LINK_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[FIVE_LINK_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[FIVE_LINK_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[FIVE_LINK_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[FIVE_LINK_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[FIVE_LINK_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[FIVE_LINK_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[FIVE_LINK_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[FIVE_LINK_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[FIVE_LINK_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[FIVE_LINK_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[FIVE_LINK_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[FIVE_LINK_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[FIVE_LINK_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[FIVE_LINK_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[FIVE_LINK_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[FIVE_LINK_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[FIVE_LINK_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -3072,26 +3836,36 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[FIVE_LINK_STATE_R_X] + (R(0.05422899999999997) * t5 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[FIVE_LINK_STATE_R_Y] + (R(0.05422899999999997) * t16 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[FIVE_LINK_STATE_R_Z] + (R(0.05422899999999997) * t21 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] - (R(1.0) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY]));
+        const gic_real t31 = R(1.0) + (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] - (R(1.0) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ]));
+        const gic_real t32 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -3099,12 +3873,14 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -3115,11 +3891,17 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] - (R(1.0) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY]));
+        const gic_real t59 = R(1.0) + (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] - (R(1.0) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ]));
+        const gic_real t60 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -3127,12 +3909,14 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -3143,34 +3927,52 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t85 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[161] - (m[153] + m[157]));
-        const gic_real t91 = R(1.0) + (m[157] - (m[153] + m[161]));
-        const gic_real t92 = m[157] + m[161];
-        const gic_real t93 = R(1.0) + (m[153] - t92);
-        const gic_real t94 = R(1.0) + (m[153] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[FIVE_LINK_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[FIVE_LINK_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[FIVE_LINK_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] -
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY]));
+        const gic_real t91 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] -
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ]));
+        const gic_real t92 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[156] - m[154];
+        const gic_real t98 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[155] - m[159];
+        const gic_real t100 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[160] - m[158];
+        const gic_real t102 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[158] + m[160];
-        const gic_real t108 = m[155] + m[159];
+        const gic_real t107 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY];
+        const gic_real t108 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[154] + m[156];
+        const gic_real t111 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -3180,34 +3982,52 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t122 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t128 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t129 = m[193] + m[197];
-        const gic_real t130 = R(1.0) + (m[189] - t129);
-        const gic_real t131 = R(1.0) + (m[189] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[FIVE_LINK_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[FIVE_LINK_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[FIVE_LINK_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] -
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY]));
+        const gic_real t128 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] -
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ]));
+        const gic_real t129 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[192] - m[190];
+        const gic_real t135 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[191] - m[195];
+        const gic_real t137 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[196] - m[194];
+        const gic_real t139 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[194] + m[196];
-        const gic_real t145 = m[191] + m[195];
+        const gic_real t144 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY];
+        const gic_real t145 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[190] + m[192];
+        const gic_real t148 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -3217,34 +4037,53 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[92] + (m[101] * R(0.09182100000000004) + (m[100] * R(0.08910630000000008) + m[99] * R(-0.030000000000000027)));
-        const gic_real t159 = m[91] + (m[98] * R(0.09182100000000004) + (m[97] * R(0.08910630000000008) + m[96] * R(-0.030000000000000027)));
-        const gic_real t160 = m[90] + (m[95] * R(0.09182100000000004) + (m[94] * R(0.08910630000000008) + m[93] * R(-0.030000000000000027)));
-        const gic_real t161 = y[0] + (t5 * t158 + (t9 * t159 + t12 * t160));
-        const gic_real t162 = y[1] + (t16 * t158 + (t18 * t159 + t19 * t160));
-        const gic_real t163 = y[2] + (t21 * t158 + (t22 * t159 + t23 * t160));
-        const gic_real t164 = R(1.0) + (m[101] - (m[93] + m[97]));
-        const gic_real t165 = R(1.0) + (m[97] - (m[93] + m[101]));
-        const gic_real t166 = m[97] + m[101];
-        const gic_real t167 = R(1.0) + (m[93] - t166);
-        const gic_real t168 = R(1.0) + (m[93] + t166);
+        /* pose of wheel_r_l */
+        const gic_real t158 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027)));
+        const gic_real t159 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027)));
+        const gic_real t160 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027)));
+        const gic_real t161 = y[FIVE_LINK_STATE_R_X] + (t5 * t158 + (t9 * t159 + t12 * t160));
+        const gic_real t162 = y[FIVE_LINK_STATE_R_Y] + (t16 * t158 + (t18 * t159 + t19 * t160));
+        const gic_real t163 = y[FIVE_LINK_STATE_R_Z] + (t21 * t158 + (t22 * t159 + t23 * t160));
+        const gic_real t164 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] -
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY]));
+        const gic_real t165 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] -
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ]));
+        const gic_real t166 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ];
+        const gic_real t167 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] - t166);
+        const gic_real t168 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] + t166);
         const gic_real t169 = GIC_MAX(t167, t168);
         const gic_real t170 = GIC_MAX(t165, t169);
         const gic_real t171 = t164 - t170;
-        const gic_real t172 = m[96] - m[94];
+        const gic_real t172 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY];
         const gic_real t173 = t165 - t169;
-        const gic_real t174 = m[95] - m[99];
+        const gic_real t174 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX];
         const gic_real t175 = t167 - t168;
-        const gic_real t176 = m[100] - m[98];
+        const gic_real t176 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ];
         const gic_real t177 = (t171 > GIC_R(0) ? t172 : (t173 > GIC_R(0) ? t174 : (t175 > GIC_R(0) ? t176 : t168)));
         const gic_real t178 = R(0.5) / GIC_SQRT(GIC_MAX(t164, t170));
         const gic_real t179 = t177 * t178;
         const gic_real t180 = e[0] * t179;
-        const gic_real t181 = m[98] + m[100];
-        const gic_real t182 = m[95] + m[99];
+        const gic_real t181 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY];
+        const gic_real t182 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX];
         const gic_real t183 = (t171 > GIC_R(0) ? t164 : (t173 > GIC_R(0) ? t181 : (t175 > GIC_R(0) ? t182 : t172)));
         const gic_real t184 = t183 * t178;
-        const gic_real t185 = m[94] + m[96];
+        const gic_real t185 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX];
         const gic_real t186 = (t171 > GIC_R(0) ? t181 : (t173 > GIC_R(0) ? t165 : (t175 > GIC_R(0) ? t185 : t174)));
         const gic_real t187 = t186 * t178;
         const gic_real t188 = (t171 > GIC_R(0) ? t182 : (t173 > GIC_R(0) ? t185 : (t175 > GIC_R(0) ? t167 : t176)));
@@ -3254,34 +4093,53 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t192 = e[2] * t184 - e[3] * t187 + (e[1] * t179 + e[0] * t189);
         const gic_real t193 = e[3] * t189 - e[1] * t184 + (e[2] * t179 + e[0] * t187);
         const gic_real t194 = e[1] * t187 - e[2] * t189 + (e[3] * t179 + e[0] * t184);
-        const gic_real t195 = m[122] + (m[131] * R(0.09182100000000004) + (m[130] * R(-0.08910630000000008) + m[129] * R(-0.030000000000000027)));
-        const gic_real t196 = m[121] + (m[128] * R(0.09182100000000004) + (m[127] * R(-0.08910630000000008) + m[126] * R(-0.030000000000000027)));
-        const gic_real t197 = m[120] + (m[125] * R(0.09182100000000004) + (m[124] * R(-0.08910630000000008) + m[123] * R(-0.030000000000000027)));
-        const gic_real t198 = y[0] + (t5 * t195 + (t9 * t196 + t12 * t197));
-        const gic_real t199 = y[1] + (t16 * t195 + (t18 * t196 + t19 * t197));
-        const gic_real t200 = y[2] + (t21 * t195 + (t22 * t196 + t23 * t197));
-        const gic_real t201 = R(1.0) + (m[131] - (m[123] + m[127]));
-        const gic_real t202 = R(1.0) + (m[127] - (m[123] + m[131]));
-        const gic_real t203 = m[127] + m[131];
-        const gic_real t204 = R(1.0) + (m[123] - t203);
-        const gic_real t205 = R(1.0) + (m[123] + t203);
+        /* pose of wheel_r_r */
+        const gic_real t195 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027)));
+        const gic_real t196 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027)));
+        const gic_real t197 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.08910630000000008) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027)));
+        const gic_real t198 = y[FIVE_LINK_STATE_R_X] + (t5 * t195 + (t9 * t196 + t12 * t197));
+        const gic_real t199 = y[FIVE_LINK_STATE_R_Y] + (t16 * t195 + (t18 * t196 + t19 * t197));
+        const gic_real t200 = y[FIVE_LINK_STATE_R_Z] + (t21 * t195 + (t22 * t196 + t23 * t197));
+        const gic_real t201 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] -
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY]));
+        const gic_real t202 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] -
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ]));
+        const gic_real t203 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ];
+        const gic_real t204 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] - t203);
+        const gic_real t205 = R(1.0) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] + t203);
         const gic_real t206 = GIC_MAX(t204, t205);
         const gic_real t207 = GIC_MAX(t202, t206);
         const gic_real t208 = t201 - t207;
-        const gic_real t209 = m[126] - m[124];
+        const gic_real t209 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY];
         const gic_real t210 = t202 - t206;
-        const gic_real t211 = m[125] - m[129];
+        const gic_real t211 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX];
         const gic_real t212 = t204 - t205;
-        const gic_real t213 = m[130] - m[128];
+        const gic_real t213 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ];
         const gic_real t214 = (t208 > GIC_R(0) ? t209 : (t210 > GIC_R(0) ? t211 : (t212 > GIC_R(0) ? t213 : t205)));
         const gic_real t215 = R(0.5) / GIC_SQRT(GIC_MAX(t201, t207));
         const gic_real t216 = t214 * t215;
         const gic_real t217 = e[0] * t216;
-        const gic_real t218 = m[128] + m[130];
-        const gic_real t219 = m[125] + m[129];
+        const gic_real t218 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY];
+        const gic_real t219 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX];
         const gic_real t220 = (t208 > GIC_R(0) ? t201 : (t210 > GIC_R(0) ? t218 : (t212 > GIC_R(0) ? t219 : t209)));
         const gic_real t221 = t220 * t215;
-        const gic_real t222 = m[124] + m[126];
+        const gic_real t222 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX];
         const gic_real t223 = (t208 > GIC_R(0) ? t218 : (t210 > GIC_R(0) ? t202 : (t212 > GIC_R(0) ? t222 : t211)));
         const gic_real t224 = t223 * t215;
         const gic_real t225 = (t208 > GIC_R(0) ? t219 : (t210 > GIC_R(0) ? t222 : (t212 > GIC_R(0) ? t204 : t213)));
@@ -3291,9 +4149,9 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t229 = e[2] * t221 - e[3] * t224 + (e[1] * t216 + e[0] * t226);
         const gic_real t230 = e[3] * t226 - e[1] * t221 + (e[2] * t216 + e[0] * t224);
         const gic_real t231 = e[1] * t224 - e[2] * t226 + (e[3] * t216 + e[0] * t221);
-        const gic_real t232 = y[0];
-        const gic_real t233 = y[1];
-        const gic_real t234 = y[2];
+        const gic_real t232 = y[FIVE_LINK_STATE_R_X];
+        const gic_real t233 = y[FIVE_LINK_STATE_R_Y];
+        const gic_real t234 = y[FIVE_LINK_STATE_R_Z];
         const gic_real t235 = e[0];
         const gic_real t236 = e[1];
         const gic_real t237 = e[2];
@@ -3332,69 +4190,69 @@ static void five_link_place(const five_link *self, const gic_real *y, const gic_
         const gic_real t270 = (t228 > GIC_R(0) ? t229 : -t229);
         const gic_real t271 = (t228 > GIC_R(0) ? t230 : -t230);
         const gic_real t272 = (t228 > GIC_R(0) ? t231 : -t231);
-        pose[0] = t232;
-        pose[1] = t233;
-        pose[2] = t234;
-        pose[3] = t235;
-        pose[4] = t236;
-        pose[5] = t237;
-        pose[6] = t238;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t239;
-        pose[11] = t240;
-        pose[12] = t241;
-        pose[13] = t242;
-        pose[14] = t243;
-        pose[15] = t244;
-        pose[16] = t245;
-        pose[17] = t246;
-        pose[18] = t247;
-        pose[19] = t248;
-        pose[20] = t249;
-        pose[21] = t250;
-        pose[22] = t251;
-        pose[23] = t252;
-        pose[24] = t253;
-        pose[25] = t254;
-        pose[26] = t255;
-        pose[27] = t256;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t257;
-        pose[32] = t258;
-        pose[33] = t259;
-        pose[34] = t260;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t261;
-        pose[39] = t262;
-        pose[40] = t263;
-        pose[41] = t264;
-        pose[42] = t161;
-        pose[43] = t162;
-        pose[44] = t163;
-        pose[45] = t265;
-        pose[46] = t266;
-        pose[47] = t267;
-        pose[48] = t268;
-        pose[49] = t198;
-        pose[50] = t199;
-        pose[51] = t200;
-        pose[52] = t269;
-        pose[53] = t270;
-        pose[54] = t271;
-        pose[55] = t272;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_X] = t232;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_Y] = t233;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_Z] = t234;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_P0] = t235;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_P1] = t236;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_P2] = t237;
+        pose[FIVE_LINK_POSE_CHASSIS + FIVE_LINK_Q_P3] = t238;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_X] = t13;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_Y] = t20;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_Z] = t24;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_P0] = t239;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_P1] = t240;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_P2] = t241;
+        pose[FIVE_LINK_POSE_RACK + FIVE_LINK_Q_P3] = t242;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_X] = t243;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_Y] = t244;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_Z] = t245;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_P0] = t246;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_P1] = t247;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_P2] = t248;
+        pose[FIVE_LINK_POSE_LCA_F_L + FIVE_LINK_Q_P3] = t249;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_X] = t250;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_Y] = t251;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_Z] = t252;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_P0] = t253;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_P1] = t254;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_P2] = t255;
+        pose[FIVE_LINK_POSE_LCA_F_R + FIVE_LINK_Q_P3] = t256;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_X] = t87;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_Y] = t88;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_Z] = t89;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_P0] = t257;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_P1] = t258;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_P2] = t259;
+        pose[FIVE_LINK_POSE_WHEEL_F_L + FIVE_LINK_Q_P3] = t260;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_X] = t124;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_Y] = t125;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_Z] = t126;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_P0] = t261;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_P1] = t262;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_P2] = t263;
+        pose[FIVE_LINK_POSE_WHEEL_F_R + FIVE_LINK_Q_P3] = t264;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_X] = t161;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_Y] = t162;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_Z] = t163;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_P0] = t265;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_P1] = t266;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_P2] = t267;
+        pose[FIVE_LINK_POSE_WHEEL_R_L + FIVE_LINK_Q_P3] = t268;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_X] = t198;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_Y] = t199;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_Z] = t200;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_P0] = t269;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_P1] = t270;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_P2] = t271;
+        pose[FIVE_LINK_POSE_WHEEL_R_R + FIVE_LINK_Q_P3] = t272;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int five_link_residual(const five_link *self, gic_real largest[2])
 {
     five_link_links links;
@@ -3403,83 +4261,85 @@ static GIC_COLD GIC_APART int five_link_residual(const five_link *self, gic_real
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    five_link_residual_rack(five_link_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[FIVE_LINK_X_RACK];
+    links.rate[0] = self->xd[FIVE_LINK_X_RACK];
+    five_link_residual_rack(five_link_k_rack[0], &links, self->motion + FIVE_LINK_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = FIVE_LINK_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    five_link_residual_lca_f_l(five_link_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[FIVE_LINK_X_SPRING_F_L];
+    links.rate[0] = self->xd[FIVE_LINK_X_SPRING_F_L];
+    five_link_residual_lca_f_l(five_link_k_lca_f_l[0], &links, self->motion + FIVE_LINK_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = FIVE_LINK_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    five_link_residual_lca_f_l(five_link_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[FIVE_LINK_X_SPRING_F_R];
+    links.rate[0] = self->xd[FIVE_LINK_X_SPRING_F_R];
+    five_link_residual_lca_f_l(five_link_k_lca_f_l[1], &links, self->motion + FIVE_LINK_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = FIVE_LINK_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[0], &links, self->motion + 90, one);
+    links.x[0] = self->x[FIVE_LINK_X_SPRING_R_L];
+    links.rate[0] = self->xd[FIVE_LINK_X_SPRING_R_L];
+    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[0], &links, self->motion + FIVE_LINK_MOTION_WHEEL_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.21414967387648)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = FIVE_LINK_SUBSET_WHEEL_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[1], &links, self->motion + 120, one);
+    links.x[0] = self->x[FIVE_LINK_X_SPRING_R_R];
+    links.rate[0] = self->xd[FIVE_LINK_X_SPRING_R_R];
+    five_link_residual_wheel_r_l(five_link_k_wheel_r_l[1], &links, self->motion + FIVE_LINK_MOTION_WHEEL_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.21414967387648)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = FIVE_LINK_SUBSET_WHEEL_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + FIVE_LINK_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + FIVE_LINK_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[FIVE_LINK_X_RACK];
+    links.rate[0] = self->xd[FIVE_LINK_X_RACK];
+    links.x[1] = self->x[FIVE_LINK_X_SPRING_F_L];
+    links.rate[1] = self->xd[FIVE_LINK_X_SPRING_F_L];
+    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[0], &links, self->motion + FIVE_LINK_MOTION_WHEEL_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = FIVE_LINK_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[1], &links, self->motion + 186, one);
+    links.known[0] = self->motion + FIVE_LINK_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + FIVE_LINK_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[FIVE_LINK_X_RACK];
+    links.rate[0] = self->xd[FIVE_LINK_X_RACK];
+    links.x[1] = self->x[FIVE_LINK_X_SPRING_F_R];
+    links.rate[1] = self->xd[FIVE_LINK_X_SPRING_F_R];
+    five_link_residual_wheel_f_l(five_link_k_wheel_f_l[1], &links, self->motion + FIVE_LINK_MOTION_WHEEL_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = FIVE_LINK_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than five_link_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than five_link_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[FIVE_LINK_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[FIVE_LINK_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t8 = rate[FIVE_LINK_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -3487,326 +4347,555 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
-        const gic_real t17 = y[16] * R(0.056);
-        const gic_real t18 = y[16] * R(0.21300000000000008);
-        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[FIVE_LINK_STATE_V_Y] + t15 * rate[FIVE_LINK_STATE_V_X]);
+        const gic_real t17 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[FIVE_LINK_STATE_OMEGA_X] * t17 + y[FIVE_LINK_STATE_OMEGA_Z] * t18 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - rate[FIVE_LINK_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[FIVE_LINK_STATE_OMEGA_Y] * t1 - y[FIVE_LINK_STATE_OMEGA_Z] * t2 +
+            rate[FIVE_LINK_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[FIVE_LINK_STATE_V_Y] + t27 * rate[FIVE_LINK_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] + (R(1.438648) * y[FIVE_LINK_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t31 = y[FIVE_LINK_STATE_OMEGA_X] * t29 - y[FIVE_LINK_STATE_OMEGA_Y] * t30 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * rate[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            rate[FIVE_LINK_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t36 = rate[22] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[17] * t37 + y[16] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[17] * t40 + y[16] * t42;
-        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[17];
-        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t34 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t35 = y[FIVE_LINK_STATE_OMEGA_Z] * t30 - y[FIVE_LINK_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[FIVE_LINK_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t36 = rate[FIVE_LINK_STATE_RACK_RATE] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.4469));
+        const gic_real t38 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t39 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t40 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * t38 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * t39;
+        const gic_real t41 = y[FIVE_LINK_STATE_OMEGA_Z] * t37 + y[FIVE_LINK_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * t38 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * t39;
+        const gic_real t43 = y[FIVE_LINK_STATE_OMEGA_Z] * t40 + y[FIVE_LINK_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[FIVE_LINK_STATE_OMEGA_Y] * t41 - y[FIVE_LINK_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] + rate[FIVE_LINK_STATE_OMEGA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t46;
+        const gic_real t48 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] * t45 -
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t47;
+        const gic_real t49 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[FIVE_LINK_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[16] * t46 - y[17] * t51;
-        const gic_real t53 = R(1.688965) * rate[16];
-        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t52 = y[FIVE_LINK_STATE_OMEGA_Y] * t46 - y[FIVE_LINK_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t54 = y[FIVE_LINK_STATE_OMEGA_X] * t50 - y[FIVE_LINK_STATE_OMEGA_Y] * t52 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[16];
-        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[17];
-        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t57 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[FIVE_LINK_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t61 = y[FIVE_LINK_STATE_OMEGA_Z] * t52 - y[FIVE_LINK_STATE_OMEGA_X] * t59 + (t60 -
+            rate[FIVE_LINK_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t57 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[17] * t67 + y[16] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[17] * t70 + y[16] * t72;
-        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[FIVE_LINK_STATE_OMEGA_X] + (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t33 -
+            t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(0.4469));
+        const gic_real t68 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t69 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t70 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * t68 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * t69;
+        const gic_real t71 = y[FIVE_LINK_STATE_OMEGA_Z] * t67 + y[FIVE_LINK_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * t68 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * t69;
+        const gic_real t73 = y[FIVE_LINK_STATE_OMEGA_Z] * t70 + y[FIVE_LINK_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[FIVE_LINK_STATE_OMEGA_Y] * t71 - y[FIVE_LINK_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] + rate[FIVE_LINK_STATE_OMEGA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t76;
+        const gic_real t78 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] * t75 -
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t77;
+        const gic_real t79 = t49 - y[FIVE_LINK_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[16] * t76 - y[17] * t80;
-        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t81 = y[FIVE_LINK_STATE_OMEGA_Y] * t76 - y[FIVE_LINK_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[FIVE_LINK_STATE_OMEGA_X] * t79 - y[FIVE_LINK_STATE_OMEGA_Y] * t81 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
-        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t85 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[FIVE_LINK_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[FIVE_LINK_STATE_OMEGA_Z] * t81 - y[FIVE_LINK_STATE_OMEGA_X] * t86 + (t60 -
+            rate[FIVE_LINK_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t85 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[163] + y[16];
-        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t94 = m[164] + y[17];
-        const gic_real t95 = m[158] * R(4.7728205);
-        const gic_real t96 = m[157] * R(7.58122);
-        const gic_real t97 = m[156] * R(4.8947505);
-        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
-        const gic_real t99 = m[155] * R(4.7728205);
-        const gic_real t100 = m[154] * R(7.58122);
-        const gic_real t101 = m[153] * R(4.8947505);
-        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
-        const gic_real t103 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t92 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t93 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t94 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t95 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t97 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t98 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t95 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t96 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t97);
+        const gic_real t99 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t100 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t101 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t102 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t99 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t100 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t101);
+        const gic_real t103 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
-        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
-        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t105 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t95 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t96 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t97);
+        const gic_real t106 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t99 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t100 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t101);
         const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
-        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t109 = t108 + m[182] * rate[18];
-        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t111 = t110 + m[181] * rate[18];
-        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
-        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t108 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t109 = t108 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t111 = t110 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * t99 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * t100 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] *
+            t101);
+        const gic_real t113 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t114 = t113 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[158] * R(0.09182100000000004);
-        const gic_real t117 = m[156] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
-        const gic_real t119 = m[155] * R(0.09182100000000004);
-        const gic_real t120 = m[153] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
-        const gic_real t122 = m[161] * R(0.09182100000000004);
-        const gic_real t123 = m[159] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
-        const gic_real t125 = m[164] * t121 - m[162] * t124;
-        const gic_real t126 = m[163] * t124 - m[164] * t118;
-        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
-        const gic_real t128 = m[173] + t127;
-        const gic_real t129 = m[166] + t125;
+        /* wheel tire_f_l */
+        const gic_real t116 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t119 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t122 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t125 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t121 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t124;
+        const gic_real t126 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t124 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t118;
+        const gic_real t127 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t125 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t126 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t118 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t121);
+        const gic_real t128 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] + t125;
         const gic_real t130 = R(1.653405) + t121;
-        const gic_real t131 = m[152] + t124;
-        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
-        const gic_real t133 = m[151] + t118;
-        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
-        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
-        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t131 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[FIVE_LINK_STATE_OMEGA_Z] * t130 - y[FIVE_LINK_STATE_OMEGA_X] * t131));
+        const gic_real t133 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[FIVE_LINK_STATE_OMEGA_Y] * t131 - y[FIVE_LINK_STATE_OMEGA_Z] * t133));
+        const gic_real t135 = y[FIVE_LINK_STATE_OMEGA_X] * t132 - y[FIVE_LINK_STATE_OMEGA_Y] * t134 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t133 - rate[FIVE_LINK_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * t118 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] *
+            t121);
+        const gic_real t137 = t136 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] *
+            t118 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[162] * t118 - m[163] * t121;
-        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
-        const gic_real t141 = m[172] + t140;
-        const gic_real t142 = m[167] + t139;
-        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
-        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
-        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t139 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t118 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t121;
+        const gic_real t140 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t126 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t139 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t121 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t124);
+        const gic_real t141 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[FIVE_LINK_STATE_OMEGA_X] * t133 - y[FIVE_LINK_STATE_OMEGA_Y] * t130));
+        const gic_real t144 = y[FIVE_LINK_STATE_OMEGA_Z] * t134 - y[FIVE_LINK_STATE_OMEGA_X] * t143 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t130 - rate[FIVE_LINK_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t121 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t124);
+        const gic_real t146 = t145 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t121 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
-        const gic_real t150 = m[199] + y[16];
-        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t152 = m[200] + y[17];
-        const gic_real t153 = m[194] * R(4.7728205);
-        const gic_real t154 = m[193] * R(7.58122);
-        const gic_real t155 = m[192] * R(4.8947505);
-        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
-        const gic_real t157 = m[191] * R(4.7728205);
-        const gic_real t158 = m[190] * R(7.58122);
-        const gic_real t159 = m[189] * R(4.8947505);
-        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
-        const gic_real t161 = m[198] + y[15];
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t138 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] *
+            t147));
+        /* inertia of wheel_f_r */
+        const gic_real t150 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t151 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t152 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t153 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t155 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t156 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t153 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t154 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t155);
+        const gic_real t157 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t159 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t160 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t157 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t158 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t159);
+        const gic_real t161 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
-        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
-        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t163 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t153 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t154 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t155);
+        const gic_real t164 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t157 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t158 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t159);
         const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
-        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t167 = t166 + m[218] * rate[19];
-        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t169 = t168 + m[217] * rate[19];
-        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
-        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t166 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t167 = t166 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t169 = t168 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * t157 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * t158 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] *
+            t159);
+        const gic_real t171 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t172 = t171 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
         const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[191] * R(0.09182100000000004);
-        const gic_real t178 = m[189] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
-        const gic_real t180 = m[197] * R(0.09182100000000004);
-        const gic_real t181 = m[195] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
-        const gic_real t183 = m[200] * t179 - m[198] * t182;
-        const gic_real t184 = m[199] * t182 - m[200] * t176;
-        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
-        const gic_real t186 = m[209] + t185;
-        const gic_real t187 = m[202] + t183;
+        /* wheel tire_f_r */
+        const gic_real t174 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t180 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t183 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t179 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t182;
+        const gic_real t184 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t182 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t176;
+        const gic_real t185 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t183 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t184 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t176 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t179);
+        const gic_real t186 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] + t183;
         const gic_real t188 = R(1.653405) + t179;
-        const gic_real t189 = m[188] + t182;
-        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
-        const gic_real t191 = m[187] + t176;
-        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
-        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
-        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t189 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[FIVE_LINK_STATE_OMEGA_Z] * t188 - y[FIVE_LINK_STATE_OMEGA_X] * t189));
+        const gic_real t191 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[FIVE_LINK_STATE_OMEGA_Y] * t189 - y[FIVE_LINK_STATE_OMEGA_Z] * t191));
+        const gic_real t193 = y[FIVE_LINK_STATE_OMEGA_X] * t190 - y[FIVE_LINK_STATE_OMEGA_Y] * t192 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t191 - rate[FIVE_LINK_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * t176 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] *
+            t179);
+        const gic_real t195 = t194 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            t176 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[198] * t176 - m[199] * t179;
-        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
-        const gic_real t199 = m[208] + t198;
-        const gic_real t200 = m[203] + t197;
-        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
-        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
-        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t197 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t176 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t179;
+        const gic_real t198 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t184 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t197 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t179 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t182);
+        const gic_real t199 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[FIVE_LINK_STATE_OMEGA_X] * t191 - y[FIVE_LINK_STATE_OMEGA_Y] * t188));
+        const gic_real t202 = y[FIVE_LINK_STATE_OMEGA_Z] * t192 - y[FIVE_LINK_STATE_OMEGA_X] * t201 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t188 - rate[FIVE_LINK_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t179 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t182);
+        const gic_real t204 = t203 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t179 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[103] + y[16];
-        const gic_real t208 = m[101] * (m[101] * R(4.7728205)) + (m[100] * (m[100] * R(7.58122)) + m[99] * (m[99] * R(4.8947505)));
-        const gic_real t209 = m[104] + y[17];
-        const gic_real t210 = m[98] * R(4.7728205);
-        const gic_real t211 = m[97] * R(7.58122);
-        const gic_real t212 = m[96] * R(4.8947505);
-        const gic_real t213 = m[101] * t210 + (m[100] * t211 + m[99] * t212);
-        const gic_real t214 = m[95] * R(4.7728205);
-        const gic_real t215 = m[94] * R(7.58122);
-        const gic_real t216 = m[93] * R(4.8947505);
-        const gic_real t217 = m[101] * t214 + (m[100] * t215 + m[99] * t216);
-        const gic_real t218 = m[102] + y[15];
+        /* inertia of wheel_r_l */
+        const gic_real t207 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t208 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t209 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t210 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t211 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t212 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t213 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t210 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t211 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t212);
+        const gic_real t214 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t215 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t216 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t217 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t214 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t215 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t216);
+        const gic_real t218 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t219 = t208 * t209 + (t213 * t207 + t217 * t218);
-        const gic_real t220 = m[98] * t210 + (m[97] * t211 + m[96] * t212);
-        const gic_real t221 = m[98] * t214 + (m[97] * t215 + m[96] * t216);
+        const gic_real t220 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t210 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t211 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t212);
+        const gic_real t221 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t214 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t215 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t216);
         const gic_real t222 = t213 * t209 + (t220 * t207 + t221 * t218);
-        const gic_real t223 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
-        const gic_real t224 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
-        const gic_real t225 = m[95] * t214 + (m[94] * t215 + m[93] * t216);
-        const gic_real t226 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
+        const gic_real t223 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t224 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t225 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * t214 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * t215 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t216);
+        const gic_real t226 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
         const gic_real t227 = t207 * t219 - t209 * t222 + (t217 * t223 + (t221 * t224 + t225 * t226));
-        const gic_real t228 = m[98] * R(0.09182100000000004);
-        const gic_real t229 = m[96] * R(-0.030000000000000027);
-        const gic_real t230 = t228 + (t229 + m[97] * R(0.08910630000000008));
-        const gic_real t231 = m[95] * R(0.09182100000000004);
-        const gic_real t232 = m[93] * R(-0.030000000000000027);
-        const gic_real t233 = t231 + (t232 + m[94] * R(0.08910630000000008));
-        const gic_real t234 = m[101] * R(0.09182100000000004);
-        const gic_real t235 = m[99] * R(-0.030000000000000027);
-        const gic_real t236 = t234 + (t235 + m[100] * R(0.08910630000000008));
-        const gic_real t237 = m[104] * t233 - m[102] * t236;
-        const gic_real t238 = m[103] * t236 - m[104] * t230;
-        const gic_real t239 = m[102] * t237 - m[103] * t238 + (m[108] * t230 - m[109] * t233);
-        const gic_real t240 = m[113] + t239;
-        const gic_real t241 = m[106] + t237;
-        const gic_real t242 = m[90] + t233;
-        const gic_real t243 = m[92] + t236;
-        const gic_real t244 = t241 + (t241 + (y[17] * t242 - y[15] * t243));
-        const gic_real t245 = m[105] + t238;
-        const gic_real t246 = m[91] + t230;
-        const gic_real t247 = t245 + (t245 + (y[16] * t243 - y[17] * t246));
-        const gic_real t248 = y[15] * t244 - y[16] * t247 + (rate[15] * t246 - rate[16] * t242);
-        const gic_real t249 = t240 + (t28 + t248) + rate[20] * (m[119] + (m[114] * t230 - m[115] * t233));
+        /* wheel tire_r_l */
+        const gic_real t228 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t229 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t230 = t228 + (t229 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t231 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t232 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t233 = t231 + (t232 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t234 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t235 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t236 = t234 + (t235 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t237 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t233 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t236;
+        const gic_real t238 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t236 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t230;
+        const gic_real t239 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t237 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t238 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t230 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t233);
+        const gic_real t240 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Z] + t239;
+        const gic_real t241 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] + t237;
+        const gic_real t242 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t233;
+        const gic_real t243 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t236;
+        const gic_real t244 = t241 + (t241 + (y[FIVE_LINK_STATE_OMEGA_Z] * t242 - y[FIVE_LINK_STATE_OMEGA_X] * t243));
+        const gic_real t245 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] + t238;
+        const gic_real t246 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t230;
+        const gic_real t247 = t245 + (t245 + (y[FIVE_LINK_STATE_OMEGA_Y] * t243 - y[FIVE_LINK_STATE_OMEGA_Z] * t246));
+        const gic_real t248 = y[FIVE_LINK_STATE_OMEGA_X] * t244 - y[FIVE_LINK_STATE_OMEGA_Y] * t247 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t246 - rate[FIVE_LINK_STATE_OMEGA_Y] * t242);
+        const gic_real t249 = t240 + (t28 + t248) + rate[FIVE_LINK_STATE_SPRING_R_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * t230 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t233));
         const gic_real t250 = R(90.555) * t249;
-        const gic_real t251 = m[102] * t230 - m[103] * t233;
-        const gic_real t252 = m[104] * t238 - m[102] * t251 + (m[110] * t233 - m[108] * t236);
-        const gic_real t253 = m[112] + t252;
-        const gic_real t254 = m[107] + t251;
-        const gic_real t255 = t254 + (t254 + (y[15] * t246 - y[16] * t242));
-        const gic_real t256 = y[17] * t247 - y[15] * t255 + (rate[17] * t242 - rate[15] * t243);
-        const gic_real t257 = t253 + (t16 + t256) + rate[20] * (m[118] + (m[116] * t233 - m[114] * t236));
+        const gic_real t251 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t230 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t233;
+        const gic_real t252 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t238 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t251 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t233 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t236);
+        const gic_real t253 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Y] + t252;
+        const gic_real t254 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] + t251;
+        const gic_real t255 = t254 + (t254 + (y[FIVE_LINK_STATE_OMEGA_X] * t246 - y[FIVE_LINK_STATE_OMEGA_Y] * t242));
+        const gic_real t256 = y[FIVE_LINK_STATE_OMEGA_Z] * t247 - y[FIVE_LINK_STATE_OMEGA_X] * t255 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t242 - rate[FIVE_LINK_STATE_OMEGA_X] * t243);
+        const gic_real t257 = t253 + (t16 + t256) + rate[FIVE_LINK_STATE_SPRING_R_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t233 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * t236));
         const gic_real t258 = R(90.555) * t257;
         const gic_real t259 = t227 + (t230 * t250 - t236 * t258);
-        const gic_real t260 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t259 + (m[91] * t250 - m[92] * t258));
-        const gic_real t261 = m[133] + y[16];
-        const gic_real t262 = m[131] * (m[131] * R(4.7728205)) + (m[130] * (m[130] * R(7.58122)) + m[129] * (m[129] * R(4.8947505)));
-        const gic_real t263 = m[134] + y[17];
-        const gic_real t264 = m[128] * R(4.7728205);
-        const gic_real t265 = m[127] * R(7.58122);
-        const gic_real t266 = m[126] * R(4.8947505);
-        const gic_real t267 = m[131] * t264 + (m[130] * t265 + m[129] * t266);
-        const gic_real t268 = m[125] * R(4.7728205);
-        const gic_real t269 = m[124] * R(7.58122);
-        const gic_real t270 = m[123] * R(4.8947505);
-        const gic_real t271 = m[131] * t268 + (m[130] * t269 + m[129] * t270);
-        const gic_real t272 = m[132] + y[15];
+        const gic_real t260 = t149 + (t206 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] * t196 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t205)) + (t259 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t250 - m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] *
+            t258));
+        /* inertia of wheel_r_r */
+        const gic_real t261 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t262 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t263 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t264 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t265 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t266 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t267 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t264 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t265 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t266);
+        const gic_real t268 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t269 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t270 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t271 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t270);
+        const gic_real t272 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t273 = t262 * t263 + (t267 * t261 + t271 * t272);
-        const gic_real t274 = m[128] * t264 + (m[127] * t265 + m[126] * t266);
-        const gic_real t275 = m[128] * t268 + (m[127] * t269 + m[126] * t270);
+        const gic_real t274 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t264 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t265 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t266);
+        const gic_real t275 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t270);
         const gic_real t276 = t267 * t263 + (t274 * t261 + t275 * t272);
-        const gic_real t277 = m[140] + (rate[17] + (m[133] * y[15] - m[132] * y[16])) + m[146] * rate[21];
-        const gic_real t278 = m[139] + (rate[16] + (m[132] * y[17] - m[134] * y[15])) + m[145] * rate[21];
-        const gic_real t279 = m[125] * t268 + (m[124] * t269 + m[123] * t270);
-        const gic_real t280 = m[138] + (rate[15] + (m[134] * y[16] - m[133] * y[17])) + m[144] * rate[21];
+        const gic_real t277 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t278 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t279 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t270);
+        const gic_real t280 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
         const gic_real t281 = t261 * t273 - t263 * t276 + (t271 * t277 + (t275 * t278 + t279 * t280));
-        const gic_real t282 = m[128] * R(0.09182100000000004);
-        const gic_real t283 = m[126] * R(-0.030000000000000027);
-        const gic_real t284 = t282 + (t283 + m[127] * R(-0.08910630000000008));
-        const gic_real t285 = m[125] * R(0.09182100000000004);
-        const gic_real t286 = m[123] * R(-0.030000000000000027);
-        const gic_real t287 = t285 + (t286 + m[124] * R(-0.08910630000000008));
-        const gic_real t288 = m[131] * R(0.09182100000000004);
-        const gic_real t289 = m[129] * R(-0.030000000000000027);
-        const gic_real t290 = t288 + (t289 + m[130] * R(-0.08910630000000008));
-        const gic_real t291 = m[134] * t287 - m[132] * t290;
-        const gic_real t292 = m[133] * t290 - m[134] * t284;
-        const gic_real t293 = m[132] * t291 - m[133] * t292 + (m[138] * t284 - m[139] * t287);
-        const gic_real t294 = m[143] + t293;
-        const gic_real t295 = m[136] + t291;
-        const gic_real t296 = m[120] + t287;
-        const gic_real t297 = m[122] + t290;
-        const gic_real t298 = t295 + (t295 + (y[17] * t296 - y[15] * t297));
-        const gic_real t299 = m[135] + t292;
-        const gic_real t300 = m[121] + t284;
-        const gic_real t301 = t299 + (t299 + (y[16] * t297 - y[17] * t300));
-        const gic_real t302 = y[15] * t298 - y[16] * t301 + (rate[15] * t300 - rate[16] * t296);
-        const gic_real t303 = t294 + (t28 + t302) + rate[21] * (m[149] + (m[144] * t284 - m[145] * t287));
+        /* wheel tire_r_r */
+        const gic_real t282 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t283 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t284 = t282 + (t283 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t285 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t286 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t287 = t285 + (t286 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t288 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t289 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t290 = t288 + (t289 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t291 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t287 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t290;
+        const gic_real t292 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t284;
+        const gic_real t293 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t291 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t292 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t284 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t287);
+        const gic_real t294 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Z] + t293;
+        const gic_real t295 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] + t291;
+        const gic_real t296 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t287;
+        const gic_real t297 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t290;
+        const gic_real t298 = t295 + (t295 + (y[FIVE_LINK_STATE_OMEGA_Z] * t296 - y[FIVE_LINK_STATE_OMEGA_X] * t297));
+        const gic_real t299 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] + t292;
+        const gic_real t300 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t284;
+        const gic_real t301 = t299 + (t299 + (y[FIVE_LINK_STATE_OMEGA_Y] * t297 - y[FIVE_LINK_STATE_OMEGA_Z] * t300));
+        const gic_real t302 = y[FIVE_LINK_STATE_OMEGA_X] * t298 - y[FIVE_LINK_STATE_OMEGA_Y] * t301 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t300 - rate[FIVE_LINK_STATE_OMEGA_Y] * t296);
+        const gic_real t303 = t294 + (t28 + t302) + rate[FIVE_LINK_STATE_SPRING_R_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * t284 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t287));
         const gic_real t304 = R(90.555) * t303;
-        const gic_real t305 = m[132] * t284 - m[133] * t287;
-        const gic_real t306 = m[134] * t292 - m[132] * t305 + (m[140] * t287 - m[138] * t290);
-        const gic_real t307 = m[142] + t306;
-        const gic_real t308 = m[137] + t305;
-        const gic_real t309 = t308 + (t308 + (y[15] * t300 - y[16] * t296));
-        const gic_real t310 = y[17] * t301 - y[15] * t309 + (rate[17] * t296 - rate[15] * t297);
-        const gic_real t311 = t307 + (t16 + t310) + rate[21] * (m[148] + (m[146] * t287 - m[144] * t290));
+        const gic_real t305 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t284 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t287;
+        const gic_real t306 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t292 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t305 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t287 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t290);
+        const gic_real t307 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Y] + t306;
+        const gic_real t308 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] + t305;
+        const gic_real t309 = t308 + (t308 + (y[FIVE_LINK_STATE_OMEGA_X] * t300 - y[FIVE_LINK_STATE_OMEGA_Y] * t296));
+        const gic_real t310 = y[FIVE_LINK_STATE_OMEGA_Z] * t301 - y[FIVE_LINK_STATE_OMEGA_X] * t309 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t296 - rate[FIVE_LINK_STATE_OMEGA_X] * t297);
+        const gic_real t311 = t307 + (t16 + t310) + rate[FIVE_LINK_STATE_SPRING_R_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t287 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * t290));
         const gic_real t312 = R(90.555) * t311;
         const gic_real t313 = t281 + (t284 * t304 - t290 * t312);
-        const gic_real t314 = t282 + (m[127] * R(-0.12319000000000002) + t283);
-        const gic_real t315 = t285 + (m[124] * R(-0.12319000000000002) + t286);
-        const gic_real t316 = m[121] + t314;
-        const gic_real t317 = m[120] + t315;
-        const gic_real t318 = m[137] + (m[132] * t314 - m[133] * t315) + (y[15] * t316 - y[16] * t317);
-        const gic_real t319 = t288 + (m[130] * R(-0.12319000000000002) + t289);
-        const gic_real t320 = m[122] + t319;
-        const gic_real t321 = m[136] + (m[134] * t315 - m[132] * t319) + (y[17] * t317 - y[15] * t320);
+        const gic_real t314 = t282 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t283);
+        const gic_real t315 = t285 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t286);
+        const gic_real t316 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t314;
+        const gic_real t317 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t315;
+        const gic_real t318 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t314 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t315) + (y[FIVE_LINK_STATE_OMEGA_X] * t316 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t317);
+        const gic_real t319 = t288 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t289);
+        const gic_real t320 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t319;
+        const gic_real t321 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t315 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t319) + (y[FIVE_LINK_STATE_OMEGA_Z] * t317 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t320);
         const gic_real t322 = t13 + t14;
-        const gic_real t323 = m[135] + (m[133] * t319 - m[134] * t314) + (y[16] * t320 - y[17] * t316);
-        const gic_real t324 = y[13] + (t24 * t318 + (t12 * t321 + t322 * t323));
+        const gic_real t323 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t319 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t314) + (y[FIVE_LINK_STATE_OMEGA_Y] * t320 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t316);
+        const gic_real t324 = y[FIVE_LINK_STATE_V_Y] + (t24 * t318 + (t12 * t321 + t322 * t323));
         const gic_real t325 = R(1.0) - (t22 + t11);
-        const gic_real t326 = y[0] + (t27 * t320 + (t15 * t316 + t325 * t317));
-        const gic_real t327 = y[1] + (t24 * t320 + (t12 * t316 + t322 * t317));
+        const gic_real t326 = y[FIVE_LINK_STATE_R_X] + (t27 * t320 + (t15 * t316 + t325 * t317));
+        const gic_real t327 = y[FIVE_LINK_STATE_R_Y] + (t24 * t320 + (t12 * t316 + t322 * t317));
         gic_real road328[3];
         if (!five_link_road_height(self, time, t326, t327, road328))
             return GIC_ERROR_ROAD;
-        const gic_real t329 = y[12] + (t27 * t318 + (t15 * t321 + t325 * t323));
+        const gic_real t329 = y[FIVE_LINK_STATE_V_X] + (t27 * t318 + (t15 * t321 + t325 * t323));
         const gic_real t330 = t25 - t26;
-        const gic_real t331 = y[14] + (t23 * t318 + (t7 * t321 + t330 * t323));
+        const gic_real t331 = y[FIVE_LINK_STATE_V_Z] + (t23 * t318 + (t7 * t321 + t330 * t323));
         const gic_real t332 = t324 * road328[2] + t329 * road328[1] - t331;
-        const gic_real t333 = y[2] + (t23 * t320 + (t7 * t316 + t330 * t317));
+        const gic_real t333 = y[FIVE_LINK_STATE_R_Z] + (t23 * t320 + (t7 * t316 + t330 * t317));
         const gic_real t334 = R(0.4699) + road328[0] - t333;
         const gic_real t335 = GIC_MIN(GIC_MAX(R(100.0) * t334, R(0.0)), R(1.0));
         const gic_real t336 = t332 * (R(500.0) * ((R(3.0) - (t335 + t335)) * (t335 * t335)));
@@ -3814,25 +4903,34 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t338 = t23 * t337;
         const gic_real t339 = t7 * t337;
         const gic_real t340 = t314 * t338 - t319 * t339;
-        const gic_real t341 = t228 + (m[97] * R(0.12319000000000002) + t229);
-        const gic_real t342 = t231 + (m[94] * R(0.12319000000000002) + t232);
-        const gic_real t343 = m[91] + t341;
-        const gic_real t344 = m[90] + t342;
-        const gic_real t345 = m[107] + (m[102] * t341 - m[103] * t342) + (y[15] * t343 - y[16] * t344);
-        const gic_real t346 = t234 + (m[100] * R(0.12319000000000002) + t235);
-        const gic_real t347 = m[92] + t346;
-        const gic_real t348 = m[106] + (m[104] * t342 - m[102] * t346) + (y[17] * t344 - y[15] * t347);
-        const gic_real t349 = m[105] + (m[103] * t346 - m[104] * t341) + (y[16] * t347 - y[17] * t343);
-        const gic_real t350 = y[13] + (t24 * t345 + (t12 * t348 + t322 * t349));
-        const gic_real t351 = y[0] + (t27 * t347 + (t15 * t343 + t325 * t344));
-        const gic_real t352 = y[1] + (t24 * t347 + (t12 * t343 + t322 * t344));
+        const gic_real t341 = t228 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t229);
+        const gic_real t342 = t231 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t232);
+        const gic_real t343 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t341;
+        const gic_real t344 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t342;
+        const gic_real t345 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t341 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t342) + (y[FIVE_LINK_STATE_OMEGA_X] * t343 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t344);
+        const gic_real t346 = t234 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t235);
+        const gic_real t347 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t346;
+        const gic_real t348 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t342 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t346) + (y[FIVE_LINK_STATE_OMEGA_Z] * t344 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t347);
+        const gic_real t349 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t346 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t341) + (y[FIVE_LINK_STATE_OMEGA_Y] * t347 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t343);
+        const gic_real t350 = y[FIVE_LINK_STATE_V_Y] + (t24 * t345 + (t12 * t348 + t322 * t349));
+        const gic_real t351 = y[FIVE_LINK_STATE_R_X] + (t27 * t347 + (t15 * t343 + t325 * t344));
+        const gic_real t352 = y[FIVE_LINK_STATE_R_Y] + (t24 * t347 + (t12 * t343 + t322 * t344));
         gic_real road353[3];
         if (!five_link_road_height(self, time, t351, t352, road353))
             return GIC_ERROR_ROAD;
-        const gic_real t354 = y[12] + (t27 * t345 + (t15 * t348 + t325 * t349));
-        const gic_real t355 = y[14] + (t23 * t345 + (t7 * t348 + t330 * t349));
+        const gic_real t354 = y[FIVE_LINK_STATE_V_X] + (t27 * t345 + (t15 * t348 + t325 * t349));
+        const gic_real t355 = y[FIVE_LINK_STATE_V_Z] + (t23 * t345 + (t7 * t348 + t330 * t349));
         const gic_real t356 = t350 * road353[2] + t354 * road353[1] - t355;
-        const gic_real t357 = y[2] + (t23 * t347 + (t7 * t343 + t330 * t344));
+        const gic_real t357 = y[FIVE_LINK_STATE_R_Z] + (t23 * t347 + (t7 * t343 + t330 * t344));
         const gic_real t358 = R(0.4699) + road353[0] - t357;
         const gic_real t359 = GIC_MIN(GIC_MAX(R(100.0) * t358, R(0.0)), R(1.0));
         const gic_real t360 = t356 * (R(500.0) * ((R(3.0) - (t359 + t359)) * (t359 * t359)));
@@ -3840,25 +4938,33 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t362 = t23 * t361;
         const gic_real t363 = t7 * t361;
         const gic_real t364 = t341 * t362 - t346 * t363;
-        const gic_real t365 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t366 = t177 + (m[190] * R(-0.12319000000000002) + t178);
-        const gic_real t367 = m[187] + t365;
+        const gic_real t365 = t174 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t366 = t177 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t178);
+        const gic_real t367 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t365;
         const gic_real t368 = R(1.653405) + t366;
-        const gic_real t369 = m[203] + (m[198] * t365 - m[199] * t366) + (y[15] * t367 - y[16] * t368);
-        const gic_real t370 = t180 + (m[196] * R(-0.12319000000000002) + t181);
-        const gic_real t371 = m[188] + t370;
-        const gic_real t372 = m[202] + (m[200] * t366 - m[198] * t370) + (y[17] * t368 - y[15] * t371);
-        const gic_real t373 = m[199] * t370 - m[200] * t365 + (y[16] * t371 - y[17] * t367);
-        const gic_real t374 = y[13] + (t24 * t369 + (t12 * t372 + t322 * t373));
-        const gic_real t375 = y[0] + (t27 * t371 + (t15 * t367 + t325 * t368));
-        const gic_real t376 = y[1] + (t24 * t371 + (t12 * t367 + t322 * t368));
+        const gic_real t369 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t365 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t366) + (y[FIVE_LINK_STATE_OMEGA_X] * t367 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t368);
+        const gic_real t370 = t180 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t181);
+        const gic_real t371 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t370;
+        const gic_real t372 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t366 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t370) + (y[FIVE_LINK_STATE_OMEGA_Z] * t368 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t371);
+        const gic_real t373 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t370 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t365 + (y[FIVE_LINK_STATE_OMEGA_Y] * t371 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t367);
+        const gic_real t374 = y[FIVE_LINK_STATE_V_Y] + (t24 * t369 + (t12 * t372 + t322 * t373));
+        const gic_real t375 = y[FIVE_LINK_STATE_R_X] + (t27 * t371 + (t15 * t367 + t325 * t368));
+        const gic_real t376 = y[FIVE_LINK_STATE_R_Y] + (t24 * t371 + (t12 * t367 + t322 * t368));
         gic_real road377[3];
         if (!five_link_road_height(self, time, t375, t376, road377))
             return GIC_ERROR_ROAD;
-        const gic_real t378 = y[12] + (t27 * t369 + (t15 * t372 + t325 * t373));
-        const gic_real t379 = y[14] + (t23 * t369 + (t7 * t372 + t330 * t373));
+        const gic_real t378 = y[FIVE_LINK_STATE_V_X] + (t27 * t369 + (t15 * t372 + t325 * t373));
+        const gic_real t379 = y[FIVE_LINK_STATE_V_Z] + (t23 * t369 + (t7 * t372 + t330 * t373));
         const gic_real t380 = t374 * road377[2] + t378 * road377[1] - t379;
-        const gic_real t381 = y[2] + (t23 * t371 + (t7 * t367 + t330 * t368));
+        const gic_real t381 = y[FIVE_LINK_STATE_R_Z] + (t23 * t371 + (t7 * t367 + t330 * t368));
         const gic_real t382 = R(0.4699) + road377[0] - t381;
         const gic_real t383 = GIC_MIN(GIC_MAX(R(100.0) * t382, R(0.0)), R(1.0));
         const gic_real t384 = t380 * (R(500.0) * ((R(3.0) - (t383 + t383)) * (t383 * t383)));
@@ -3866,25 +4972,33 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t386 = t23 * t385;
         const gic_real t387 = t7 * t385;
         const gic_real t388 = t365 * t386 - t370 * t387;
-        const gic_real t389 = t116 + (m[157] * R(0.12319000000000002) + t117);
-        const gic_real t390 = t119 + (m[154] * R(0.12319000000000002) + t120);
-        const gic_real t391 = m[151] + t389;
+        const gic_real t389 = t116 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t117);
+        const gic_real t390 = t119 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t120);
+        const gic_real t391 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t389;
         const gic_real t392 = R(1.653405) + t390;
-        const gic_real t393 = m[167] + (m[162] * t389 - m[163] * t390) + (y[15] * t391 - y[16] * t392);
-        const gic_real t394 = t122 + (m[160] * R(0.12319000000000002) + t123);
-        const gic_real t395 = m[152] + t394;
-        const gic_real t396 = m[166] + (m[164] * t390 - m[162] * t394) + (y[17] * t392 - y[15] * t395);
-        const gic_real t397 = m[163] * t394 - m[164] * t389 + (y[16] * t395 - y[17] * t391);
-        const gic_real t398 = y[13] + (t24 * t393 + (t12 * t396 + t322 * t397));
-        const gic_real t399 = y[0] + (t27 * t395 + (t15 * t391 + t325 * t392));
-        const gic_real t400 = y[1] + (t24 * t395 + (t12 * t391 + t322 * t392));
+        const gic_real t393 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t389 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t390) + (y[FIVE_LINK_STATE_OMEGA_X] * t391 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t392);
+        const gic_real t394 = t122 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t123);
+        const gic_real t395 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t394;
+        const gic_real t396 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t390 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t394) + (y[FIVE_LINK_STATE_OMEGA_Z] * t392 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t395);
+        const gic_real t397 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t394 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t389 + (y[FIVE_LINK_STATE_OMEGA_Y] * t395 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t391);
+        const gic_real t398 = y[FIVE_LINK_STATE_V_Y] + (t24 * t393 + (t12 * t396 + t322 * t397));
+        const gic_real t399 = y[FIVE_LINK_STATE_R_X] + (t27 * t395 + (t15 * t391 + t325 * t392));
+        const gic_real t400 = y[FIVE_LINK_STATE_R_Y] + (t24 * t395 + (t12 * t391 + t322 * t392));
         gic_real road401[3];
         if (!five_link_road_height(self, time, t399, t400, road401))
             return GIC_ERROR_ROAD;
-        const gic_real t402 = y[12] + (t27 * t393 + (t15 * t396 + t325 * t397));
-        const gic_real t403 = y[14] + (t23 * t393 + (t7 * t396 + t330 * t397));
+        const gic_real t402 = y[FIVE_LINK_STATE_V_X] + (t27 * t393 + (t15 * t396 + t325 * t397));
+        const gic_real t403 = y[FIVE_LINK_STATE_V_Z] + (t23 * t393 + (t7 * t396 + t330 * t397));
         const gic_real t404 = t398 * road401[2] + t402 * road401[1] - t403;
-        const gic_real t405 = y[2] + (t23 * t395 + (t7 * t391 + t330 * t392));
+        const gic_real t405 = y[FIVE_LINK_STATE_R_Z] + (t23 * t395 + (t7 * t391 + t330 * t392));
         const gic_real t406 = road401[0] + R(0.4699) - t405;
         const gic_real t407 = GIC_MIN(GIC_MAX(t406 * R(100.0), R(0.0)), R(1.0));
         const gic_real t408 = t404 * ((R(3.0) - (t407 + t407)) * (t407 * t407) * R(500.0));
@@ -3892,46 +5006,62 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t410 = t23 * t409;
         const gic_real t411 = t7 * t409;
         const gic_real t412 = t389 * t410 - t394 * t411;
-        const gic_real t413 = t412 + (m[151] * t410 - m[152] * t411) + (m[187] * t386 - m[188] * t387);
-        const gic_real t414 = t364 + (t388 + t413 + (m[91] * t362 - m[92] * t363));
-        const gic_real t415 = t260 + (t313 + (m[121] * t304 - m[122] * t312)) - (t340 + (t414 + (m[121] * t338 - m[122] * t339)));
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t413 = t412 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t410 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t411) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] *
+            t386 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t387);
+        const gic_real t414 = t364 + (t388 + t413 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t362 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t363));
+        const gic_real residual_0 = t260 + (t313 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t304 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t312)) - (t340 + (t414 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t338 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] *
+            t339)));
         const gic_real t416 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t330);
-        const gic_real t417 = t330 * t8 + (t322 * rate[13] + t325 * rate[12]);
+        const gic_real t417 = t330 * t8 + (t322 * rate[FIVE_LINK_STATE_V_Y] + t325 * rate[FIVE_LINK_STATE_V_X]);
         const gic_real t418 = t416 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t417));
-        const gic_real t419 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
-        const gic_real t420 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t419 = GIC_FABS(y[FIVE_LINK_STATE_OMEGA_Z]) + GIC_FABS(y[FIVE_LINK_STATE_OMEGA_Y]) +
+            GIC_FABS(y[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t420 = GIC_FABS(rate[FIVE_LINK_STATE_OMEGA_Z]) + GIC_FABS(rate[FIVE_LINK_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[FIVE_LINK_STATE_OMEGA_X]);
         const gic_real t421 = t419 * t419 + t420;
         const gic_real t422 = t418 + t421 * R(0.2690000000000001);
         const gic_real t423 = t422 * R(561.2738800000002) + t421 * R(7604.379999999999);
-        const gic_real t424 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t425 = GIC_FABS(rate[22]);
-        const gic_real t426 = t418 + t421 * t424 + t419 * GIC_FABS(m[16]) + t425;
+        const gic_real t424 = R(1.438648) + (R(0.05422899999999997) +
+            GIC_FABS(m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y]));
+        const gic_real t425 = GIC_FABS(rate[FIVE_LINK_STATE_RACK_RATE]);
+        const gic_real t426 = t418 + t421 * t424 + t419 * GIC_FABS(m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y]) +
+            t425;
         const gic_real t427 = R(9.072) * t426 + t421 * R(0.0005216895628628198);
-        const gic_real t428 = t423 + t422 * R(0.3983301514773894) + (R(3.0) * t421 + t426 * R(0.0005216895628628198) + t424 * t427);
+        const gic_real t428 = t423 + t422 * R(0.3983301514773894) + (R(3.0) * t421 + t426 * R(0.0005216895628628198) +
+            t424 * t427);
         const gic_real t429 = GIC_FABS(t46);
         const gic_real t430 = t429 + GIC_FABS(t45);
-        const gic_real t431 = t419 + GIC_FABS(m[42]);
+        const gic_real t431 = t419 + GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X]);
         const gic_real t432 = t420 + t431 * t431;
-        const gic_real t433 = t418 + t432 * (R(1.688965) + (t429 + GIC_FABS(t51))) + t419 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t434 = GIC_FABS(rate[18]);
-        const gic_real t435 = GIC_FABS(m[54]);
+        const gic_real t433 = t418 + t432 * (R(1.688965) + (t429 + GIC_FABS(t51))) + t419 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t434 = GIC_FABS(rate[FIVE_LINK_STATE_SPRING_F_L_RATE]);
+        const gic_real t435 = GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0]);
         const gic_real t436 = t434 * t435;
         const gic_real t437 = t433 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t436 * t430;
         const gic_real t438 = R(23.965) * t437;
-        const gic_real t439 = t430 * t438 + (t432 + GIC_FABS(m[48]) + t436) * R(1.7876);
+        const gic_real t439 = t430 * t438 + (t432 + GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X]) + t436) *
+            R(1.7876);
         const gic_real t440 = t439 + t437 * R(0.0006545214587773269);
         const gic_real t441 = t438 + t439 * R(0.00036614536740732094);
         const gic_real t442 = GIC_FABS(t76);
         const gic_real t443 = t442 + GIC_FABS(t75);
-        const gic_real t444 = t419 + GIC_FABS(m[72]);
+        const gic_real t444 = t419 + GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X]);
         const gic_real t445 = t420 + t444 * t444;
-        const gic_real t446 = t418 + t445 * (R(1.688965) + (t442 + GIC_FABS(t80))) + t419 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t447 = GIC_FABS(rate[19]);
-        const gic_real t448 = GIC_FABS(m[84]);
+        const gic_real t446 = t418 + t445 * (R(1.688965) + (t442 + GIC_FABS(t80))) + t419 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t447 = GIC_FABS(rate[FIVE_LINK_STATE_SPRING_F_R_RATE]);
+        const gic_real t448 = GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0]);
         const gic_real t449 = t447 * t448;
         const gic_real t450 = t446 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t449 * t443;
         const gic_real t451 = R(23.965) * t450;
-        const gic_real t452 = t443 * t451 + R(1.7876) * (t445 + GIC_FABS(m[78]) + t449);
+        const gic_real t452 = t443 * t451 + R(1.7876) * (t445 +
+            GIC_FABS(m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X]) + t449);
         const gic_real t453 = t452 + R(0.0006545214587773269) * t450;
         const gic_real t454 = t451 + R(0.00036614536740732094) * t452;
         const gic_real t455 = t428 + (t440 + t441 * R(1.996051)) + (t453 + R(1.996051) * t454);
@@ -3939,149 +5069,233 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t457 = GIC_FABS(t408) + GIC_FABS(t456);
         const gic_real t458 = t457 * (GIC_FABS(t394) + GIC_FABS(t389) + GIC_FABS(t390));
         const gic_real t459 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t460 = t419 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t460 = t419 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X]));
         const gic_real t461 = t420 + t460 * t460;
         const gic_real t462 = t461 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t463 = t419 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t464 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t464 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t139 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t125 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t124 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t118);
         const gic_real t465 = t418 + t462 + t463 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t464));
-        const gic_real t466 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t466 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0]);
         const gic_real t467 = t425 * t466;
-        const gic_real t468 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t468 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6]);
         const gic_real t469 = t434 * t468;
-        const gic_real t470 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t470 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10]);
         const gic_real t471 = t465 + t467 * t459 + t459 * t469 + t434 * t470;
         const gic_real t472 = R(90.555) * t471;
-        const gic_real t473 = t461 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t473 = t461 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X]));
         const gic_real t474 = t458 + (t459 * t472 + (t473 + t467 + t469) * R(17.248790999999997));
         const gic_real t475 = t457 + t472;
         const gic_real t476 = t474 + t475 * R(4.364385583403788e-05);
         const gic_real t477 = t475 + t474 * R(0.00022912732637616755);
-        const gic_real t478 = t476 + t477 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t478 = t476 + t477 * (R(1.653405) + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y])));
         const gic_real t479 = R(283000.0) * (R(0.4699) + (GIC_FABS(t381) + GIC_FABS(road377[0])));
         const gic_real t480 = GIC_FABS(t384) + GIC_FABS(t479);
         const gic_real t481 = t480 * (GIC_FABS(t370) + GIC_FABS(t365) + GIC_FABS(t366));
         const gic_real t482 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t483 = t419 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t483 = t419 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X]));
         const gic_real t484 = t420 + t483 * t483;
         const gic_real t485 = t484 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t486 = t419 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t487 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t487 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t197 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t183 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t182 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t176);
         const gic_real t488 = t418 + t485 + t486 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t487));
-        const gic_real t489 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t489 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0]);
         const gic_real t490 = t425 * t489;
-        const gic_real t491 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t491 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6]);
         const gic_real t492 = t447 * t491;
-        const gic_real t493 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t493 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10]);
         const gic_real t494 = t488 + t490 * t482 + t482 * t492 + t447 * t493;
         const gic_real t495 = R(90.555) * t494;
-        const gic_real t496 = t484 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t496 = t484 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X]));
         const gic_real t497 = t481 + (t482 * t495 + R(17.248790999999997) * (t496 + t490 + t492));
         const gic_real t498 = t480 + t495;
         const gic_real t499 = t497 + R(4.364385583403788e-05) * t498;
         const gic_real t500 = t498 + R(0.00022912732637616755) * t497;
-        const gic_real t501 = t499 + t500 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t501 = t499 + t500 * (R(1.653405) + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y])));
         const gic_real t502 = R(283000.0) * (R(0.4699) + (GIC_FABS(t357) + GIC_FABS(road353[0])));
         const gic_real t503 = GIC_FABS(t360) + GIC_FABS(t502);
         const gic_real t504 = t503 * (GIC_FABS(t346) + GIC_FABS(t341) + GIC_FABS(t342));
         const gic_real t505 = GIC_FABS(t236) + GIC_FABS(t230) + GIC_FABS(t233);
-        const gic_real t506 = t419 + (GIC_FABS(m[104]) + GIC_FABS(m[103]) + GIC_FABS(m[102]));
+        const gic_real t506 = t419 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X]));
         const gic_real t507 = t420 + t506 * t506;
         const gic_real t508 = t507 * (GIC_FABS(t243) + GIC_FABS(t246) + GIC_FABS(t242));
         const gic_real t509 = t419 * (GIC_FABS(t254) + GIC_FABS(t241) + GIC_FABS(t245));
-        const gic_real t510 = m[103] * t251 - m[104] * t237 + (m[109] * t236 - m[110] * t230);
-        const gic_real t511 = m[111] + t510;
+        const gic_real t510 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t251 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t237 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t236 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t230);
+        const gic_real t511 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_X] + t510;
         const gic_real t512 = t418 + t508 + t509 + (GIC_FABS(t240) + GIC_FABS(t253) + GIC_FABS(t511));
-        const gic_real t513 = GIC_FABS(rate[20]);
-        const gic_real t514 = GIC_FABS(m[116]) + GIC_FABS(m[115]) + GIC_FABS(m[114]);
+        const gic_real t513 = GIC_FABS(rate[FIVE_LINK_STATE_SPRING_R_L_RATE]);
+        const gic_real t514 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0]);
         const gic_real t515 = t513 * t514;
-        const gic_real t516 = GIC_FABS(m[119]) + GIC_FABS(m[118]) + GIC_FABS(m[117]);
+        const gic_real t516 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3]);
         const gic_real t517 = R(90.555) * (t512 + t515 * t505 + t513 * t516);
-        const gic_real t518 = t507 + (GIC_FABS(m[110]) + GIC_FABS(m[109]) + GIC_FABS(m[108]));
+        const gic_real t518 = t507 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X]));
         const gic_real t519 = t504 + (t505 * t517 + R(17.248790999999997) * (t518 + t515));
         const gic_real t520 = t503 + t517;
         const gic_real t521 = t519 + R(4.364385583403788e-05) * t520;
         const gic_real t522 = t520 + R(0.00022912732637616755) * t519;
-        const gic_real t523 = t522 * (GIC_FABS(m[92]) + GIC_FABS(m[91]) + GIC_FABS(m[90]));
+        const gic_real t523 = t522 * (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X]));
         const gic_real t524 = R(283000.0) * (R(0.4699) + (GIC_FABS(t333) + GIC_FABS(road328[0])));
         const gic_real t525 = GIC_FABS(t336) + GIC_FABS(t524);
         const gic_real t526 = t525 * (GIC_FABS(t319) + GIC_FABS(t314) + GIC_FABS(t315));
         const gic_real t527 = GIC_FABS(t290) + GIC_FABS(t284) + GIC_FABS(t287);
-        const gic_real t528 = t419 + (GIC_FABS(m[134]) + GIC_FABS(m[133]) + GIC_FABS(m[132]));
+        const gic_real t528 = t419 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X]));
         const gic_real t529 = t420 + t528 * t528;
         const gic_real t530 = t529 * (GIC_FABS(t297) + GIC_FABS(t300) + GIC_FABS(t296));
         const gic_real t531 = t419 * (GIC_FABS(t308) + GIC_FABS(t295) + GIC_FABS(t299));
-        const gic_real t532 = m[133] * t305 - m[134] * t291 + (m[139] * t290 - m[140] * t284);
-        const gic_real t533 = m[141] + t532;
+        const gic_real t532 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t305 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t291 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t284);
+        const gic_real t533 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_X] + t532;
         const gic_real t534 = t418 + t530 + t531 + (GIC_FABS(t294) + GIC_FABS(t307) + GIC_FABS(t533));
-        const gic_real t535 = GIC_FABS(rate[21]);
-        const gic_real t536 = GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]);
+        const gic_real t535 = GIC_FABS(rate[FIVE_LINK_STATE_SPRING_R_R_RATE]);
+        const gic_real t536 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0]);
         const gic_real t537 = t535 * t536;
-        const gic_real t538 = GIC_FABS(m[149]) + GIC_FABS(m[148]) + GIC_FABS(m[147]);
+        const gic_real t538 = GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3]);
         const gic_real t539 = R(90.555) * (t534 + t537 * t527 + t535 * t538);
-        const gic_real t540 = t529 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t540 = t529 + (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X]));
         const gic_real t541 = t526 + (t527 * t539 + R(17.248790999999997) * (t540 + t537));
         const gic_real t542 = t525 + t539;
         const gic_real t543 = t541 + R(4.364385583403788e-05) * t542;
         const gic_real t544 = t542 + R(0.00022912732637616755) * t541;
-        const gic_real t545 = t544 * (GIC_FABS(m[122]) + GIC_FABS(m[121]) + GIC_FABS(m[120]));
+        const gic_real t545 = t544 * (GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y]) +
+            GIC_FABS(m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X]));
         const gic_real t546 = t455 + t478 + t501 + (t521 + t523) + (t543 + t545);
-        const gic_real t547 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t548 = t417 + (rate[16] * R(0.21300000000000008) - (y[17] * t547 + y[16] * t17));
-        const gic_real t549 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t547 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - y[FIVE_LINK_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t548 = t417 + (rate[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[FIVE_LINK_STATE_OMEGA_Z] * t547 + y[FIVE_LINK_STATE_OMEGA_Y] * t17));
+        const gic_real t549 = y[FIVE_LINK_STATE_OMEGA_Y] * t34 - y[FIVE_LINK_STATE_OMEGA_Z] * t29 +
+            (R(0.05422899999999997) * rate[FIVE_LINK_STATE_OMEGA_Y] - m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] *
+            rate[FIVE_LINK_STATE_OMEGA_Z]);
         const gic_real t550 = t417 + t549;
         const gic_real t551 = t550 * R(9.072);
-        const gic_real t552 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t552 = y[FIVE_LINK_STATE_OMEGA_Y] * t59 - y[FIVE_LINK_STATE_OMEGA_Z] * t50 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t46 - rate[FIVE_LINK_STATE_OMEGA_Z] * t51);
         const gic_real t553 = t417 + t552;
         const gic_real t554 = t553 * R(23.965);
-        const gic_real t555 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t555 = y[FIVE_LINK_STATE_OMEGA_Y] * t86 - y[FIVE_LINK_STATE_OMEGA_Z] * t79 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t76 - rate[FIVE_LINK_STATE_OMEGA_Z] * t80);
         const gic_real t556 = t417 + t555;
         const gic_real t557 = R(23.965) * t556;
-        const gic_real t558 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
-        const gic_real t559 = t464 + (t417 + t558) + rate[22] * (m[175] * t124 - m[176] * t118);
-        const gic_real t560 = (t559 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
-        const gic_real t561 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
-        const gic_real t562 = t487 + (t417 + t561) + rate[22] * (m[211] * t182 - m[212] * t176);
-        const gic_real t563 = R(90.555) * (t562 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t558 = y[FIVE_LINK_STATE_OMEGA_Y] * t143 - y[FIVE_LINK_STATE_OMEGA_Z] * t132 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t131 - rate[FIVE_LINK_STATE_OMEGA_Z] * t133);
+        const gic_real t559 = t464 + (t417 + t558) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t124 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] *
+            t118);
+        const gic_real t560 = (t559 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t124 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t118)) * R(90.555);
+        const gic_real t561 = y[FIVE_LINK_STATE_OMEGA_Y] * t201 - y[FIVE_LINK_STATE_OMEGA_Z] * t190 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t189 - rate[FIVE_LINK_STATE_OMEGA_Z] * t191);
+        const gic_real t562 = t487 + (t417 + t561) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t182 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] *
+            t176);
+        const gic_real t563 = R(90.555) * (t562 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t182 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t176));
         const gic_real t564 = t548 * R(2086.52) + t551 + t554 + t557 + t560 + t563;
-        const gic_real t565 = y[16] * t255 - y[17] * t244 + (rate[16] * t243 - rate[17] * t246);
-        const gic_real t566 = t511 + (t417 + t565) + rate[20] * (m[117] + (m[115] * t236 - m[116] * t230));
+        const gic_real t565 = y[FIVE_LINK_STATE_OMEGA_Y] * t255 - y[FIVE_LINK_STATE_OMEGA_Z] * t244 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t243 - rate[FIVE_LINK_STATE_OMEGA_Z] * t246);
+        const gic_real t566 = t511 + (t417 + t565) + rate[FIVE_LINK_STATE_SPRING_R_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t236 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t230));
         const gic_real t567 = R(90.555) * t566;
-        const gic_real t568 = y[16] * t309 - y[17] * t298 + (rate[16] * t297 - rate[17] * t300);
-        const gic_real t569 = t533 + (t417 + t568) + rate[21] * (m[147] + (m[145] * t290 - m[146] * t284));
+        const gic_real t568 = y[FIVE_LINK_STATE_OMEGA_Y] * t309 - y[FIVE_LINK_STATE_OMEGA_Z] * t298 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t297 - rate[FIVE_LINK_STATE_OMEGA_Z] * t300);
+        const gic_real t569 = t533 + (t417 + t568) + rate[FIVE_LINK_STATE_SPRING_R_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t284));
         const gic_real t570 = R(90.555) * t569;
         const gic_real t571 = t330 * t337;
         const gic_real t572 = t330 * t361;
         const gic_real t573 = t330 * t409;
         const gic_real t574 = t330 * t385;
-        const gic_real t575 = t564 + t567 + t570 - (t571 + (t572 + (t573 + t574)));
+        const gic_real residual_3 = t564 + t567 + t570 - (t571 + (t572 + (t573 + t574)));
         const gic_real t576 = R(2086.52) * t422 + t423 * R(5.2381673650894547e-05) + t427 + t441 + t454;
         const gic_real t577 = t576 + t477 + t500 + t522 + t544;
-        const gic_real t578 = y[15] * R(1078.52);
-        const gic_real t579 = t28 + (y[15] * t547 - y[16] * t18 - rate[16] * R(0.056));
-        const gic_real t580 = y[17] * t578 - y[15] * t1 + rate[16] * R(2955.66) + (t548 * R(444.4287600000002) - t579 * R(116.84512));
-        const gic_real t581 = m[42] + y[15];
+        const gic_real t578 = y[FIVE_LINK_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t579 = t28 + (y[FIVE_LINK_STATE_OMEGA_X] * t547 - y[FIVE_LINK_STATE_OMEGA_Y] * t18 -
+            rate[FIVE_LINK_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t580 = y[FIVE_LINK_STATE_OMEGA_Z] * t578 - y[FIVE_LINK_STATE_OMEGA_X] * t1 +
+            rate[FIVE_LINK_STATE_OMEGA_Y] * R(2955.66) + (t548 * R(444.4287600000002) - t579 * R(116.84512));
+        const gic_real t581 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t582 = R(0.4469) * t581;
-        const gic_real t583 = rate[17] - m[42] * y[16];
-        const gic_real t584 = rate[16] + m[42] * y[17];
-        const gic_real t585 = y[17] * t582 - t581 * t41 + (t40 * t583 + t42 * t584);
-        const gic_real t586 = t580 + (rate[16] + (t550 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t585 + t46 * t554 - t55 * R(40.476046225));
-        const gic_real t587 = m[72] + y[15];
+        const gic_real t583 = rate[FIVE_LINK_STATE_OMEGA_Z] - m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t584 = rate[FIVE_LINK_STATE_OMEGA_Y] + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t585 = y[FIVE_LINK_STATE_OMEGA_Z] * t582 - t581 * t41 + (t40 * t583 + t42 * t584);
+        const gic_real t586 = t580 + (rate[FIVE_LINK_STATE_OMEGA_Y] + (t550 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t585 + t46 * t554 - t55 * R(40.476046225));
+        const gic_real t587 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t588 = R(0.4469) * t587;
-        const gic_real t589 = rate[17] - m[72] * y[16];
-        const gic_real t590 = rate[16] + m[72] * y[17];
-        const gic_real t591 = y[17] * t588 - t587 * t71 + (t70 * t589 + t72 * t590);
+        const gic_real t589 = rate[FIVE_LINK_STATE_OMEGA_Z] - m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t590 = rate[FIVE_LINK_STATE_OMEGA_Y] + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t591 = y[FIVE_LINK_STATE_OMEGA_Z] * t588 - t587 * t71 + (t70 * t589 + t72 * t590);
         const gic_real t592 = t102 * t94 + (t106 * t92 + t112 * t103);
         const gic_real t593 = t94 * t592 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t594 = t593 + (t124 * t560 - t121 * t138);
-        const gic_real t595 = t586 + (t591 + t76 * t557 - R(40.476046225) * t83) + (t594 + (m[152] * t560 - t137 * R(149.724089775)));
+        const gic_real t595 = t586 + (t591 + t76 * t557 - R(40.476046225) * t83) + (t594 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t560 - t137 * R(149.724089775)));
         const gic_real t596 = t160 * t152 + (t164 * t150 + t170 * t161);
         const gic_real t597 = t152 * t596 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t598 = t597 + (t182 * t563 - t179 * t196);
         const gic_real t599 = t217 * t209 + (t221 * t207 + t225 * t218);
         const gic_real t600 = t209 * t599 - t218 * t219 + (t213 * t223 + (t220 * t224 + t221 * t226));
         const gic_real t601 = t600 + (t236 * t567 - t233 * t250);
-        const gic_real t602 = t595 + (t598 + (m[188] * t563 - R(149.724089775) * t195)) + (t601 + (m[92] * t567 - m[90] * t250));
+        const gic_real t602 = t595 + (t598 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t563 - R(149.724089775) *
+            t195)) + (t601 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t567 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t250));
         const gic_real t603 = t271 * t263 + (t275 * t261 + t279 * t272);
         const gic_real t604 = t263 * t603 - t272 * t273 + (t267 * t277 + (t274 * t278 + t275 * t280));
         const gic_real t605 = t604 + (t290 * t570 - t287 * t304);
@@ -4089,96 +5303,156 @@ static GIC_COLD GIC_APART int five_link_balance(const five_link *self, gic_real 
         const gic_real t607 = t346 * t572 - t342 * t362;
         const gic_real t608 = t370 * t574 - t366 * t386;
         const gic_real t609 = t394 * t573 - t390 * t410;
-        const gic_real t610 = t609 + (m[152] * t573 - R(1.653405) * t410) + (m[188] * t574 - R(1.653405) * t386);
-        const gic_real t611 = t607 + (t608 + t610 + (m[92] * t572 - m[90] * t362));
-        const gic_real t612 = t602 + (t605 + (m[122] * t570 - m[120] * t304)) - (t606 + (t611 + (m[122] * t571 - m[120] * t338)));
+        const gic_real t610 = t609 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t573 - R(1.653405) * t410) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t574 - R(1.653405) * t386);
+        const gic_real t611 = t607 + (t608 + t610 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t572 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t362));
+        const gic_real residual_1 = t602 + (t605 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t570 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t304)) - (t606 + (t611 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t571 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] *
+            t338)));
         const gic_real t613 = t36 * R(9.072);
         const gic_real t614 = t20 * R(2086.52) + t613 + t64 + t90 + t147 + t205;
-        const gic_real t615 = t614 + t258 + t312 - (t339 + (t363 + (t411 + t387)));
-        const gic_real t616 = y[15] * t2 - y[16] * t578 + rate[17] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t617 = t581 * t43 - y[16] * t582 + (t37 * t583 + t40 * t584);
+        const gic_real residual_4 = t614 + t258 + t312 - (t339 + (t363 + (t411 + t387)));
+        const gic_real t616 = y[FIVE_LINK_STATE_OMEGA_X] * t2 - y[FIVE_LINK_STATE_OMEGA_Y] * t578 +
+            rate[FIVE_LINK_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t617 = t581 * t43 - y[FIVE_LINK_STATE_OMEGA_Y] * t582 + (t37 * t583 + t40 * t584);
         const gic_real t618 = t617 - t45 * t554 + (t63 * R(40.476046225) - t553 * R(7.359315990000001));
-        const gic_real t619 = t616 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t551)) + t618;
-        const gic_real t620 = t587 * t73 - y[16] * t588 + (t67 * t589 + t70 * t590);
+        const gic_real t619 = t616 + (rate[FIVE_LINK_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t551)) + t618;
+        const gic_real t620 = t587 * t73 - y[FIVE_LINK_STATE_OMEGA_Y] * t588 + (t67 * t589 + t70 * t590);
         const gic_real t621 = t620 - t75 * t557 + (R(40.476046225) * t89 - t556 * R(-7.359315990000001));
         const gic_real t622 = t103 * t107 - t92 * t592 + (t93 * t109 + (t98 * t111 + t102 * t114));
         const gic_real t623 = t622 + (t121 * t147 - t118 * t560);
-        const gic_real t624 = t619 + t621 + (t623 + (t146 * R(149.724089775) - m[151] * t560));
+        const gic_real t624 = t619 + t621 + (t623 + (t146 * R(149.724089775) -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t560));
         const gic_real t625 = t161 * t165 - t150 * t596 + (t151 * t167 + (t156 * t169 + t160 * t172));
         const gic_real t626 = t625 + (t179 * t205 - t176 * t563);
         const gic_real t627 = t218 * t222 - t207 * t599 + (t208 * t223 + (t213 * t224 + t217 * t226));
         const gic_real t628 = t627 + (t233 * t258 - t230 * t567);
-        const gic_real t629 = t624 + (t626 + (R(149.724089775) * t204 - m[187] * t563)) + (t628 + (m[90] * t258 - m[91] * t567));
+        const gic_real t629 = t624 + (t626 + (R(149.724089775) * t204 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] *
+            t563)) + (t628 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t258 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t567));
         const gic_real t630 = t272 * t276 - t261 * t603 + (t262 * t277 + (t267 * t278 + t271 * t280));
         const gic_real t631 = t630 + (t287 * t312 - t284 * t570);
         const gic_real t632 = t315 * t339 - t314 * t571;
         const gic_real t633 = t342 * t363 - t341 * t572;
         const gic_real t634 = t366 * t387 - t365 * t574;
         const gic_real t635 = t390 * t411 - t389 * t573;
-        const gic_real t636 = t635 + (R(1.653405) * t411 - m[151] * t573) + (R(1.653405) * t387 - m[187] * t574);
-        const gic_real t637 = t633 + (t634 + t636 + (m[90] * t363 - m[91] * t572));
-        const gic_real t638 = t629 + (t631 + (m[120] * t312 - m[121] * t570)) - (t632 + (t637 + (m[120] * t339 - m[121] * t571)));
+        const gic_real t636 = t635 + (R(1.653405) * t411 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t573) +
+            (R(1.653405) * t387 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] * t574);
+        const gic_real t637 = t633 + (t634 + t636 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t363 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t572));
+        const gic_real residual_2 = t629 + (t631 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t312 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t570)) - (t632 + (t637 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t339 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] *
+            t571)));
         const gic_real t639 = t579 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
-        const gic_real t640 = t639 + t250 + t304 - (t338 + (t362 + (t410 + t386)));
-        const gic_real t641 = m[185] * t138 + m[184] * t147 + (m[182] * t623 + (m[181] * t594 + m[180] * t148));
-        const gic_real t642 = m[185] * t410 + m[184] * t411 + (m[182] * t635 + (m[181] * t609 + m[180] * t412));
-        const gic_real t643 = (x[0] - R(0.31907)) * R(167070.9);
-        const gic_real t644 = xd[0] * R(17490.8);
-        const gic_real t645 = GIC_FABS(t644) + GIC_FABS(t643) + R(167070.9) * (R(0.31907) + GIC_FABS(x[0]));
+        const gic_real residual_5 = t639 + t250 + t304 - (t338 + (t362 + (t410 + t386)));
+        const gic_real t641 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] * t138 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] * t147 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t623 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t594 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t148));
+        const gic_real t642 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] * t410 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] * t411 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t635 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t609 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t412));
+        /* force spring_f_l */
+        const gic_real t643 = (x[FIVE_LINK_X_SPRING_F_L] - R(0.31907)) * R(167070.9);
+        const gic_real t644 = xd[FIVE_LINK_X_SPRING_F_L] * R(17490.8);
+        const gic_real t645 = GIC_FABS(t644) + GIC_FABS(t643) + R(167070.9) * (R(0.31907) +
+            GIC_FABS(x[FIVE_LINK_X_SPRING_F_L]));
         const gic_real t646 = t645 + t435 * t440 + t468 * t476 + t470 * t477;
-        const gic_real t647 = m[221] * t196 + m[220] * t205 + (m[218] * t626 + (m[217] * t598 + m[216] * t206));
-        const gic_real t648 = m[221] * t386 + m[220] * t387 + (m[218] * t634 + (m[217] * t608 + m[216] * t388));
-        const gic_real t649 = R(167070.9) * (x[1] - R(0.31907));
-        const gic_real t650 = xd[1] * R(17490.8);
-        const gic_real t651 = GIC_FABS(t650) + GIC_FABS(t649) + R(167070.9) * (R(0.31907) + GIC_FABS(x[1]));
+        const gic_real t647 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] * t196 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] * t205 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t626 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t598 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t206));
+        const gic_real t648 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] * t386 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] * t387 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t634 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t608 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t388));
+        /* force spring_f_r */
+        const gic_real t649 = R(167070.9) * (x[FIVE_LINK_X_SPRING_F_R] - R(0.31907));
+        const gic_real t650 = xd[FIVE_LINK_X_SPRING_F_R] * R(17490.8);
+        const gic_real t651 = GIC_FABS(t650) + GIC_FABS(t649) + R(167070.9) * (R(0.31907) +
+            GIC_FABS(x[FIVE_LINK_X_SPRING_F_R]));
         const gic_real t652 = t651 + t448 * t453 + t491 * t499 + t493 * t500;
-        const gic_real t653 = m[119] * t250 + (m[118] * t258 + m[117] * t567) + (m[116] * t628 + (m[115] * t601 + m[114] * t259));
-        const gic_real t654 = m[119] * t362 + (m[118] * t363 + m[117] * t572) + (m[116] * t633 + (m[115] * t607 + m[114] * t364));
-        const gic_real t655 = (x[2] - R(0.4321)) * R(89500.0);
-        const gic_real t656 = xd[2] * R(6010.0);
-        const gic_real t657 = GIC_FABS(t656) + GIC_FABS(t655) + R(89500.0) * (R(0.4321) + GIC_FABS(x[2]));
-        const gic_real t658 = m[149] * t304 + (m[148] * t312 + m[147] * t570) + (m[146] * t631 + (m[145] * t605 + m[144] * t313));
-        const gic_real t659 = m[149] * t338 + (m[148] * t339 + m[147] * t571) + (m[146] * t632 + (m[145] * t606 + m[144] * t340));
-        const gic_real t660 = R(89500.0) * (x[3] - R(0.4321));
-        const gic_real t661 = xd[3] * R(6010.0);
-        const gic_real t662 = GIC_FABS(t661) + GIC_FABS(t660) + R(89500.0) * (R(0.4321) + GIC_FABS(x[3]));
-        const gic_real t663 = t613 + (m[176] * t623 + (m[175] * t594 + m[174] * t148));
-        const gic_real t664 = t663 + (m[212] * t626 + (m[211] * t598 + m[210] * t206));
-        const gic_real t665 = x[4] * R(100000.0);
-        const gic_real t666 = xd[4] * R(12000.0);
-        const gic_real t667 = m[176] * t635 + (m[175] * t609 + m[174] * t412) - (t665 + t666);
-        const gic_real t668 = t667 + (m[212] * t634 + (m[211] * t608 + m[210] * t388));
-        const gic_real t669 = GIC_FABS(t666) + GIC_FABS(t665) + R(100000.0) * GIC_FABS(x[4]);
-        const gic_real t670 = m[54] * t65 + t641 - (t642 - (t643 + t644));
-        const gic_real t671 = m[84] * t91 + t647 - (t648 - (t649 + t650));
-        const gic_real t672 = t653 - (t654 - (t655 + t656));
+        const gic_real t653 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] * t250 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] * t258 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] *
+            t567) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t628 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t601 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t259));
+        const gic_real t654 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] * t362 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] * t363 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] *
+            t572) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t633 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t607 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t364));
+        /* force spring_r_l */
+        const gic_real t655 = (x[FIVE_LINK_X_SPRING_R_L] - R(0.4321)) * R(89500.0);
+        const gic_real t656 = xd[FIVE_LINK_X_SPRING_R_L] * R(6010.0);
+        const gic_real t657 = GIC_FABS(t656) + GIC_FABS(t655) + R(89500.0) * (R(0.4321) +
+            GIC_FABS(x[FIVE_LINK_X_SPRING_R_L]));
+        const gic_real t658 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] * t304 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] * t312 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] *
+            t570) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t631 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t605 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t313));
+        const gic_real t659 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] * t338 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] * t339 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] *
+            t571) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t632 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t606 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t340));
+        /* force spring_r_r */
+        const gic_real t660 = R(89500.0) * (x[FIVE_LINK_X_SPRING_R_R] - R(0.4321));
+        const gic_real t661 = xd[FIVE_LINK_X_SPRING_R_R] * R(6010.0);
+        const gic_real t662 = GIC_FABS(t661) + GIC_FABS(t660) + R(89500.0) * (R(0.4321) +
+            GIC_FABS(x[FIVE_LINK_X_SPRING_R_R]));
+        const gic_real t663 = t613 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t623 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t594 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t148));
+        const gic_real t664 = t663 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t626 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t598 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t206));
+        /* force rack */
+        const gic_real t665 = x[FIVE_LINK_X_RACK] * R(100000.0);
+        const gic_real t666 = xd[FIVE_LINK_X_RACK] * R(12000.0);
+        const gic_real t667 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t635 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t609 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t412) - (t665 + t666);
+        const gic_real t668 = t667 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t634 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t608 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t388));
+        const gic_real t669 = GIC_FABS(t666) + GIC_FABS(t665) + R(100000.0) * GIC_FABS(x[FIVE_LINK_X_RACK]);
+        const gic_real residual_6 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t65 + t641 - (t642 - (t643 + t644));
+        const gic_real residual_7 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t91 + t647 - (t648 - (t649 + t650));
+        const gic_real residual_8 = t653 - (t654 - (t655 + t656));
         const gic_real t673 = t657 + t514 * t521 + t516 * t522;
-        const gic_real t674 = t658 - (t659 - (t660 + t661));
+        const gic_real residual_9 = t658 - (t659 - (t660 + t661));
         const gic_real t675 = t662 + t536 * t543 + t538 * t544;
-        const gic_real t676 = t664 - t668;
+        const gic_real residual_10 = t664 - t668;
         const gic_real t677 = t669 + t427 + t466 * t476 + t489 * t499;
-        tau[0] = t415;
-        size[0] = t546;
-        tau[3] = t575;
-        size[3] = t577;
-        tau[1] = t612;
-        size[1] = t546;
-        tau[4] = t615;
-        size[4] = t577;
-        tau[2] = t638;
-        size[2] = t546;
-        tau[5] = t640;
-        size[5] = t577;
-        tau[6] = t670;
-        size[6] = t646;
-        tau[7] = t671;
-        size[7] = t652;
-        tau[8] = t672;
-        size[8] = t673;
-        tau[9] = t674;
-        size[9] = t675;
-        tau[10] = t676;
-        size[10] = t677;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_X] = residual_0;
+        size[FIVE_LINK_UNKNOWN_ALPHA_X] = t546;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[FIVE_LINK_UNKNOWN_ACCELERATION_X] = t577;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_Y] = residual_1;
+        size[FIVE_LINK_UNKNOWN_ALPHA_Y] = t546;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[FIVE_LINK_UNKNOWN_ACCELERATION_Y] = t577;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_Z] = residual_2;
+        size[FIVE_LINK_UNKNOWN_ALPHA_Z] = t546;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[FIVE_LINK_UNKNOWN_ACCELERATION_Z] = t577;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] = t646;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] = t652;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] = t673;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] = t675;
+        tau[FIVE_LINK_UNKNOWN_OF_RACK] = residual_10;
+        size[FIVE_LINK_UNKNOWN_OF_RACK] = t677;
     }
     return GIC_OK;
 }
@@ -4215,7 +5489,7 @@ static GIC_COLD GIC_APART int five_link_check(five_link *self, gic_real time, co
     return status;
 }
 
-/* ---- the functions of five_link.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of five_link.h -------------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int five_link_locate(five_link *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -4235,7 +5509,8 @@ static int five_link_locate(five_link *self, gic_real time, const gic_real *y, g
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[FIVE_LINK_STATE_ROOM])
+static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[FIVE_LINK_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = five_link_locate(self, time, y, e);
@@ -4243,7 +5518,8 @@ static int five_link_evaluate(five_link *self, gic_real time, const gic_real *y,
     if (status == GIC_OK)
         status = five_link_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + FIVE_LINK_TWIST, FIVE_LINK_STATES - FIVE_LINK_TWIST))
+    if (status == GIC_OK && FIVE_LINK_STATES > FIVE_LINK_TWIST && !GIC_FINITE(rate + FIVE_LINK_TWIST, FIVE_LINK_STATES -
+        FIVE_LINK_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = five_link_check(self, time, y, e, rate);
@@ -4263,8 +5539,9 @@ int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_rea
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int five_link_march(five_link *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -4275,7 +5552,7 @@ static int five_link_march(five_link *self, gic_real time)
         return status;
     memcpy(before, state, FIVE_LINK_STATES * sizeof *state);
     for (i = 0; i < FIVE_LINK_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = five_link_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, FIVE_LINK_STATES * sizeof *state);
@@ -4535,7 +5812,8 @@ static const char *const five_link_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -4650,7 +5928,8 @@ const char *five_link_status_state(const five_link *self)
 const char *five_link_status_condition(const five_link *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < five_link_model.condition_count ? five_link_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < five_link_model.condition_count ? five_link_model.condition_text[condition] :
+        NULL;
 }
 
 void five_link_snapshot(const five_link *self, five_link *copy)
@@ -4663,7 +5942,7 @@ void five_link_restore(five_link *self, const five_link *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than five_link_dynamics. */
 static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
@@ -4673,287 +5952,516 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
-        const gic_real t3 = y[16] * R(0.056);
-        const gic_real t4 = y[16] * R(0.21300000000000008);
-        const gic_real t5 = y[15] * t3 + y[17] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[16] * t1 - y[17] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t9 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t10 = y[15] * t8 - y[16] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[FIVE_LINK_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[FIVE_LINK_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[FIVE_LINK_STATE_OMEGA_X] * t3 + y[FIVE_LINK_STATE_OMEGA_Z] * t4 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * R(0.056) - acc[FIVE_LINK_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[FIVE_LINK_STATE_OMEGA_Y] * t1 - y[FIVE_LINK_STATE_OMEGA_Z] * t2 +
+            acc[FIVE_LINK_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] + (R(1.438648) * y[FIVE_LINK_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t10 = y[FIVE_LINK_STATE_OMEGA_X] * t8 - y[FIVE_LINK_STATE_OMEGA_Y] * t9 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * acc[FIVE_LINK_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[FIVE_LINK_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t14 = y[17] * t9 - y[15] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = acc[10] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[17] * t16 + y[16] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[17];
-        const gic_real t28 = t27 - y[15] * t25 - t26 - t26;
+        const gic_real t13 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t14 = y[FIVE_LINK_STATE_OMEGA_Z] * t9 - y[FIVE_LINK_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[FIVE_LINK_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[FIVE_LINK_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = acc[FIVE_LINK_UNKNOWN_OF_RACK] + (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.4469));
+        const gic_real t17 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t18 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t19 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * t17 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * t18;
+        const gic_real t20 = y[FIVE_LINK_STATE_OMEGA_Z] * t16 + y[FIVE_LINK_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * t17 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * t18;
+        const gic_real t22 = y[FIVE_LINK_STATE_OMEGA_Z] * t19 + y[FIVE_LINK_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[FIVE_LINK_STATE_OMEGA_Y] * t20 - y[FIVE_LINK_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] + acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[FIVE_LINK_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[16] * t25 - y[17] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[15] * t28 - y[16] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[FIVE_LINK_STATE_OMEGA_Y] * t25 - y[FIVE_LINK_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[FIVE_LINK_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[FIVE_LINK_STATE_OMEGA_X] * t28 - y[FIVE_LINK_STATE_OMEGA_Y] * t30 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] * t24 -
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t26 + (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t32) +
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] * (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[16];
-        const gic_real t37 = t35 + (t35 + (y[15] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[17] * t30 - y[15] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[FIVE_LINK_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[FIVE_LINK_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[FIVE_LINK_STATE_OMEGA_Z] * t30 - y[FIVE_LINK_STATE_OMEGA_X] * t37 + (t38 -
+            acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t39 -
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t35 + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] *
+            t25) - acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] * (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[17] * t44 + y[16] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[15] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[FIVE_LINK_UNKNOWN_ALPHA_X] + (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t12 -
+            t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(0.4469));
+        const gic_real t45 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t46 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t47 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * t45 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * t46;
+        const gic_real t48 = y[FIVE_LINK_STATE_OMEGA_Z] * t44 + y[FIVE_LINK_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * t45 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * t46;
+        const gic_real t50 = y[FIVE_LINK_STATE_OMEGA_Z] * t47 + y[FIVE_LINK_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[FIVE_LINK_STATE_OMEGA_Y] * t48 - y[FIVE_LINK_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] + acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[FIVE_LINK_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[16] * t53 - y[17] * t56;
-        const gic_real t58 = y[15] * t55 - y[16] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[FIVE_LINK_STATE_OMEGA_Y] * t53 - y[FIVE_LINK_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[FIVE_LINK_STATE_OMEGA_X] * t55 - y[FIVE_LINK_STATE_OMEGA_Y] * t57 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] * t52 -
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t54 + (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t58) +
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] * (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[15] * t56 - t36));
-        const gic_real t63 = y[17] * t57 - y[15] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[FIVE_LINK_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[FIVE_LINK_STATE_OMEGA_Z] * t57 - y[FIVE_LINK_STATE_OMEGA_X] * t62 + (t38 -
+            acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t63 -
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t61 + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] *
+            t53) - acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] * (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[163] + y[16];
-        const gic_real t68 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t69 = m[164] + y[17];
-        const gic_real t70 = m[158] * R(4.7728205);
-        const gic_real t71 = m[157] * R(7.58122);
-        const gic_real t72 = m[156] * R(4.8947505);
-        const gic_real t73 = m[161] * t70 + (m[160] * t71 + m[159] * t72);
-        const gic_real t74 = m[155] * R(4.7728205);
-        const gic_real t75 = m[154] * R(7.58122);
-        const gic_real t76 = m[153] * R(4.8947505);
-        const gic_real t77 = m[161] * t74 + (m[160] * t75 + m[159] * t76);
-        const gic_real t78 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t67 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t68 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t69 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t70 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t72 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t73 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t70 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t71 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t72);
+        const gic_real t74 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t75 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t76 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t77 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t74 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t75 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t76);
+        const gic_real t78 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t79 = t68 * t69 + (t73 * t67 + t77 * t78);
-        const gic_real t80 = m[158] * t70 + (m[157] * t71 + m[156] * t72);
-        const gic_real t81 = m[158] * t74 + (m[157] * t75 + m[156] * t76);
+        const gic_real t80 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t70 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t71 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t72);
+        const gic_real t81 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t74 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t75 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t76);
         const gic_real t82 = t73 * t69 + (t80 * t67 + t81 * t78);
-        const gic_real t83 = m[170] + (acc[2] + (m[163] * y[15] - m[162] * y[16])) + m[176] * acc[10];
-        const gic_real t84 = t83 + m[182] * acc[6];
-        const gic_real t85 = m[169] + (acc[1] + (m[162] * y[17] - m[164] * y[15])) + m[175] * acc[10];
-        const gic_real t86 = t85 + m[181] * acc[6];
-        const gic_real t87 = m[155] * t74 + (m[154] * t75 + m[153] * t76);
-        const gic_real t88 = m[168] + (acc[0] + (m[164] * y[16] - m[163] * y[17])) + m[174] * acc[10];
-        const gic_real t89 = t88 + m[180] * acc[6];
+        const gic_real t83 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t84 = t83 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t86 = t85 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * t74 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * t75 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] *
+            t76);
+        const gic_real t88 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] + (acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t89 = t88 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t69 * t82 + (t77 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[158] * R(0.09182100000000004);
-        const gic_real t92 = m[156] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[157] * R(0.08910630000000008));
-        const gic_real t94 = m[155] * R(0.09182100000000004);
-        const gic_real t95 = m[153] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[154] * R(0.08910630000000008));
-        const gic_real t97 = m[161] * R(0.09182100000000004);
-        const gic_real t98 = m[159] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[160] * R(0.08910630000000008));
-        const gic_real t100 = m[164] * t96 - m[162] * t99;
-        const gic_real t101 = m[163] * t99 - m[164] * t93;
-        const gic_real t102 = m[162] * t100 - m[163] * t101 + (m[168] * t93 - m[169] * t96);
-        const gic_real t103 = m[166] + t100;
+        /* wheel tire_f_l */
+        const gic_real t91 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t94 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t97 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t100 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t96 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t99;
+        const gic_real t101 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t99 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t93;
+        const gic_real t102 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t100 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t101 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t93 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t96);
+        const gic_real t103 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] + t100;
         const gic_real t104 = R(1.653405) + t96;
-        const gic_real t105 = m[152] + t99;
-        const gic_real t106 = t103 + (t103 + (y[17] * t104 - y[15] * t105));
-        const gic_real t107 = m[151] + t93;
-        const gic_real t108 = t101 + (t101 + (y[16] * t105 - y[17] * t107));
-        const gic_real t109 = y[15] * t106 - y[16] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[173] + t102 + (acc[5] + t109) + acc[10] * (m[174] * t93 - m[175] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[185] + (m[180] * t93 - m[181] * t96));
+        const gic_real t105 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[FIVE_LINK_STATE_OMEGA_Z] * t104 - y[FIVE_LINK_STATE_OMEGA_X] * t105));
+        const gic_real t107 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[FIVE_LINK_STATE_OMEGA_Y] * t105 - y[FIVE_LINK_STATE_OMEGA_Z] * t107));
+        const gic_real t109 = y[FIVE_LINK_STATE_OMEGA_X] * t106 - y[FIVE_LINK_STATE_OMEGA_Y] * t108 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t107 - acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Z] + t102 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t109) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * t93 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] *
+            t96);
+        const gic_real t111 = t110 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t93 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[162] * t93 - m[163] * t96;
-        const gic_real t114 = m[164] * t101 - m[162] * t113 + (m[170] * t96 - m[168] * t99);
-        const gic_real t115 = m[167] + t113;
-        const gic_real t116 = t115 + (t115 + (y[15] * t107 - y[16] * t104));
-        const gic_real t117 = y[17] * t108 - y[15] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[172] + t114 + (acc[4] + t117) + acc[10] * (m[176] * t96 - m[174] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[184] + (m[182] * t96 - m[180] * t99));
+        const gic_real t113 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t93 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t96;
+        const gic_real t114 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t101 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t113 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t96 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t99);
+        const gic_real t115 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[FIVE_LINK_STATE_OMEGA_X] * t107 - y[FIVE_LINK_STATE_OMEGA_Y] * t104));
+        const gic_real t117 = y[FIVE_LINK_STATE_OMEGA_Z] * t108 - y[FIVE_LINK_STATE_OMEGA_X] * t116 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t104 - acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Y] + t114 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t117) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t96 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t99);
+        const gic_real t119 = t118 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] * t96 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[151] * t112 - m[152] * t120));
-        const gic_real t123 = m[199] + y[16];
-        const gic_real t124 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t125 = m[200] + y[17];
-        const gic_real t126 = m[194] * R(4.7728205);
-        const gic_real t127 = m[193] * R(7.58122);
-        const gic_real t128 = m[192] * R(4.8947505);
-        const gic_real t129 = m[197] * t126 + (m[196] * t127 + m[195] * t128);
-        const gic_real t130 = m[191] * R(4.7728205);
-        const gic_real t131 = m[190] * R(7.58122);
-        const gic_real t132 = m[189] * R(4.8947505);
-        const gic_real t133 = m[197] * t130 + (m[196] * t131 + m[195] * t132);
-        const gic_real t134 = m[198] + y[15];
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t112 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] *
+            t120));
+        /* inertia of wheel_f_r */
+        const gic_real t123 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t124 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t125 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t126 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t128 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t129 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t126 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t127 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t128);
+        const gic_real t130 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t131 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t132 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t133 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t130 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t131 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t132);
+        const gic_real t134 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t135 = t124 * t125 + (t129 * t123 + t133 * t134);
-        const gic_real t136 = m[194] * t126 + (m[193] * t127 + m[192] * t128);
-        const gic_real t137 = m[194] * t130 + (m[193] * t131 + m[192] * t132);
+        const gic_real t136 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t126 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t127 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t128);
+        const gic_real t137 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t130 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t131 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t132);
         const gic_real t138 = t129 * t125 + (t136 * t123 + t137 * t134);
-        const gic_real t139 = m[206] + (acc[2] + (m[199] * y[15] - m[198] * y[16])) + m[212] * acc[10];
-        const gic_real t140 = t139 + m[218] * acc[7];
-        const gic_real t141 = m[205] + (acc[1] + (m[198] * y[17] - m[200] * y[15])) + m[211] * acc[10];
-        const gic_real t142 = t141 + m[217] * acc[7];
-        const gic_real t143 = m[191] * t130 + (m[190] * t131 + m[189] * t132);
-        const gic_real t144 = m[204] + (acc[0] + (m[200] * y[16] - m[199] * y[17])) + m[210] * acc[10];
-        const gic_real t145 = t144 + m[216] * acc[7];
+        const gic_real t139 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t140 = t139 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t141 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t142 = t141 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t143 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * t130 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * t131 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] *
+            t132);
+        const gic_real t144 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] + (acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_RACK];
+        const gic_real t145 = t144 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R];
         const gic_real t146 = t123 * t135 - t125 * t138 + (t133 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[194] * R(0.09182100000000004);
-        const gic_real t148 = m[192] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[193] * R(-0.08910630000000008));
-        const gic_real t150 = m[191] * R(0.09182100000000004);
-        const gic_real t151 = m[189] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[190] * R(-0.08910630000000008));
-        const gic_real t153 = m[197] * R(0.09182100000000004);
-        const gic_real t154 = m[195] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[196] * R(-0.08910630000000008));
-        const gic_real t156 = m[200] * t152 - m[198] * t155;
-        const gic_real t157 = m[199] * t155 - m[200] * t149;
-        const gic_real t158 = m[198] * t156 - m[199] * t157 + (m[204] * t149 - m[205] * t152);
-        const gic_real t159 = m[202] + t156;
+        /* wheel tire_f_r */
+        const gic_real t147 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t150 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t153 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t156 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t152 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t155;
+        const gic_real t157 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t155 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t149;
+        const gic_real t158 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t156 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t157 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t149 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t152);
+        const gic_real t159 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] + t156;
         const gic_real t160 = R(1.653405) + t152;
-        const gic_real t161 = m[188] + t155;
-        const gic_real t162 = t159 + (t159 + (y[17] * t160 - y[15] * t161));
-        const gic_real t163 = m[187] + t149;
-        const gic_real t164 = t157 + (t157 + (y[16] * t161 - y[17] * t163));
-        const gic_real t165 = y[15] * t162 - y[16] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[209] + t158 + (acc[5] + t165) + acc[10] * (m[210] * t149 - m[211] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[221] + (m[216] * t149 - m[217] * t152));
+        const gic_real t161 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[FIVE_LINK_STATE_OMEGA_Z] * t160 - y[FIVE_LINK_STATE_OMEGA_X] * t161));
+        const gic_real t163 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[FIVE_LINK_STATE_OMEGA_Y] * t161 - y[FIVE_LINK_STATE_OMEGA_Z] * t163));
+        const gic_real t165 = y[FIVE_LINK_STATE_OMEGA_X] * t162 - y[FIVE_LINK_STATE_OMEGA_Y] * t164 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t163 - acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Z] + t158 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t165) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * t149 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] *
+            t152);
+        const gic_real t167 = t166 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            t149 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[198] * t149 - m[199] * t152;
-        const gic_real t170 = m[200] * t157 - m[198] * t169 + (m[206] * t152 - m[204] * t155);
-        const gic_real t171 = m[203] + t169;
-        const gic_real t172 = t171 + (t171 + (y[15] * t163 - y[16] * t160));
-        const gic_real t173 = y[17] * t164 - y[15] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[208] + t170 + (acc[4] + t173) + acc[10] * (m[212] * t152 - m[210] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[220] + (m[218] * t152 - m[216] * t155));
+        const gic_real t169 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t149 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t152;
+        const gic_real t170 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t157 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t169 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t152 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t155);
+        const gic_real t171 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[FIVE_LINK_STATE_OMEGA_X] * t163 - y[FIVE_LINK_STATE_OMEGA_Y] * t160));
+        const gic_real t173 = y[FIVE_LINK_STATE_OMEGA_Z] * t164 - y[FIVE_LINK_STATE_OMEGA_X] * t172 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t160 - acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Y] + t170 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t173) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t152 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t155);
+        const gic_real t175 = t174 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t152 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[103] + y[16];
-        const gic_real t179 = m[101] * (m[101] * R(4.7728205)) + (m[100] * (m[100] * R(7.58122)) + m[99] * (m[99] * R(4.8947505)));
-        const gic_real t180 = m[104] + y[17];
-        const gic_real t181 = m[98] * R(4.7728205);
-        const gic_real t182 = m[97] * R(7.58122);
-        const gic_real t183 = m[96] * R(4.8947505);
-        const gic_real t184 = m[101] * t181 + (m[100] * t182 + m[99] * t183);
-        const gic_real t185 = m[95] * R(4.7728205);
-        const gic_real t186 = m[94] * R(7.58122);
-        const gic_real t187 = m[93] * R(4.8947505);
-        const gic_real t188 = m[101] * t185 + (m[100] * t186 + m[99] * t187);
-        const gic_real t189 = m[102] + y[15];
+        /* inertia of wheel_r_l */
+        const gic_real t178 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t179 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t180 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t181 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t182 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t183 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t184 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t181 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t182 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t183);
+        const gic_real t185 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t186 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t187 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t188 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t185 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t186 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t187);
+        const gic_real t189 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t190 = t179 * t180 + (t184 * t178 + t188 * t189);
-        const gic_real t191 = m[98] * t181 + (m[97] * t182 + m[96] * t183);
-        const gic_real t192 = m[98] * t185 + (m[97] * t186 + m[96] * t187);
+        const gic_real t191 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t181 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t182 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t183);
+        const gic_real t192 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t185 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t186 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t187);
         const gic_real t193 = t184 * t180 + (t191 * t178 + t192 * t189);
-        const gic_real t194 = m[110] + (acc[2] + (m[103] * y[15] - m[102] * y[16])) + m[116] * acc[8];
-        const gic_real t195 = m[109] + (acc[1] + (m[102] * y[17] - m[104] * y[15])) + m[115] * acc[8];
-        const gic_real t196 = m[95] * t185 + (m[94] * t186 + m[93] * t187);
-        const gic_real t197 = m[108] + (acc[0] + (m[104] * y[16] - m[103] * y[17])) + m[114] * acc[8];
+        const gic_real t194 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t195 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t196 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * t185 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * t186 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t187);
+        const gic_real t197 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] + (acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L];
         const gic_real t198 = t178 * t190 - t180 * t193 + (t188 * t194 + (t192 * t195 + t196 * t197));
-        const gic_real t199 = m[98] * R(0.09182100000000004);
-        const gic_real t200 = m[96] * R(-0.030000000000000027);
-        const gic_real t201 = t199 + (t200 + m[97] * R(0.08910630000000008));
-        const gic_real t202 = m[95] * R(0.09182100000000004);
-        const gic_real t203 = m[93] * R(-0.030000000000000027);
-        const gic_real t204 = t202 + (t203 + m[94] * R(0.08910630000000008));
-        const gic_real t205 = m[101] * R(0.09182100000000004);
-        const gic_real t206 = m[99] * R(-0.030000000000000027);
-        const gic_real t207 = t205 + (t206 + m[100] * R(0.08910630000000008));
-        const gic_real t208 = m[104] * t204 - m[102] * t207;
-        const gic_real t209 = m[103] * t207 - m[104] * t201;
-        const gic_real t210 = m[102] * t208 - m[103] * t209 + (m[108] * t201 - m[109] * t204);
-        const gic_real t211 = m[106] + t208;
-        const gic_real t212 = m[90] + t204;
-        const gic_real t213 = m[92] + t207;
-        const gic_real t214 = t211 + (t211 + (y[17] * t212 - y[15] * t213));
-        const gic_real t215 = m[105] + t209;
-        const gic_real t216 = m[91] + t201;
-        const gic_real t217 = t215 + (t215 + (y[16] * t213 - y[17] * t216));
-        const gic_real t218 = y[15] * t214 - y[16] * t217 + (acc[0] * t216 - acc[1] * t212);
-        const gic_real t219 = m[113] + t210 + (acc[5] + t218) + acc[8] * (m[119] + (m[114] * t201 - m[115] * t204));
+        /* wheel tire_r_l */
+        const gic_real t199 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t200 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t201 = t199 + (t200 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t202 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t203 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t204 = t202 + (t203 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t205 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t206 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t207 = t205 + (t206 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t208 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t204 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t207;
+        const gic_real t209 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t207 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t201;
+        const gic_real t210 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t208 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t209 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t201 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t204);
+        const gic_real t211 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] + t208;
+        const gic_real t212 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t204;
+        const gic_real t213 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t207;
+        const gic_real t214 = t211 + (t211 + (y[FIVE_LINK_STATE_OMEGA_Z] * t212 - y[FIVE_LINK_STATE_OMEGA_X] * t213));
+        const gic_real t215 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] + t209;
+        const gic_real t216 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t201;
+        const gic_real t217 = t215 + (t215 + (y[FIVE_LINK_STATE_OMEGA_Y] * t213 - y[FIVE_LINK_STATE_OMEGA_Z] * t216));
+        const gic_real t218 = y[FIVE_LINK_STATE_OMEGA_X] * t214 - y[FIVE_LINK_STATE_OMEGA_Y] * t217 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t216 - acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t212);
+        const gic_real t219 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Z] + t210 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t218) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * t201 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t204));
         const gic_real t220 = R(90.555) * t219;
-        const gic_real t221 = m[102] * t201 - m[103] * t204;
-        const gic_real t222 = m[104] * t209 - m[102] * t221 + (m[110] * t204 - m[108] * t207);
-        const gic_real t223 = m[107] + t221;
-        const gic_real t224 = t223 + (t223 + (y[15] * t216 - y[16] * t212));
-        const gic_real t225 = y[17] * t217 - y[15] * t224 + (acc[2] * t212 - acc[0] * t213);
-        const gic_real t226 = m[112] + t222 + (acc[4] + t225) + acc[8] * (m[118] + (m[116] * t204 - m[114] * t207));
+        const gic_real t221 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t201 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t204;
+        const gic_real t222 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t209 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t221 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t204 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t207);
+        const gic_real t223 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] + t221;
+        const gic_real t224 = t223 + (t223 + (y[FIVE_LINK_STATE_OMEGA_X] * t216 - y[FIVE_LINK_STATE_OMEGA_Y] * t212));
+        const gic_real t225 = y[FIVE_LINK_STATE_OMEGA_Z] * t217 - y[FIVE_LINK_STATE_OMEGA_X] * t224 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t212 - acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t213);
+        const gic_real t226 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Y] + t222 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t225) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t204 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * t207));
         const gic_real t227 = R(90.555) * t226;
         const gic_real t228 = t198 + (t201 * t220 - t207 * t227);
-        const gic_real t229 = t122 + (t177 + (m[187] * t168 - m[188] * t176)) + (t228 + (m[91] * t220 - m[92] * t227));
-        const gic_real t230 = m[133] + y[16];
-        const gic_real t231 = m[131] * (m[131] * R(4.7728205)) + (m[130] * (m[130] * R(7.58122)) + m[129] * (m[129] * R(4.8947505)));
-        const gic_real t232 = m[134] + y[17];
-        const gic_real t233 = m[128] * R(4.7728205);
-        const gic_real t234 = m[127] * R(7.58122);
-        const gic_real t235 = m[126] * R(4.8947505);
-        const gic_real t236 = m[131] * t233 + (m[130] * t234 + m[129] * t235);
-        const gic_real t237 = m[125] * R(4.7728205);
-        const gic_real t238 = m[124] * R(7.58122);
-        const gic_real t239 = m[123] * R(4.8947505);
-        const gic_real t240 = m[131] * t237 + (m[130] * t238 + m[129] * t239);
-        const gic_real t241 = m[132] + y[15];
+        const gic_real t229 = t122 + (t177 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] * t168 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t176)) + (t228 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t220 - m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] *
+            t227));
+        /* inertia of wheel_r_r */
+        const gic_real t230 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t231 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t232 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t233 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t234 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t235 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t236 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t233 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t234 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t235);
+        const gic_real t237 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t238 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t239 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t240 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t237 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t238 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t239);
+        const gic_real t241 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t242 = t231 * t232 + (t236 * t230 + t240 * t241);
-        const gic_real t243 = m[128] * t233 + (m[127] * t234 + m[126] * t235);
-        const gic_real t244 = m[128] * t237 + (m[127] * t238 + m[126] * t239);
+        const gic_real t243 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t233 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t234 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t235);
+        const gic_real t244 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t237 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t238 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t239);
         const gic_real t245 = t236 * t232 + (t243 * t230 + t244 * t241);
-        const gic_real t246 = m[140] + (acc[2] + (m[133] * y[15] - m[132] * y[16])) + m[146] * acc[9];
-        const gic_real t247 = m[139] + (acc[1] + (m[132] * y[17] - m[134] * y[15])) + m[145] * acc[9];
-        const gic_real t248 = m[125] * t237 + (m[124] * t238 + m[123] * t239);
-        const gic_real t249 = m[138] + (acc[0] + (m[134] * y[16] - m[133] * y[17])) + m[144] * acc[9];
+        const gic_real t246 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t247 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t248 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * t237 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * t238 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t239);
+        const gic_real t249 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] + (acc[FIVE_LINK_UNKNOWN_ALPHA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R];
         const gic_real t250 = t230 * t242 - t232 * t245 + (t240 * t246 + (t244 * t247 + t248 * t249));
-        const gic_real t251 = m[128] * R(0.09182100000000004);
-        const gic_real t252 = m[126] * R(-0.030000000000000027);
-        const gic_real t253 = t251 + (t252 + m[127] * R(-0.08910630000000008));
-        const gic_real t254 = m[125] * R(0.09182100000000004);
-        const gic_real t255 = m[123] * R(-0.030000000000000027);
-        const gic_real t256 = t254 + (t255 + m[124] * R(-0.08910630000000008));
-        const gic_real t257 = m[131] * R(0.09182100000000004);
-        const gic_real t258 = m[129] * R(-0.030000000000000027);
-        const gic_real t259 = t257 + (t258 + m[130] * R(-0.08910630000000008));
-        const gic_real t260 = m[134] * t256 - m[132] * t259;
-        const gic_real t261 = m[133] * t259 - m[134] * t253;
-        const gic_real t262 = m[132] * t260 - m[133] * t261 + (m[138] * t253 - m[139] * t256);
-        const gic_real t263 = m[136] + t260;
-        const gic_real t264 = m[120] + t256;
-        const gic_real t265 = m[122] + t259;
-        const gic_real t266 = t263 + (t263 + (y[17] * t264 - y[15] * t265));
-        const gic_real t267 = m[135] + t261;
-        const gic_real t268 = m[121] + t253;
-        const gic_real t269 = t267 + (t267 + (y[16] * t265 - y[17] * t268));
-        const gic_real t270 = y[15] * t266 - y[16] * t269 + (acc[0] * t268 - acc[1] * t264);
-        const gic_real t271 = m[143] + t262 + (acc[5] + t270) + acc[9] * (m[149] + (m[144] * t253 - m[145] * t256));
+        /* wheel tire_r_r */
+        const gic_real t251 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t252 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t253 = t251 + (t252 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t254 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t255 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t256 = t254 + (t255 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t257 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t258 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t259 = t257 + (t258 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t260 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t256 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t259;
+        const gic_real t261 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t259 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t253;
+        const gic_real t262 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t260 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t261 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t253 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t256);
+        const gic_real t263 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] + t260;
+        const gic_real t264 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t256;
+        const gic_real t265 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t259;
+        const gic_real t266 = t263 + (t263 + (y[FIVE_LINK_STATE_OMEGA_Z] * t264 - y[FIVE_LINK_STATE_OMEGA_X] * t265));
+        const gic_real t267 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] + t261;
+        const gic_real t268 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t253;
+        const gic_real t269 = t267 + (t267 + (y[FIVE_LINK_STATE_OMEGA_Y] * t265 - y[FIVE_LINK_STATE_OMEGA_Z] * t268));
+        const gic_real t270 = y[FIVE_LINK_STATE_OMEGA_X] * t266 - y[FIVE_LINK_STATE_OMEGA_Y] * t269 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t268 - acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t264);
+        const gic_real t271 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Z] + t262 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + t270) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * t253 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t256));
         const gic_real t272 = R(90.555) * t271;
-        const gic_real t273 = m[132] * t253 - m[133] * t256;
-        const gic_real t274 = m[134] * t261 - m[132] * t273 + (m[140] * t256 - m[138] * t259);
-        const gic_real t275 = m[137] + t273;
-        const gic_real t276 = t275 + (t275 + (y[15] * t268 - y[16] * t264));
-        const gic_real t277 = y[17] * t269 - y[15] * t276 + (acc[2] * t264 - acc[0] * t265);
-        const gic_real t278 = m[142] + t274 + (acc[4] + t277) + acc[9] * (m[148] + (m[146] * t256 - m[144] * t259));
+        const gic_real t273 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t253 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t256;
+        const gic_real t274 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t261 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t273 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t256 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t259);
+        const gic_real t275 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] + t273;
+        const gic_real t276 = t275 + (t275 + (y[FIVE_LINK_STATE_OMEGA_X] * t268 - y[FIVE_LINK_STATE_OMEGA_Y] * t264));
+        const gic_real t277 = y[FIVE_LINK_STATE_OMEGA_Z] * t269 - y[FIVE_LINK_STATE_OMEGA_X] * t276 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t264 - acc[FIVE_LINK_UNKNOWN_ALPHA_X] * t265);
+        const gic_real t278 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Y] + t274 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] + t277) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t256 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * t259));
         const gic_real t279 = R(90.555) * t278;
         const gic_real t280 = t250 + (t253 * t272 - t259 * t279);
-        const gic_real t281 = t251 + (m[127] * R(-0.12319000000000002) + t252);
+        const gic_real t281 = t251 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t252);
         const gic_real t282 = e[1] + e[1];
         const gic_real t283 = e[1] * t282;
         const gic_real t284 = e[2] + e[2];
@@ -4962,37 +6470,46 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t287 = e[3] * t284;
         const gic_real t288 = e[0] * t282;
         const gic_real t289 = t287 - t288;
-        const gic_real t290 = t254 + (m[124] * R(-0.12319000000000002) + t255);
-        const gic_real t291 = m[121] + t281;
-        const gic_real t292 = m[120] + t290;
-        const gic_real t293 = m[137] + (m[132] * t281 - m[133] * t290) + (y[15] * t291 - y[16] * t292);
+        const gic_real t290 = t254 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t255);
+        const gic_real t291 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t281;
+        const gic_real t292 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t290;
+        const gic_real t293 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t281 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t290) + (y[FIVE_LINK_STATE_OMEGA_X] * t291 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t292);
         const gic_real t294 = e[3] + e[3];
         const gic_real t295 = e[3] * t294;
         const gic_real t296 = R(1.0) - (t283 + t295);
-        const gic_real t297 = t257 + (m[130] * R(-0.12319000000000002) + t258);
-        const gic_real t298 = m[122] + t297;
-        const gic_real t299 = m[136] + (m[134] * t290 - m[132] * t297) + (y[17] * t292 - y[15] * t298);
+        const gic_real t297 = t257 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t258);
+        const gic_real t298 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t297;
+        const gic_real t299 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t297) + (y[FIVE_LINK_STATE_OMEGA_Z] * t292 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t298);
         const gic_real t300 = e[2] * t282;
         const gic_real t301 = e[0] * t294;
         const gic_real t302 = t300 + t301;
-        const gic_real t303 = m[135] + (m[133] * t297 - m[134] * t281) + (y[16] * t298 - y[17] * t291);
-        const gic_real t304 = y[13] + (t289 * t293 + (t296 * t299 + t302 * t303));
+        const gic_real t303 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t297 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t281) + (y[FIVE_LINK_STATE_OMEGA_Y] * t298 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t291);
+        const gic_real t304 = y[FIVE_LINK_STATE_V_Y] + (t289 * t293 + (t296 * t299 + t302 * t303));
         const gic_real t305 = e[1] * t294;
         const gic_real t306 = e[0] * t284;
         const gic_real t307 = t305 + t306;
         const gic_real t308 = t300 - t301;
         const gic_real t309 = R(1.0) - (t285 + t295);
-        const gic_real t310 = y[0] + (t307 * t298 + (t308 * t291 + t309 * t292));
-        const gic_real t311 = y[1] + (t289 * t298 + (t296 * t291 + t302 * t292));
+        const gic_real t310 = y[FIVE_LINK_STATE_R_X] + (t307 * t298 + (t308 * t291 + t309 * t292));
+        const gic_real t311 = y[FIVE_LINK_STATE_R_Y] + (t289 * t298 + (t296 * t291 + t302 * t292));
         gic_real road312[3];
         if (!five_link_road_height(self, time, t310, t311, road312))
             return GIC_ERROR_ROAD;
-        const gic_real t313 = y[12] + (t307 * t293 + (t308 * t299 + t309 * t303));
+        const gic_real t313 = y[FIVE_LINK_STATE_V_X] + (t307 * t293 + (t308 * t299 + t309 * t303));
         const gic_real t314 = t287 + t288;
         const gic_real t315 = t305 - t306;
-        const gic_real t316 = y[14] + (t286 * t293 + (t314 * t299 + t315 * t303));
+        const gic_real t316 = y[FIVE_LINK_STATE_V_Z] + (t286 * t293 + (t314 * t299 + t315 * t303));
         const gic_real t317 = t304 * road312[2] + t313 * road312[1] - t316;
-        const gic_real t318 = y[2] + (t286 * t298 + (t314 * t291 + t315 * t292));
+        const gic_real t318 = y[FIVE_LINK_STATE_R_Z] + (t286 * t298 + (t314 * t291 + t315 * t292));
         const gic_real t319 = R(0.4699) + road312[0] - t318;
         const gic_real t320 = GIC_MIN(GIC_MAX(R(100.0) * t319, R(0.0)), R(1.0));
         const gic_real t321 = t317 * (R(500.0) * ((R(3.0) - (t320 + t320)) * (t320 * t320)));
@@ -5000,25 +6517,34 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t323 = t286 * t322;
         const gic_real t324 = t314 * t322;
         const gic_real t325 = t281 * t323 - t297 * t324;
-        const gic_real t326 = t199 + (m[97] * R(0.12319000000000002) + t200);
-        const gic_real t327 = t202 + (m[94] * R(0.12319000000000002) + t203);
-        const gic_real t328 = m[91] + t326;
-        const gic_real t329 = m[90] + t327;
-        const gic_real t330 = m[107] + (m[102] * t326 - m[103] * t327) + (y[15] * t328 - y[16] * t329);
-        const gic_real t331 = t205 + (m[100] * R(0.12319000000000002) + t206);
-        const gic_real t332 = m[92] + t331;
-        const gic_real t333 = m[106] + (m[104] * t327 - m[102] * t331) + (y[17] * t329 - y[15] * t332);
-        const gic_real t334 = m[105] + (m[103] * t331 - m[104] * t326) + (y[16] * t332 - y[17] * t328);
-        const gic_real t335 = y[13] + (t289 * t330 + (t296 * t333 + t302 * t334));
-        const gic_real t336 = y[0] + (t307 * t332 + (t308 * t328 + t309 * t329));
-        const gic_real t337 = y[1] + (t289 * t332 + (t296 * t328 + t302 * t329));
+        const gic_real t326 = t199 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t200);
+        const gic_real t327 = t202 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t203);
+        const gic_real t328 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t326;
+        const gic_real t329 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t327;
+        const gic_real t330 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t326 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t327) + (y[FIVE_LINK_STATE_OMEGA_X] * t328 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t329);
+        const gic_real t331 = t205 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t206);
+        const gic_real t332 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t331;
+        const gic_real t333 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t327 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t331) + (y[FIVE_LINK_STATE_OMEGA_Z] * t329 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t332);
+        const gic_real t334 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t331 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t326) + (y[FIVE_LINK_STATE_OMEGA_Y] * t332 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t328);
+        const gic_real t335 = y[FIVE_LINK_STATE_V_Y] + (t289 * t330 + (t296 * t333 + t302 * t334));
+        const gic_real t336 = y[FIVE_LINK_STATE_R_X] + (t307 * t332 + (t308 * t328 + t309 * t329));
+        const gic_real t337 = y[FIVE_LINK_STATE_R_Y] + (t289 * t332 + (t296 * t328 + t302 * t329));
         gic_real road338[3];
         if (!five_link_road_height(self, time, t336, t337, road338))
             return GIC_ERROR_ROAD;
-        const gic_real t339 = y[12] + (t307 * t330 + (t308 * t333 + t309 * t334));
-        const gic_real t340 = y[14] + (t286 * t330 + (t314 * t333 + t315 * t334));
+        const gic_real t339 = y[FIVE_LINK_STATE_V_X] + (t307 * t330 + (t308 * t333 + t309 * t334));
+        const gic_real t340 = y[FIVE_LINK_STATE_V_Z] + (t286 * t330 + (t314 * t333 + t315 * t334));
         const gic_real t341 = t335 * road338[2] + t339 * road338[1] - t340;
-        const gic_real t342 = y[2] + (t286 * t332 + (t314 * t328 + t315 * t329));
+        const gic_real t342 = y[FIVE_LINK_STATE_R_Z] + (t286 * t332 + (t314 * t328 + t315 * t329));
         const gic_real t343 = R(0.4699) + road338[0] - t342;
         const gic_real t344 = GIC_MIN(GIC_MAX(R(100.0) * t343, R(0.0)), R(1.0));
         const gic_real t345 = t341 * (R(500.0) * ((R(3.0) - (t344 + t344)) * (t344 * t344)));
@@ -5026,25 +6552,33 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t347 = t286 * t346;
         const gic_real t348 = t314 * t346;
         const gic_real t349 = t326 * t347 - t331 * t348;
-        const gic_real t350 = t147 + (m[193] * R(-0.12319000000000002) + t148);
-        const gic_real t351 = t150 + (m[190] * R(-0.12319000000000002) + t151);
-        const gic_real t352 = m[187] + t350;
+        const gic_real t350 = t147 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t148);
+        const gic_real t351 = t150 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t151);
+        const gic_real t352 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t350;
         const gic_real t353 = R(1.653405) + t351;
-        const gic_real t354 = m[203] + (m[198] * t350 - m[199] * t351) + (y[15] * t352 - y[16] * t353);
-        const gic_real t355 = t153 + (m[196] * R(-0.12319000000000002) + t154);
-        const gic_real t356 = m[188] + t355;
-        const gic_real t357 = m[202] + (m[200] * t351 - m[198] * t355) + (y[17] * t353 - y[15] * t356);
-        const gic_real t358 = m[199] * t355 - m[200] * t350 + (y[16] * t356 - y[17] * t352);
-        const gic_real t359 = y[13] + (t289 * t354 + (t296 * t357 + t302 * t358));
-        const gic_real t360 = y[0] + (t307 * t356 + (t308 * t352 + t309 * t353));
-        const gic_real t361 = y[1] + (t289 * t356 + (t296 * t352 + t302 * t353));
+        const gic_real t354 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t350 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t351) + (y[FIVE_LINK_STATE_OMEGA_X] * t352 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t353);
+        const gic_real t355 = t153 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t154);
+        const gic_real t356 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t355;
+        const gic_real t357 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t351 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t355) + (y[FIVE_LINK_STATE_OMEGA_Z] * t353 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t356);
+        const gic_real t358 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t355 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t350 + (y[FIVE_LINK_STATE_OMEGA_Y] * t356 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t352);
+        const gic_real t359 = y[FIVE_LINK_STATE_V_Y] + (t289 * t354 + (t296 * t357 + t302 * t358));
+        const gic_real t360 = y[FIVE_LINK_STATE_R_X] + (t307 * t356 + (t308 * t352 + t309 * t353));
+        const gic_real t361 = y[FIVE_LINK_STATE_R_Y] + (t289 * t356 + (t296 * t352 + t302 * t353));
         gic_real road362[3];
         if (!five_link_road_height(self, time, t360, t361, road362))
             return GIC_ERROR_ROAD;
-        const gic_real t363 = y[12] + (t307 * t354 + (t308 * t357 + t309 * t358));
-        const gic_real t364 = y[14] + (t286 * t354 + (t314 * t357 + t315 * t358));
+        const gic_real t363 = y[FIVE_LINK_STATE_V_X] + (t307 * t354 + (t308 * t357 + t309 * t358));
+        const gic_real t364 = y[FIVE_LINK_STATE_V_Z] + (t286 * t354 + (t314 * t357 + t315 * t358));
         const gic_real t365 = t359 * road362[2] + t363 * road362[1] - t364;
-        const gic_real t366 = y[2] + (t286 * t356 + (t314 * t352 + t315 * t353));
+        const gic_real t366 = y[FIVE_LINK_STATE_R_Z] + (t286 * t356 + (t314 * t352 + t315 * t353));
         const gic_real t367 = R(0.4699) + road362[0] - t366;
         const gic_real t368 = GIC_MIN(GIC_MAX(R(100.0) * t367, R(0.0)), R(1.0));
         const gic_real t369 = t365 * (R(500.0) * ((R(3.0) - (t368 + t368)) * (t368 * t368)));
@@ -5052,25 +6586,33 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t371 = t286 * t370;
         const gic_real t372 = t314 * t370;
         const gic_real t373 = t350 * t371 - t355 * t372;
-        const gic_real t374 = t91 + (m[157] * R(0.12319000000000002) + t92);
-        const gic_real t375 = t94 + (m[154] * R(0.12319000000000002) + t95);
-        const gic_real t376 = m[151] + t374;
+        const gic_real t374 = t91 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t92);
+        const gic_real t375 = t94 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t95);
+        const gic_real t376 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t374;
         const gic_real t377 = R(1.653405) + t375;
-        const gic_real t378 = m[167] + (m[162] * t374 - m[163] * t375) + (y[15] * t376 - y[16] * t377);
-        const gic_real t379 = t97 + (m[160] * R(0.12319000000000002) + t98);
-        const gic_real t380 = m[152] + t379;
-        const gic_real t381 = m[166] + (m[164] * t375 - m[162] * t379) + (y[17] * t377 - y[15] * t380);
-        const gic_real t382 = m[163] * t379 - m[164] * t374 + (y[16] * t380 - y[17] * t376);
-        const gic_real t383 = y[13] + (t289 * t378 + (t296 * t381 + t302 * t382));
-        const gic_real t384 = y[0] + (t307 * t380 + (t308 * t376 + t309 * t377));
-        const gic_real t385 = y[1] + (t289 * t380 + (t296 * t376 + t302 * t377));
+        const gic_real t378 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t374 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t375) + (y[FIVE_LINK_STATE_OMEGA_X] * t376 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t377);
+        const gic_real t379 = t97 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t98);
+        const gic_real t380 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t379;
+        const gic_real t381 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t375 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t379) + (y[FIVE_LINK_STATE_OMEGA_Z] * t377 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t380);
+        const gic_real t382 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t379 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t374 + (y[FIVE_LINK_STATE_OMEGA_Y] * t380 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t376);
+        const gic_real t383 = y[FIVE_LINK_STATE_V_Y] + (t289 * t378 + (t296 * t381 + t302 * t382));
+        const gic_real t384 = y[FIVE_LINK_STATE_R_X] + (t307 * t380 + (t308 * t376 + t309 * t377));
+        const gic_real t385 = y[FIVE_LINK_STATE_R_Y] + (t289 * t380 + (t296 * t376 + t302 * t377));
         gic_real road386[3];
         if (!five_link_road_height(self, time, t384, t385, road386))
             return GIC_ERROR_ROAD;
-        const gic_real t387 = y[12] + (t307 * t378 + (t308 * t381 + t309 * t382));
-        const gic_real t388 = y[14] + (t286 * t378 + (t314 * t381 + t315 * t382));
+        const gic_real t387 = y[FIVE_LINK_STATE_V_X] + (t307 * t378 + (t308 * t381 + t309 * t382));
+        const gic_real t388 = y[FIVE_LINK_STATE_V_Z] + (t286 * t378 + (t314 * t381 + t315 * t382));
         const gic_real t389 = t383 * road386[2] + t387 * road386[1] - t388;
-        const gic_real t390 = y[2] + (t286 * t380 + (t314 * t376 + t315 * t377));
+        const gic_real t390 = y[FIVE_LINK_STATE_R_Z] + (t286 * t380 + (t314 * t376 + t315 * t377));
         const gic_real t391 = road386[0] + R(0.4699) - t390;
         const gic_real t392 = GIC_MIN(GIC_MAX(t391 * R(100.0), R(0.0)), R(1.0));
         const gic_real t393 = t389 * ((R(3.0) - (t392 + t392)) * (t392 * t392) * R(500.0));
@@ -5078,67 +6620,120 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t395 = t286 * t394;
         const gic_real t396 = t314 * t394;
         const gic_real t397 = t374 * t395 - t379 * t396;
-        const gic_real t398 = t397 + (m[151] * t395 - m[152] * t396) + (m[187] * t371 - m[188] * t372);
-        const gic_real t399 = t349 + (t373 + t398 + (m[91] * t347 - m[92] * t348));
-        const gic_real t400 = t229 + (t280 + (m[121] * t272 - m[122] * t279)) - (t325 + (t399 + (m[121] * t323 - m[122] * t324)));
-        const gic_real t401 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t402 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t401 + y[16] * t3));
-        const gic_real t403 = y[16] * t13 - y[17] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t404 = acc[3] + t403;
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t398 = t397 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t395 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t396) + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] *
+            t371 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t372);
+        const gic_real t399 = t349 + (t373 + t398 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t347 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t348));
+        const gic_real residual_0 = t229 + (t280 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t272 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t279)) - (t325 + (t399 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t323 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] *
+            t324)));
+        const gic_real t401 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - y[FIVE_LINK_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t402 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000008) - (y[FIVE_LINK_STATE_OMEGA_Z] * t401 + y[FIVE_LINK_STATE_OMEGA_Y] * t3));
+        const gic_real t403 = y[FIVE_LINK_STATE_OMEGA_Y] * t13 - y[FIVE_LINK_STATE_OMEGA_Z] * t8 +
+            (R(0.05422899999999997) * acc[FIVE_LINK_UNKNOWN_ALPHA_Y] - m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] *
+            acc[FIVE_LINK_UNKNOWN_ALPHA_Z]);
+        const gic_real t404 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t403;
         const gic_real t405 = t404 * R(9.072);
-        const gic_real t406 = y[16] * t37 - y[17] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t407 = acc[3] + t406;
+        const gic_real t406 = y[FIVE_LINK_STATE_OMEGA_Y] * t37 - y[FIVE_LINK_STATE_OMEGA_Z] * t28 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t25 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t407 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t406;
         const gic_real t408 = t407 * R(23.965);
-        const gic_real t409 = y[16] * t62 - y[17] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t410 = acc[3] + t409;
+        const gic_real t409 = y[FIVE_LINK_STATE_OMEGA_Y] * t62 - y[FIVE_LINK_STATE_OMEGA_Z] * t55 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t53 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t410 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t409;
         const gic_real t411 = R(23.965) * t410;
-        const gic_real t412 = m[163] * t113 - m[164] * t100 + (m[169] * t99 - m[170] * t93);
-        const gic_real t413 = y[16] * t116 - y[17] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t414 = t412 + (acc[3] + t413) + acc[10] * (m[175] * t99 - m[176] * t93);
-        const gic_real t415 = (t414 + acc[6] * (m[181] * t99 - m[182] * t93)) * R(90.555);
-        const gic_real t416 = m[199] * t169 - m[200] * t156 + (m[205] * t155 - m[206] * t149);
-        const gic_real t417 = y[16] * t172 - y[17] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t418 = t416 + (acc[3] + t417) + acc[10] * (m[211] * t155 - m[212] * t149);
-        const gic_real t419 = R(90.555) * (t418 + acc[7] * (m[217] * t155 - m[218] * t149));
+        const gic_real t412 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t113 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t100 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t99 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t93);
+        const gic_real t413 = y[FIVE_LINK_STATE_OMEGA_Y] * t116 - y[FIVE_LINK_STATE_OMEGA_Z] * t106 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t105 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t414 = t412 + (acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t413) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t99 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] *
+            t93);
+        const gic_real t415 = (t414 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t99 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t93)) * R(90.555);
+        const gic_real t416 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t169 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t156 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t155 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t149);
+        const gic_real t417 = y[FIVE_LINK_STATE_OMEGA_Y] * t172 - y[FIVE_LINK_STATE_OMEGA_Z] * t162 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t161 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t418 = t416 + (acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t417) + acc[FIVE_LINK_UNKNOWN_OF_RACK] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t155 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] *
+            t149);
+        const gic_real t419 = R(90.555) * (t418 + acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t155 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t149));
         const gic_real t420 = t402 * R(2086.52) + t405 + t408 + t411 + t415 + t419;
-        const gic_real t421 = m[103] * t221 - m[104] * t208 + (m[109] * t207 - m[110] * t201);
-        const gic_real t422 = y[16] * t224 - y[17] * t214 + (acc[1] * t213 - acc[2] * t216);
-        const gic_real t423 = m[111] + t421 + (acc[3] + t422) + acc[8] * (m[117] + (m[115] * t207 - m[116] * t201));
+        const gic_real t421 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t221 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t208 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t207 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t201);
+        const gic_real t422 = y[FIVE_LINK_STATE_OMEGA_Y] * t224 - y[FIVE_LINK_STATE_OMEGA_Z] * t214 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t213 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t216);
+        const gic_real t423 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_X] + t421 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t422) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t207 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t201));
         const gic_real t424 = R(90.555) * t423;
-        const gic_real t425 = m[133] * t273 - m[134] * t260 + (m[139] * t259 - m[140] * t253);
-        const gic_real t426 = y[16] * t276 - y[17] * t266 + (acc[1] * t265 - acc[2] * t268);
-        const gic_real t427 = m[141] + t425 + (acc[3] + t426) + acc[9] * (m[147] + (m[145] * t259 - m[146] * t253));
+        const gic_real t425 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t273 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t260 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t259 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t253);
+        const gic_real t426 = y[FIVE_LINK_STATE_OMEGA_Y] * t276 - y[FIVE_LINK_STATE_OMEGA_Z] * t266 +
+            (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * t265 - acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * t268);
+        const gic_real t427 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_X] + t425 +
+            (acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] + t426) + acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t259 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t253));
         const gic_real t428 = R(90.555) * t427;
         const gic_real t429 = t315 * t322;
         const gic_real t430 = t315 * t346;
         const gic_real t431 = t315 * t394;
         const gic_real t432 = t315 * t370;
-        const gic_real t433 = t420 + t424 + t428 - (t429 + (t430 + (t431 + t432)));
-        const gic_real t434 = y[15] * R(1078.52);
-        const gic_real t435 = acc[5] + (y[15] * t401 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t436 = y[17] * t434 - y[15] * t1 + acc[1] * R(2955.66) + (t402 * R(444.4287600000002) - t435 * R(116.84512));
-        const gic_real t437 = m[42] + y[15];
+        const gic_real residual_3 = t420 + t424 + t428 - (t429 + (t430 + (t431 + t432)));
+        const gic_real t434 = y[FIVE_LINK_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t435 = acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] + (y[FIVE_LINK_STATE_OMEGA_X] * t401 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t4 - acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t436 = y[FIVE_LINK_STATE_OMEGA_Z] * t434 - y[FIVE_LINK_STATE_OMEGA_X] * t1 +
+            acc[FIVE_LINK_UNKNOWN_ALPHA_Y] * R(2955.66) + (t402 * R(444.4287600000002) - t435 * R(116.84512));
+        const gic_real t437 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t438 = R(0.4469) * t437;
-        const gic_real t439 = acc[2] - m[42] * y[16];
-        const gic_real t440 = acc[1] + m[42] * y[17];
-        const gic_real t441 = y[17] * t438 - t437 * t20 + (t19 * t439 + t21 * t440);
-        const gic_real t442 = t436 + (acc[1] + (t404 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t441 + t25 * t408 - t33 * R(40.476046225));
-        const gic_real t443 = m[72] + y[15];
+        const gic_real t439 = acc[FIVE_LINK_UNKNOWN_ALPHA_Z] - m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t440 = acc[FIVE_LINK_UNKNOWN_ALPHA_Y] + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t441 = y[FIVE_LINK_STATE_OMEGA_Z] * t438 - t437 * t20 + (t19 * t439 + t21 * t440);
+        const gic_real t442 = t436 + (acc[FIVE_LINK_UNKNOWN_ALPHA_Y] + (t404 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t441 + t25 * t408 - t33 * R(40.476046225));
+        const gic_real t443 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X];
         const gic_real t444 = R(0.4469) * t443;
-        const gic_real t445 = acc[2] - m[72] * y[16];
-        const gic_real t446 = acc[1] + m[72] * y[17];
-        const gic_real t447 = y[17] * t444 - t443 * t48 + (t47 * t445 + t49 * t446);
+        const gic_real t445 = acc[FIVE_LINK_UNKNOWN_ALPHA_Z] - m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t446 = acc[FIVE_LINK_UNKNOWN_ALPHA_Y] + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t447 = y[FIVE_LINK_STATE_OMEGA_Z] * t444 - t443 * t48 + (t47 * t445 + t49 * t446);
         const gic_real t448 = t77 * t69 + (t81 * t67 + t87 * t78);
         const gic_real t449 = t69 * t448 - t78 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t450 = t449 + (t99 * t415 - t96 * t112);
-        const gic_real t451 = t442 + (t447 + t53 * t411 - R(40.476046225) * t59) + (t450 + (m[152] * t415 - t111 * R(149.724089775)));
+        const gic_real t451 = t442 + (t447 + t53 * t411 - R(40.476046225) * t59) + (t450 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t415 - t111 * R(149.724089775)));
         const gic_real t452 = t133 * t125 + (t137 * t123 + t143 * t134);
         const gic_real t453 = t125 * t452 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t454 = t453 + (t155 * t419 - t152 * t168);
         const gic_real t455 = t188 * t180 + (t192 * t178 + t196 * t189);
         const gic_real t456 = t180 * t455 - t189 * t190 + (t184 * t194 + (t191 * t195 + t192 * t197));
         const gic_real t457 = t456 + (t207 * t424 - t204 * t220);
-        const gic_real t458 = t451 + (t454 + (m[188] * t419 - R(149.724089775) * t167)) + (t457 + (m[92] * t424 - m[90] * t220));
+        const gic_real t458 = t451 + (t454 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t419 - R(149.724089775) *
+            t167)) + (t457 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t424 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t220));
         const gic_real t459 = t240 * t232 + (t244 * t230 + t248 * t241);
         const gic_real t460 = t232 * t459 - t241 * t242 + (t236 * t246 + (t243 * t247 + t244 * t249));
         const gic_real t461 = t460 + (t259 * t428 - t256 * t272);
@@ -5146,87 +6741,149 @@ static GIC_COLD int five_link_inverse(const five_link *self, gic_real time, cons
         const gic_real t463 = t331 * t430 - t327 * t347;
         const gic_real t464 = t355 * t432 - t351 * t371;
         const gic_real t465 = t379 * t431 - t375 * t395;
-        const gic_real t466 = t465 + (m[152] * t431 - R(1.653405) * t395) + (m[188] * t432 - R(1.653405) * t371);
-        const gic_real t467 = t463 + (t464 + t466 + (m[92] * t430 - m[90] * t347));
-        const gic_real t468 = t458 + (t461 + (m[122] * t428 - m[120] * t272)) - (t462 + (t467 + (m[122] * t429 - m[120] * t323)));
+        const gic_real t466 = t465 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] * t431 - R(1.653405) * t395) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] * t432 - R(1.653405) * t371);
+        const gic_real t467 = t463 + (t464 + t466 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] * t430 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t347));
+        const gic_real residual_1 = t458 + (t461 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t428 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t272)) - (t462 + (t467 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] * t429 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] *
+            t323)));
         const gic_real t469 = t15 * R(9.072);
         const gic_real t470 = t6 * R(2086.52) + t469 + t41 + t65 + t120 + t176;
-        const gic_real t471 = t470 + t227 + t279 - (t324 + (t348 + (t396 + t372)));
-        const gic_real t472 = y[15] * t2 - y[16] * t434 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t473 = t437 * t22 - y[16] * t438 + (t16 * t439 + t19 * t440);
+        const gic_real residual_4 = t470 + t227 + t279 - (t324 + (t348 + (t396 + t372)));
+        const gic_real t472 = y[FIVE_LINK_STATE_OMEGA_X] * t2 - y[FIVE_LINK_STATE_OMEGA_Y] * t434 +
+            acc[FIVE_LINK_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t473 = t437 * t22 - y[FIVE_LINK_STATE_OMEGA_Y] * t438 + (t16 * t439 + t19 * t440);
         const gic_real t474 = t473 - t24 * t408 + (t40 * R(40.476046225) - t407 * R(7.359315990000001));
-        const gic_real t475 = t472 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t405)) + t474;
-        const gic_real t476 = t443 * t50 - y[16] * t444 + (t44 * t445 + t47 * t446);
+        const gic_real t475 = t472 + (acc[FIVE_LINK_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * t405)) + t474;
+        const gic_real t476 = t443 * t50 - y[FIVE_LINK_STATE_OMEGA_Y] * t444 + (t44 * t445 + t47 * t446);
         const gic_real t477 = t476 - t52 * t411 + (R(40.476046225) * t64 - t410 * R(-7.359315990000001));
         const gic_real t478 = t78 * t82 - t67 * t448 + (t68 * t84 + (t73 * t86 + t77 * t89));
         const gic_real t479 = t478 + (t96 * t120 - t93 * t415);
-        const gic_real t480 = t475 + t477 + (t479 + (t119 * R(149.724089775) - m[151] * t415));
+        const gic_real t480 = t475 + t477 + (t479 + (t119 * R(149.724089775) -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t415));
         const gic_real t481 = t134 * t138 - t123 * t452 + (t124 * t140 + (t129 * t142 + t133 * t145));
         const gic_real t482 = t481 + (t152 * t176 - t149 * t419);
         const gic_real t483 = t189 * t193 - t178 * t455 + (t179 * t194 + (t184 * t195 + t188 * t197));
         const gic_real t484 = t483 + (t204 * t227 - t201 * t424);
-        const gic_real t485 = t480 + (t482 + (R(149.724089775) * t175 - m[187] * t419)) + (t484 + (m[90] * t227 - m[91] * t424));
+        const gic_real t485 = t480 + (t482 + (R(149.724089775) * t175 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] *
+            t419)) + (t484 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t227 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t424));
         const gic_real t486 = t241 * t245 - t230 * t459 + (t231 * t246 + (t236 * t247 + t240 * t249));
         const gic_real t487 = t486 + (t256 * t279 - t253 * t428);
         const gic_real t488 = t290 * t324 - t281 * t429;
         const gic_real t489 = t327 * t348 - t326 * t430;
         const gic_real t490 = t351 * t372 - t350 * t432;
         const gic_real t491 = t375 * t396 - t374 * t431;
-        const gic_real t492 = t491 + (R(1.653405) * t396 - m[151] * t431) + (R(1.653405) * t372 - m[187] * t432);
-        const gic_real t493 = t489 + (t490 + t492 + (m[90] * t348 - m[91] * t430));
-        const gic_real t494 = t485 + (t487 + (m[120] * t279 - m[121] * t428)) - (t488 + (t493 + (m[120] * t324 - m[121] * t429)));
+        const gic_real t492 = t491 + (R(1.653405) * t396 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] * t431) +
+            (R(1.653405) * t372 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] * t432);
+        const gic_real t493 = t489 + (t490 + t492 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] * t348 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] * t430));
+        const gic_real residual_2 = t485 + (t487 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t279 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] * t428)) - (t488 + (t493 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] * t324 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] *
+            t429)));
         const gic_real t495 = t435 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
-        const gic_real t496 = t495 + t220 + t272 - (t323 + (t347 + (t395 + t371)));
-        const gic_real t497 = m[185] * t112 + m[184] * t120 + (m[182] * t479 + (m[181] * t450 + m[180] * t121));
-        const gic_real t498 = m[185] * t395 + m[184] * t396 + (m[182] * t491 + (m[181] * t465 + m[180] * t397));
-        const gic_real t499 = m[54] * t42 + t497 - (t498 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t500 = m[221] * t168 + m[220] * t176 + (m[218] * t482 + (m[217] * t454 + m[216] * t177));
-        const gic_real t501 = m[221] * t371 + m[220] * t372 + (m[218] * t490 + (m[217] * t464 + m[216] * t373));
-        const gic_real t502 = m[84] * t66 + t500 - (t501 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
-        const gic_real t503 = m[119] * t220 + (m[118] * t227 + m[117] * t424) + (m[116] * t484 + (m[115] * t457 + m[114] * t228));
-        const gic_real t504 = m[119] * t347 + (m[118] * t348 + m[117] * t430) + (m[116] * t489 + (m[115] * t463 + m[114] * t349));
-        const gic_real t505 = t503 - (t504 - ((x[2] - R(0.4321)) * R(89500.0) + xd[2] * R(6010.0)));
-        const gic_real t506 = m[149] * t272 + (m[148] * t279 + m[147] * t428) + (m[146] * t487 + (m[145] * t461 + m[144] * t280));
-        const gic_real t507 = m[149] * t323 + (m[148] * t324 + m[147] * t429) + (m[146] * t488 + (m[145] * t462 + m[144] * t325));
-        const gic_real t508 = t506 - (t507 - (R(89500.0) * (x[3] - R(0.4321)) + xd[3] * R(6010.0)));
-        const gic_real t509 = t469 + (m[176] * t479 + (m[175] * t450 + m[174] * t121));
-        const gic_real t510 = t509 + (m[212] * t482 + (m[211] * t454 + m[210] * t177));
-        const gic_real t511 = m[176] * t491 + (m[175] * t465 + m[174] * t397) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t512 = t511 + (m[212] * t490 + (m[211] * t464 + m[210] * t373));
-        const gic_real t513 = t510 - t512;
-        tau[0] = t400;
-        tau[3] = t433;
-        tau[1] = t468;
-        tau[4] = t471;
-        tau[2] = t494;
-        tau[5] = t496;
-        tau[6] = t499;
-        tau[7] = t502;
-        tau[8] = t505;
-        tau[9] = t508;
-        tau[10] = t513;
+        const gic_real residual_5 = t495 + t220 + t272 - (t323 + (t347 + (t395 + t371)));
+        const gic_real t497 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] * t112 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] * t120 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t479 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t450 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t121));
+        const gic_real t498 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] * t395 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] * t396 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t491 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t465 +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t397));
+        const gic_real residual_6 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t42 + t497 - (t498 -
+            ((x[FIVE_LINK_X_SPRING_F_L] - R(0.31907)) * R(167070.9) + xd[FIVE_LINK_X_SPRING_F_L] * R(17490.8)));
+        const gic_real t500 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] * t168 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] * t176 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t482 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t454 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t177));
+        const gic_real t501 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] * t371 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] * t372 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t490 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t464 +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t373));
+        const gic_real residual_7 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t66 + t500 - (t501 - (R(167070.9) *
+            (x[FIVE_LINK_X_SPRING_F_R] - R(0.31907)) + xd[FIVE_LINK_X_SPRING_F_R] * R(17490.8)));
+        const gic_real t503 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] * t220 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] * t227 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] *
+            t424) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t484 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t457 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t228));
+        const gic_real t504 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] * t347 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] * t348 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] *
+            t430) + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t489 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t463 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t349));
+        const gic_real residual_8 = t503 - (t504 - ((x[FIVE_LINK_X_SPRING_R_L] - R(0.4321)) * R(89500.0) +
+            xd[FIVE_LINK_X_SPRING_R_L] * R(6010.0)));
+        const gic_real t506 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] * t272 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] * t279 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] *
+            t428) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t487 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t461 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t280));
+        const gic_real t507 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] * t323 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] * t324 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] *
+            t429) + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t488 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t462 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t325));
+        const gic_real residual_9 = t506 - (t507 - (R(89500.0) * (x[FIVE_LINK_X_SPRING_R_R] - R(0.4321)) +
+            xd[FIVE_LINK_X_SPRING_R_R] * R(6010.0)));
+        const gic_real t509 = t469 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t479 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t450 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t121));
+        const gic_real t510 = t509 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t482 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t454 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t177));
+        const gic_real t511 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t491 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t465 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] *
+            t397) - (x[FIVE_LINK_X_RACK] * R(100000.0) + xd[FIVE_LINK_X_RACK] * R(12000.0));
+        const gic_real t512 = t511 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t490 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t464 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] *
+            t373));
+        const gic_real residual_10 = t510 - t512;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_X] = residual_0;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[FIVE_LINK_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[FIVE_LINK_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        tau[FIVE_LINK_UNKNOWN_OF_RACK] = residual_10;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31907)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31907)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.4321)) * R(89500.0)) + xd[3] * (R(89500.0) * (x[3] - R(0.4321)));
-        const gic_real t3 = t2 + xd[4] * (x[4] * R(100000.0));
+        /* force spring_f_r */
+        const gic_real t1 = xd[FIVE_LINK_X_SPRING_F_L] * ((x[FIVE_LINK_X_SPRING_F_L] - R(0.31907)) * R(167070.9)) +
+            xd[FIVE_LINK_X_SPRING_F_R] * (R(167070.9) * (x[FIVE_LINK_X_SPRING_F_R] - R(0.31907)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[FIVE_LINK_X_SPRING_R_L] * ((x[FIVE_LINK_X_SPRING_R_L] - R(0.4321)) * R(89500.0)) +
+            xd[FIVE_LINK_X_SPRING_R_R] * (R(89500.0) * (x[FIVE_LINK_X_SPRING_R_R] - R(0.4321)));
+        /* force rack */
+        const gic_real t3 = t2 + xd[FIVE_LINK_X_RACK] * (x[FIVE_LINK_X_RACK] * R(100000.0));
         const gic_real t4 = e[1] + e[1];
         const gic_real t5 = e[1] * t4;
         const gic_real t6 = e[2] + e[2];
         const gic_real t7 = e[2] * t6;
         const gic_real t8 = R(1.0) - (t5 + t7);
-        const gic_real t9 = rate[14] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t9 = rate[FIVE_LINK_STATE_V_Z] - R(-9.81);
         const gic_real t10 = e[3] * t6;
         const gic_real t11 = e[0] * t4;
         const gic_real t12 = t10 - t11;
@@ -5234,451 +6891,761 @@ static GIC_COLD int five_link_energy(const five_link *self, gic_real time, const
         const gic_real t14 = e[1] * t13;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = t8 * t9 + (t12 * rate[13] + t16 * rate[12]);
-        const gic_real t18 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[16] * R(0.21300000000000008);
-        const gic_real t20 = t17 + (y[15] * t18 - y[16] * t19 - rate[16] * R(0.056));
-        const gic_real t21 = y[14] * t8 + (y[13] * t12 + y[12] * t16);
-        const gic_real t22 = y[16] * R(0.056);
+        const gic_real t17 = t8 * t9 + (t12 * rate[FIVE_LINK_STATE_V_Y] + t16 * rate[FIVE_LINK_STATE_V_X]);
+        const gic_real t18 = y[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - y[FIVE_LINK_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t19 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t20 = t17 + (y[FIVE_LINK_STATE_OMEGA_X] * t18 - y[FIVE_LINK_STATE_OMEGA_Y] * t19 -
+            rate[FIVE_LINK_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t21 = y[FIVE_LINK_STATE_V_Z] * t8 + (y[FIVE_LINK_STATE_V_Y] * t12 + y[FIVE_LINK_STATE_V_X] *
+            t16);
+        const gic_real t22 = y[FIVE_LINK_STATE_OMEGA_Y] * R(0.056);
         const gic_real t23 = t10 + t11;
         const gic_real t24 = e[3] * t13;
         const gic_real t25 = R(1.0) - (t5 + t24);
         const gic_real t26 = e[2] * t4;
         const gic_real t27 = e[0] * t13;
         const gic_real t28 = t26 - t27;
-        const gic_real t29 = t23 * t9 + (t25 * rate[13] + t28 * rate[12]);
-        const gic_real t30 = y[15] * t22 + y[17] * t19 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
-        const gic_real t31 = y[14] * t23 + (y[13] * t25 + y[12] * t28);
+        const gic_real t29 = t23 * t9 + (t25 * rate[FIVE_LINK_STATE_V_Y] + t28 * rate[FIVE_LINK_STATE_V_X]);
+        const gic_real t30 = y[FIVE_LINK_STATE_OMEGA_X] * t22 + y[FIVE_LINK_STATE_OMEGA_Z] * t19 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * R(0.056) - rate[FIVE_LINK_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t31 = y[FIVE_LINK_STATE_V_Z] * t23 + (y[FIVE_LINK_STATE_V_Y] * t25 + y[FIVE_LINK_STATE_V_X] *
+            t28);
         const gic_real t32 = t14 - t15;
         const gic_real t33 = t26 + t27;
         const gic_real t34 = R(1.0) - (t7 + t24);
-        const gic_real t35 = t32 * t9 + (t33 * rate[13] + t34 * rate[12]);
-        const gic_real t36 = t35 + (rate[16] * R(0.21300000000000008) - (y[17] * t18 + y[16] * t22));
-        const gic_real t37 = y[14] * t32 + (y[13] * t33 + y[12] * t34);
+        const gic_real t35 = t32 * t9 + (t33 * rate[FIVE_LINK_STATE_V_Y] + t34 * rate[FIVE_LINK_STATE_V_X]);
+        const gic_real t36 = t35 + (rate[FIVE_LINK_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[FIVE_LINK_STATE_OMEGA_Z] * t18 + y[FIVE_LINK_STATE_OMEGA_Y] * t22));
+        const gic_real t37 = y[FIVE_LINK_STATE_V_Z] * t32 + (y[FIVE_LINK_STATE_V_Y] * t33 + y[FIVE_LINK_STATE_V_X] *
+            t34);
         const gic_real t38 = (t29 + t30) * (t18 + t31) + t36 * (t19 + t37);
         const gic_real t39 = (t20 * (t21 - t22) + t38) * R(2086.52);
-        const gic_real t40 = y[17] * (rate[17] * R(3570.2)) + (y[16] * (rate[16] * R(2955.66)) + y[15] * (rate[15] * R(1078.52)));
-        const gic_real t41 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t42 = m[16] + t41;
-        const gic_real t43 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t44 = y[15] * t42 - y[16] * t43 + (m[1] * rate[15] - R(1.438648) * rate[16]);
-        const gic_real t45 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t46 = y[17] * t43 - y[15] * t45 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t47 = y[16] * t45 - y[17] * t42 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
-        const gic_real t48 = (rate[22] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
+        const gic_real t40 = y[FIVE_LINK_STATE_OMEGA_Z] * (rate[FIVE_LINK_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[FIVE_LINK_STATE_OMEGA_Y] * (rate[FIVE_LINK_STATE_OMEGA_Y] * R(2955.66)) + y[FIVE_LINK_STATE_OMEGA_X] *
+            (rate[FIVE_LINK_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t41 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] + (R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Z] - R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t42 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_VELOCITY_Y] + t41;
+        const gic_real t43 = R(0.05422899999999997) * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t44 = y[FIVE_LINK_STATE_OMEGA_X] * t42 - y[FIVE_LINK_STATE_OMEGA_Y] * t43 +
+            (m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * rate[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            rate[FIVE_LINK_STATE_OMEGA_Y]);
+        const gic_real t45 = m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] * y[FIVE_LINK_STATE_OMEGA_X] - R(1.438648) *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t46 = y[FIVE_LINK_STATE_OMEGA_Z] * t43 - y[FIVE_LINK_STATE_OMEGA_X] * t45 + (R(1.438648) *
+            rate[FIVE_LINK_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t47 = y[FIVE_LINK_STATE_OMEGA_Y] * t45 - y[FIVE_LINK_STATE_OMEGA_Z] * t42 +
+            (R(0.05422899999999997) * rate[FIVE_LINK_STATE_OMEGA_Y] - m[FIVE_LINK_MOTION_RACK + FIVE_LINK_C_Y] *
+            rate[FIVE_LINK_STATE_OMEGA_Z]);
+        const gic_real t48 = (rate[FIVE_LINK_STATE_RACK_RATE] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
         const gic_real t49 = ((t17 + t44) * (t21 + t45) + t48) * R(9.072);
-        const gic_real t50 = y[17] * rate[17] + (y[16] * rate[16] + y[15] * rate[15]);
-        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = R(1.688965) * y[17];
-        const gic_real t55 = t54 - y[15] * t52 - t53;
+        const gic_real t50 = y[FIVE_LINK_STATE_OMEGA_Z] * rate[FIVE_LINK_STATE_OMEGA_Z] + (y[FIVE_LINK_STATE_OMEGA_Y] *
+            rate[FIVE_LINK_STATE_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_X] * rate[FIVE_LINK_STATE_OMEGA_X]);
+        const gic_real t51 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.24689200985615367);
+        const gic_real t52 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t52;
+        const gic_real t54 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t55 = t54 - y[FIVE_LINK_STATE_OMEGA_X] * t52 - t53;
         const gic_real t56 = t55 - t53;
         const gic_real t57 = R(0.307086) + t51;
-        const gic_real t58 = y[16] * t52 - y[17] * t57;
-        const gic_real t59 = R(1.688965) * rate[16];
-        const gic_real t60 = y[15] * t56 - y[16] * t58 + (rate[15] * t57 - t59);
-        const gic_real t61 = m[48] * t51 - m[42] * t53 + (t17 + t60) + rate[18] * (m[54] * t51);
-        const gic_real t62 = m[42] * t51;
-        const gic_real t63 = R(1.688965) * y[16];
-        const gic_real t64 = t62 + (y[15] * t57 - t63);
+        const gic_real t58 = y[FIVE_LINK_STATE_OMEGA_Y] * t52 - y[FIVE_LINK_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t60 = y[FIVE_LINK_STATE_OMEGA_X] * t56 - y[FIVE_LINK_STATE_OMEGA_Y] * t58 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t57 - t59);
+        const gic_real t61 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] * t51 -
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t53 + (t17 + t60) +
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE] * (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t51);
+        const gic_real t62 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t51;
+        const gic_real t63 = R(1.688965) * y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t64 = t62 + (y[FIVE_LINK_STATE_OMEGA_X] * t57 - t63);
         const gic_real t65 = t62 + t64;
-        const gic_real t66 = R(1.688965) * rate[17];
-        const gic_real t67 = y[17] * t58 - y[15] * t65 + (t66 - rate[15] * t52);
-        const gic_real t68 = t29 + t67 - (m[42] * t62 + m[48] * t52) - rate[18] * (m[54] * t52);
-        const gic_real t69 = y[16] * t65 - y[17] * t56 + (rate[16] * t52 - rate[17] * t57);
+        const gic_real t66 = R(1.688965) * rate[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t67 = y[FIVE_LINK_STATE_OMEGA_Z] * t58 - y[FIVE_LINK_STATE_OMEGA_X] * t65 + (t66 -
+            rate[FIVE_LINK_STATE_OMEGA_X] * t52);
+        const gic_real t68 = t29 + t67 - (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] * t62 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] * t52) - rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * t52);
+        const gic_real t69 = y[FIVE_LINK_STATE_OMEGA_Y] * t65 - y[FIVE_LINK_STATE_OMEGA_Z] * t56 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t52 - rate[FIVE_LINK_STATE_OMEGA_Z] * t57);
         const gic_real t70 = t68 * (t31 + t55) + (t35 + t69) * (t37 + t58);
         const gic_real t71 = (t61 * (t21 + t64) + t70) * R(23.965);
-        const gic_real t72 = rate[17] - m[42] * y[16];
-        const gic_real t73 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t72;
-        const gic_real t74 = m[38] * R(0.8938);
-        const gic_real t75 = m[37] * R(0.4469);
-        const gic_real t76 = m[41] * t74 + m[40] * t75;
-        const gic_real t77 = rate[16] + m[42] * y[17];
-        const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
-        const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
-        const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t83 = m[72] * t82;
-        const gic_real t84 = t54 - y[15] * t82 - t83;
+        const gic_real t72 = rate[FIVE_LINK_STATE_OMEGA_Z] - m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t73 = (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * R(0.4469))) * t72;
+        const gic_real t74 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t75 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t76 = m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZZ] * t74 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_ZY] * t75;
+        const gic_real t77 = rate[FIVE_LINK_STATE_OMEGA_Y] + m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t78 = t76 * t72 + (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YZ] * t74 +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_A_YY] * t75) * t77;
+        const gic_real t79 = (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_ALPHA_X] + rate[FIVE_LINK_STATE_OMEGA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_F_L_RATE]));
+        const gic_real t80 = y[FIVE_LINK_STATE_OMEGA_Z] * (t73 + t76 * t77) + (y[FIVE_LINK_STATE_OMEGA_Y] * t78 + t79);
+        const gic_real t81 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(-0.24689200985615367);
+        const gic_real t82 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(3.0379110359107786e-06) +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(-0.24689200985615367);
+        const gic_real t83 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t82;
+        const gic_real t84 = t54 - y[FIVE_LINK_STATE_OMEGA_X] * t82 - t83;
         const gic_real t85 = t84 - t83;
         const gic_real t86 = R(-0.307086) + t81;
-        const gic_real t87 = y[16] * t82 - y[17] * t86;
-        const gic_real t88 = y[15] * t85 - y[16] * t87 + (rate[15] * t86 - t59);
-        const gic_real t89 = m[78] * t81 - m[72] * t83 + (t17 + t88) + rate[19] * (m[84] * t81);
-        const gic_real t90 = m[72] * t81;
-        const gic_real t91 = t90 + (y[15] * t86 - t63);
+        const gic_real t87 = y[FIVE_LINK_STATE_OMEGA_Y] * t82 - y[FIVE_LINK_STATE_OMEGA_Z] * t86;
+        const gic_real t88 = y[FIVE_LINK_STATE_OMEGA_X] * t85 - y[FIVE_LINK_STATE_OMEGA_Y] * t87 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t86 - t59);
+        const gic_real t89 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] * t81 -
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t83 + (t17 + t88) +
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE] * (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t81);
+        const gic_real t90 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t81;
+        const gic_real t91 = t90 + (y[FIVE_LINK_STATE_OMEGA_X] * t86 - t63);
         const gic_real t92 = t90 + t91;
-        const gic_real t93 = y[17] * t87 - y[15] * t92 + (t66 - rate[15] * t82);
-        const gic_real t94 = t29 + t93 - (m[72] * t90 + m[78] * t82) - rate[19] * (m[84] * t82);
-        const gic_real t95 = y[16] * t92 - y[17] * t85 + (rate[16] * t82 - rate[17] * t86);
+        const gic_real t93 = y[FIVE_LINK_STATE_OMEGA_Z] * t87 - y[FIVE_LINK_STATE_OMEGA_X] * t92 + (t66 -
+            rate[FIVE_LINK_STATE_OMEGA_X] * t82);
+        const gic_real t94 = t29 + t93 - (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] * t90 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] * t82) - rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * t82);
+        const gic_real t95 = y[FIVE_LINK_STATE_OMEGA_Y] * t92 - y[FIVE_LINK_STATE_OMEGA_Z] * t85 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t82 - rate[FIVE_LINK_STATE_OMEGA_Z] * t86);
         const gic_real t96 = t94 * (t31 + t84) + (t35 + t95) * (t37 + t87);
         const gic_real t97 = R(23.965) * (t89 * (t21 + t91) + t96);
-        const gic_real t98 = rate[17] - m[72] * y[16];
-        const gic_real t99 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t98;
-        const gic_real t100 = m[68] * R(0.8938);
-        const gic_real t101 = m[67] * R(0.4469);
-        const gic_real t102 = m[71] * t100 + m[70] * t101;
-        const gic_real t103 = rate[16] + m[72] * y[17];
-        const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
-        const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
+        const gic_real t98 = rate[FIVE_LINK_STATE_OMEGA_Z] - m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t99 = (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * R(0.8938)) + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] *
+            (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * R(0.4469))) * t98;
+        const gic_real t100 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * R(0.8938);
+        const gic_real t101 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * R(0.4469);
+        const gic_real t102 = m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZZ] * t100 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_ZY] * t101;
+        const gic_real t103 = rate[FIVE_LINK_STATE_OMEGA_Y] + m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] *
+            y[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t104 = t102 * t98 + (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YZ] * t100 +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_A_YY] * t101) * t103;
+        const gic_real t105 = (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_ALPHA_X] + rate[FIVE_LINK_STATE_OMEGA_X] +
+            m[FIVE_LINK_MOTION_LCA_F_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_F_R_RATE]));
+        const gic_real t106 = y[FIVE_LINK_STATE_OMEGA_Z] * (t99 + t102 * t103) + (y[FIVE_LINK_STATE_OMEGA_Y] * t104 +
+            t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
-        const gic_real t108 = m[155] * R(0.09182100000000004);
-        const gic_real t109 = m[153] * R(-0.004825999999999997);
-        const gic_real t110 = t108 + (t109 + m[154] * R(0.08910630000000008));
-        const gic_real t111 = m[161] * R(0.09182100000000004);
-        const gic_real t112 = m[159] * R(-0.004825999999999997);
-        const gic_real t113 = t111 + (t112 + m[160] * R(0.08910630000000008));
-        const gic_real t114 = m[164] * t110 - m[162] * t113;
-        const gic_real t115 = m[158] * R(0.09182100000000004);
-        const gic_real t116 = m[156] * R(-0.004825999999999997);
-        const gic_real t117 = t115 + (t116 + m[157] * R(0.08910630000000008));
-        const gic_real t118 = m[163] * t113 - m[164] * t117;
-        const gic_real t119 = m[162] * t114 - m[163] * t118 + (m[168] * t117 - m[169] * t110);
-        const gic_real t120 = m[166] + t114;
+        /* wheel tire_f_l */
+        const gic_real t108 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t109 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t110 = t108 + (t109 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t111 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t112 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t113 = t111 + (t112 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t114 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t110 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t113;
+        const gic_real t115 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t116 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = t115 + (t116 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t118 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t113 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t117;
+        const gic_real t119 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t114 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t118 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t117 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t110);
+        const gic_real t120 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] + t114;
         const gic_real t121 = R(1.653405) + t110;
-        const gic_real t122 = m[152] + t113;
-        const gic_real t123 = t120 + (y[17] * t121 - y[15] * t122);
+        const gic_real t122 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t113;
+        const gic_real t123 = t120 + (y[FIVE_LINK_STATE_OMEGA_Z] * t121 - y[FIVE_LINK_STATE_OMEGA_X] * t122);
         const gic_real t124 = t120 + t123;
-        const gic_real t125 = m[151] + t117;
-        const gic_real t126 = t118 + (y[16] * t122 - y[17] * t125);
+        const gic_real t125 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t117;
+        const gic_real t126 = t118 + (y[FIVE_LINK_STATE_OMEGA_Y] * t122 - y[FIVE_LINK_STATE_OMEGA_Z] * t125);
         const gic_real t127 = t118 + t126;
-        const gic_real t128 = y[15] * t124 - y[16] * t127 + (rate[15] * t125 - rate[16] * t121);
-        const gic_real t129 = m[173] + t119 + (t17 + t128) + rate[22] * (m[174] * t117 - m[175] * t110);
-        const gic_real t130 = t129 + rate[18] * (m[185] + (m[180] * t117 - m[181] * t110));
-        const gic_real t131 = m[162] * t117 - m[163] * t110;
-        const gic_real t132 = m[167] + t131;
-        const gic_real t133 = t132 + (y[15] * t125 - y[16] * t121);
-        const gic_real t134 = m[164] * t118 - m[162] * t131 + (m[170] * t110 - m[168] * t113);
+        const gic_real t128 = y[FIVE_LINK_STATE_OMEGA_X] * t124 - y[FIVE_LINK_STATE_OMEGA_Y] * t127 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t125 - rate[FIVE_LINK_STATE_OMEGA_Y] * t121);
+        const gic_real t129 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Z] + t119 + (t17 + t128) +
+            rate[FIVE_LINK_STATE_RACK_RATE] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * t117 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t110);
+        const gic_real t130 = t129 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] *
+            t117 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t110));
+        const gic_real t131 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t117 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t110;
+        const gic_real t132 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] + t131;
+        const gic_real t133 = t132 + (y[FIVE_LINK_STATE_OMEGA_X] * t125 - y[FIVE_LINK_STATE_OMEGA_Y] * t121);
+        const gic_real t134 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t118 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t131 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t110 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] * t113);
         const gic_real t135 = t132 + t133;
-        const gic_real t136 = y[17] * t127 - y[15] * t135 + (rate[17] * t121 - rate[15] * t122);
-        const gic_real t137 = m[172] + t134 + (t29 + t136) + rate[22] * (m[176] * t110 - m[174] * t113);
-        const gic_real t138 = t137 + rate[18] * (m[184] + (m[182] * t110 - m[180] * t113));
-        const gic_real t139 = m[163] * t131 - m[164] * t114 + (m[169] * t113 - m[170] * t117);
-        const gic_real t140 = y[16] * t135 - y[17] * t124 + (rate[16] * t122 - rate[17] * t125);
-        const gic_real t141 = t139 + (t35 + t140) + rate[22] * (m[175] * t113 - m[176] * t117);
-        const gic_real t142 = (t141 + rate[18] * (m[181] * t113 - m[182] * t117)) * (t37 + t126);
+        const gic_real t136 = y[FIVE_LINK_STATE_OMEGA_Z] * t127 - y[FIVE_LINK_STATE_OMEGA_X] * t135 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t121 - rate[FIVE_LINK_STATE_OMEGA_X] * t122);
+        const gic_real t137 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ACCELERATION_Y] + t134 + (t29 + t136) +
+            rate[FIVE_LINK_STATE_RACK_RATE] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * t110 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * t113);
+        const gic_real t138 = t137 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t110 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] * t113));
+        const gic_real t139 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t131 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t114 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] * t113 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] * t117);
+        const gic_real t140 = y[FIVE_LINK_STATE_OMEGA_Y] * t135 - y[FIVE_LINK_STATE_OMEGA_Z] * t124 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t122 - rate[FIVE_LINK_STATE_OMEGA_Z] * t125);
+        const gic_real t141 = t139 + (t35 + t140) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * t113 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] *
+            t117);
+        const gic_real t142 = (t141 + rate[FIVE_LINK_STATE_SPRING_F_L_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] * t113 - m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            t117)) * (t37 + t126);
         const gic_real t143 = t130 * (t21 + t133) + (t138 * (t31 + t123) + t142);
         const gic_real t144 = t143 * R(90.555);
-        const gic_real t145 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t146 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t147 = t146 + m[182] * rate[18];
-        const gic_real t148 = m[158] * R(4.7728205);
-        const gic_real t149 = m[157] * R(7.58122);
-        const gic_real t150 = m[156] * R(4.8947505);
-        const gic_real t151 = m[161] * t148 + (m[160] * t149 + m[159] * t150);
-        const gic_real t152 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t153 = t152 + m[181] * rate[18];
-        const gic_real t154 = m[155] * R(4.7728205);
-        const gic_real t155 = m[154] * R(7.58122);
-        const gic_real t156 = m[153] * R(4.8947505);
-        const gic_real t157 = m[161] * t154 + (m[160] * t155 + m[159] * t156);
-        const gic_real t158 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t159 = t158 + m[180] * rate[18];
-        const gic_real t160 = (m[164] + y[17]) * (t145 * t147 + (t151 * t153 + t157 * t159));
-        const gic_real t161 = (m[158] * t148 + (m[157] * t149 + m[156] * t150)) * t153;
-        const gic_real t162 = m[158] * t154 + (m[157] * t155 + m[156] * t156);
-        const gic_real t163 = (m[163] + y[16]) * (t151 * t147 + (t161 + t162 * t159));
-        const gic_real t164 = (m[155] * t154 + (m[154] * t155 + m[153] * t156)) * t159;
-        const gic_real t165 = (m[162] + y[15]) * (t157 * t147 + (t162 * t153 + t164));
+        const gic_real t145 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t146 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t147 = t146 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 8] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t148 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t149 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t150 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t151 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t148 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t149 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t150);
+        const gic_real t152 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t153 = t152 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 7] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t154 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t155 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t156 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t157 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZZ] * t154 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * t155 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZX] *
+            t156);
+        const gic_real t158 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t159 = t158 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_S + 6] *
+            rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t160 = (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z]) * (t145 *
+            t147 + (t151 * t153 + t157 * t159));
+        const gic_real t161 = (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t148 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t149 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t150)) * t153;
+        const gic_real t162 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YZ] * t154 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * t155 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YX] *
+            t156);
+        const gic_real t163 = (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y]) * (t151 *
+            t147 + (t161 + t162 * t159));
+        const gic_real t164 = (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XZ] * t154 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * t155 + m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XX] *
+            t156)) * t159;
+        const gic_real t165 = (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) * (t157 *
+            t147 + (t162 * t153 + t164));
         const gic_real t166 = t160 + (t163 + t165);
-        const gic_real t167 = m[191] * R(0.09182100000000004);
-        const gic_real t168 = m[189] * R(-0.004825999999999997);
-        const gic_real t169 = t167 + (t168 + m[190] * R(-0.08910630000000008));
-        const gic_real t170 = m[197] * R(0.09182100000000004);
-        const gic_real t171 = m[195] * R(-0.004825999999999997);
-        const gic_real t172 = t170 + (t171 + m[196] * R(-0.08910630000000008));
-        const gic_real t173 = m[200] * t169 - m[198] * t172;
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[199] * t172 - m[200] * t176;
-        const gic_real t178 = m[198] * t173 - m[199] * t177 + (m[204] * t176 - m[205] * t169);
-        const gic_real t179 = m[202] + t173;
+        /* wheel tire_f_r */
+        const gic_real t167 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t168 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(-0.004825999999999997);
+        const gic_real t169 = t167 + (t168 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t170 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t171 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(-0.004825999999999997);
+        const gic_real t172 = t170 + (t171 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t173 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t169 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t172;
+        const gic_real t174 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t172 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t176;
+        const gic_real t178 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t173 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t177 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t176 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t169);
+        const gic_real t179 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] + t173;
         const gic_real t180 = R(1.653405) + t169;
-        const gic_real t181 = m[188] + t172;
-        const gic_real t182 = t179 + (y[17] * t180 - y[15] * t181);
+        const gic_real t181 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t172;
+        const gic_real t182 = t179 + (y[FIVE_LINK_STATE_OMEGA_Z] * t180 - y[FIVE_LINK_STATE_OMEGA_X] * t181);
         const gic_real t183 = t179 + t182;
-        const gic_real t184 = m[187] + t176;
-        const gic_real t185 = t177 + (y[16] * t181 - y[17] * t184);
+        const gic_real t184 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t176;
+        const gic_real t185 = t177 + (y[FIVE_LINK_STATE_OMEGA_Y] * t181 - y[FIVE_LINK_STATE_OMEGA_Z] * t184);
         const gic_real t186 = t177 + t185;
-        const gic_real t187 = y[15] * t183 - y[16] * t186 + (rate[15] * t184 - rate[16] * t180);
-        const gic_real t188 = m[209] + t178 + (t17 + t187) + rate[22] * (m[210] * t176 - m[211] * t169);
-        const gic_real t189 = t188 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t169));
-        const gic_real t190 = m[198] * t176 - m[199] * t169;
-        const gic_real t191 = m[203] + t190;
-        const gic_real t192 = t191 + (y[15] * t184 - y[16] * t180);
-        const gic_real t193 = m[200] * t177 - m[198] * t190 + (m[206] * t169 - m[204] * t172);
+        const gic_real t187 = y[FIVE_LINK_STATE_OMEGA_X] * t183 - y[FIVE_LINK_STATE_OMEGA_Y] * t186 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t184 - rate[FIVE_LINK_STATE_OMEGA_Y] * t180);
+        const gic_real t188 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Z] + t178 + (t17 + t187) +
+            rate[FIVE_LINK_STATE_RACK_RATE] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * t176 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t169);
+        const gic_real t189 = t188 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 11] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            t176 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t169));
+        const gic_real t190 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t176 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t169;
+        const gic_real t191 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] + t190;
+        const gic_real t192 = t191 + (y[FIVE_LINK_STATE_OMEGA_X] * t184 - y[FIVE_LINK_STATE_OMEGA_Y] * t180);
+        const gic_real t193 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t177 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t190 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t169 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] * t172);
         const gic_real t194 = t191 + t192;
-        const gic_real t195 = y[17] * t186 - y[15] * t194 + (rate[17] * t180 - rate[15] * t181);
-        const gic_real t196 = m[208] + t193 + (t29 + t195) + rate[22] * (m[212] * t169 - m[210] * t172);
-        const gic_real t197 = t196 + rate[19] * (m[220] + (m[218] * t169 - m[216] * t172));
-        const gic_real t198 = m[199] * t190 - m[200] * t173 + (m[205] * t172 - m[206] * t176);
-        const gic_real t199 = y[16] * t194 - y[17] * t183 + (rate[16] * t181 - rate[17] * t184);
-        const gic_real t200 = t198 + (t35 + t199) + rate[22] * (m[211] * t172 - m[212] * t176);
-        const gic_real t201 = (t200 + rate[19] * (m[217] * t172 - m[218] * t176)) * (t37 + t185);
+        const gic_real t195 = y[FIVE_LINK_STATE_OMEGA_Z] * t186 - y[FIVE_LINK_STATE_OMEGA_X] * t194 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t180 - rate[FIVE_LINK_STATE_OMEGA_X] * t181);
+        const gic_real t196 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ACCELERATION_Y] + t193 + (t29 + t195) +
+            rate[FIVE_LINK_STATE_RACK_RATE] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * t169 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * t172);
+        const gic_real t197 = t196 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 10] + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t169 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] * t172));
+        const gic_real t198 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t190 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t173 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] * t172 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] * t176);
+        const gic_real t199 = y[FIVE_LINK_STATE_OMEGA_Y] * t194 - y[FIVE_LINK_STATE_OMEGA_Z] * t183 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t181 - rate[FIVE_LINK_STATE_OMEGA_Z] * t184);
+        const gic_real t200 = t198 + (t35 + t199) + rate[FIVE_LINK_STATE_RACK_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * t172 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] *
+            t176);
+        const gic_real t201 = (t200 + rate[FIVE_LINK_STATE_SPRING_F_R_RATE] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] * t172 - m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            t176)) * (t37 + t185);
         const gic_real t202 = t189 * (t21 + t192) + (t197 * (t31 + t182) + t201);
         const gic_real t203 = R(90.555) * t202;
-        const gic_real t204 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t205 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t206 = t205 + m[218] * rate[19];
-        const gic_real t207 = m[194] * R(4.7728205);
-        const gic_real t208 = m[193] * R(7.58122);
-        const gic_real t209 = m[192] * R(4.8947505);
-        const gic_real t210 = m[197] * t207 + (m[196] * t208 + m[195] * t209);
-        const gic_real t211 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t212 = t211 + m[217] * rate[19];
-        const gic_real t213 = m[191] * R(4.7728205);
-        const gic_real t214 = m[190] * R(7.58122);
-        const gic_real t215 = m[189] * R(4.8947505);
-        const gic_real t216 = m[197] * t213 + (m[196] * t214 + m[195] * t215);
-        const gic_real t217 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t218 = t217 + m[216] * rate[19];
-        const gic_real t219 = (m[200] + y[17]) * (t204 * t206 + (t210 * t212 + t216 * t218));
-        const gic_real t220 = (m[194] * t207 + (m[193] * t208 + m[192] * t209)) * t212;
-        const gic_real t221 = m[194] * t213 + (m[193] * t214 + m[192] * t215);
-        const gic_real t222 = (m[199] + y[16]) * (t210 * t206 + (t220 + t221 * t218));
-        const gic_real t223 = (m[191] * t213 + (m[190] * t214 + m[189] * t215)) * t218;
-        const gic_real t224 = (m[198] + y[15]) * (t216 * t206 + (t221 * t212 + t223));
+        const gic_real t204 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t205 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t206 = t205 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 8] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t207 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t208 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t209 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t210 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t207 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t208 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t209);
+        const gic_real t211 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t212 = t211 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 7] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t213 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t214 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t215 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t216 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZZ] * t213 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * t214 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZX] *
+            t215);
+        const gic_real t217 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_RACK_RATE];
+        const gic_real t218 = t217 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_S + 6] *
+            rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t219 = (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z]) * (t204 *
+            t206 + (t210 * t212 + t216 * t218));
+        const gic_real t220 = (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t207 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t208 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t209)) * t212;
+        const gic_real t221 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YZ] * t213 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * t214 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YX] *
+            t215);
+        const gic_real t222 = (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y]) * (t210 *
+            t206 + (t220 + t221 * t218));
+        const gic_real t223 = (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XZ] * t213 +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * t214 + m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XX] *
+            t215)) * t218;
+        const gic_real t224 = (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) * (t216 *
+            t206 + (t221 * t212 + t223));
         const gic_real t225 = t219 + (t222 + t224);
-        const gic_real t226 = m[95] * R(0.09182100000000004);
-        const gic_real t227 = m[93] * R(-0.030000000000000027);
-        const gic_real t228 = t226 + (t227 + m[94] * R(0.08910630000000008));
-        const gic_real t229 = m[101] * R(0.09182100000000004);
-        const gic_real t230 = m[99] * R(-0.030000000000000027);
-        const gic_real t231 = t229 + (t230 + m[100] * R(0.08910630000000008));
-        const gic_real t232 = m[104] * t228 - m[102] * t231;
-        const gic_real t233 = m[98] * R(0.09182100000000004);
-        const gic_real t234 = m[96] * R(-0.030000000000000027);
-        const gic_real t235 = t233 + (t234 + m[97] * R(0.08910630000000008));
-        const gic_real t236 = m[103] * t231 - m[104] * t235;
-        const gic_real t237 = m[102] * t232 - m[103] * t236 + (m[108] * t235 - m[109] * t228);
-        const gic_real t238 = m[106] + t232;
-        const gic_real t239 = m[90] + t228;
-        const gic_real t240 = m[92] + t231;
-        const gic_real t241 = t238 + (y[17] * t239 - y[15] * t240);
+        /* wheel tire_r_l */
+        const gic_real t226 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t227 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t228 = t226 + (t227 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.08910630000000008));
+        const gic_real t229 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t230 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t231 = t229 + (t230 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.08910630000000008));
+        const gic_real t232 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t228 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t231;
+        const gic_real t233 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t234 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t235 = t233 + (t234 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.08910630000000008));
+        const gic_real t236 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t231 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t235;
+        const gic_real t237 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t232 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t236 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t235 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t228);
+        const gic_real t238 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] + t232;
+        const gic_real t239 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t228;
+        const gic_real t240 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t231;
+        const gic_real t241 = t238 + (y[FIVE_LINK_STATE_OMEGA_Z] * t239 - y[FIVE_LINK_STATE_OMEGA_X] * t240);
         const gic_real t242 = t238 + t241;
-        const gic_real t243 = m[105] + t236;
-        const gic_real t244 = m[91] + t235;
-        const gic_real t245 = t243 + (y[16] * t240 - y[17] * t244);
+        const gic_real t243 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] + t236;
+        const gic_real t244 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t235;
+        const gic_real t245 = t243 + (y[FIVE_LINK_STATE_OMEGA_Y] * t240 - y[FIVE_LINK_STATE_OMEGA_Z] * t244);
         const gic_real t246 = t243 + t245;
-        const gic_real t247 = y[15] * t242 - y[16] * t246 + (rate[15] * t244 - rate[16] * t239);
-        const gic_real t248 = m[113] + t237 + (t17 + t247) + rate[20] * (m[119] + (m[114] * t235 - m[115] * t228));
-        const gic_real t249 = m[102] * t235 - m[103] * t228;
-        const gic_real t250 = m[107] + t249;
-        const gic_real t251 = t250 + (y[15] * t244 - y[16] * t239);
-        const gic_real t252 = m[104] * t236 - m[102] * t249 + (m[110] * t228 - m[108] * t231);
+        const gic_real t247 = y[FIVE_LINK_STATE_OMEGA_X] * t242 - y[FIVE_LINK_STATE_OMEGA_Y] * t246 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t244 - rate[FIVE_LINK_STATE_OMEGA_Y] * t239);
+        const gic_real t248 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Z] + t237 + (t17 + t247) +
+            rate[FIVE_LINK_STATE_SPRING_R_L_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 5] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * t235 - m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] *
+            t228));
+        const gic_real t249 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t235 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t228;
+        const gic_real t250 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] + t249;
+        const gic_real t251 = t250 + (y[FIVE_LINK_STATE_OMEGA_X] * t244 - y[FIVE_LINK_STATE_OMEGA_Y] * t239);
+        const gic_real t252 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t236 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t249 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t228 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] * t231);
         const gic_real t253 = t250 + t251;
-        const gic_real t254 = y[17] * t246 - y[15] * t253 + (rate[17] * t239 - rate[15] * t240);
-        const gic_real t255 = m[112] + t252 + (t29 + t254) + rate[20] * (m[118] + (m[116] * t228 - m[114] * t231));
-        const gic_real t256 = m[103] * t249 - m[104] * t232 + (m[109] * t231 - m[110] * t235);
-        const gic_real t257 = y[16] * t253 - y[17] * t242 + (rate[16] * t240 - rate[17] * t244);
-        const gic_real t258 = m[111] + t256 + (t35 + t257) + rate[20] * (m[117] + (m[115] * t231 - m[116] * t235));
+        const gic_real t254 = y[FIVE_LINK_STATE_OMEGA_Z] * t246 - y[FIVE_LINK_STATE_OMEGA_X] * t253 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t239 - rate[FIVE_LINK_STATE_OMEGA_X] * t240);
+        const gic_real t255 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_Y] + t252 + (t29 + t254) +
+            rate[FIVE_LINK_STATE_SPRING_R_L_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 4] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * t228 - m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] *
+            t231));
+        const gic_real t256 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t249 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t232 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] * t231 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] * t235);
+        const gic_real t257 = y[FIVE_LINK_STATE_OMEGA_Y] * t253 - y[FIVE_LINK_STATE_OMEGA_Z] * t242 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t240 - rate[FIVE_LINK_STATE_OMEGA_Z] * t244);
+        const gic_real t258 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ACCELERATION_X] + t256 + (t35 + t257) +
+            rate[FIVE_LINK_STATE_SPRING_R_L_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 3] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * t231 - m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] *
+            t235));
         const gic_real t259 = t248 * (t21 + t251) + (t255 * (t31 + t241) + t258 * (t37 + t245));
         const gic_real t260 = R(90.555) * t259;
-        const gic_real t261 = m[101] * (m[101] * R(4.7728205)) + (m[100] * (m[100] * R(7.58122)) + m[99] * (m[99] * R(4.8947505)));
-        const gic_real t262 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
-        const gic_real t263 = m[98] * R(4.7728205);
-        const gic_real t264 = m[97] * R(7.58122);
-        const gic_real t265 = m[96] * R(4.8947505);
-        const gic_real t266 = m[101] * t263 + (m[100] * t264 + m[99] * t265);
-        const gic_real t267 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
-        const gic_real t268 = m[95] * R(4.7728205);
-        const gic_real t269 = m[94] * R(7.58122);
-        const gic_real t270 = m[93] * R(4.8947505);
-        const gic_real t271 = m[101] * t268 + (m[100] * t269 + m[99] * t270);
-        const gic_real t272 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
-        const gic_real t273 = (m[104] + y[17]) * (t261 * t262 + (t266 * t267 + t271 * t272));
-        const gic_real t274 = (m[98] * t263 + (m[97] * t264 + m[96] * t265)) * t267;
-        const gic_real t275 = m[98] * t268 + (m[97] * t269 + m[96] * t270);
-        const gic_real t276 = (m[103] + y[16]) * (t266 * t262 + (t274 + t275 * t272));
-        const gic_real t277 = (m[95] * t268 + (m[94] * t269 + m[93] * t270)) * t272;
-        const gic_real t278 = (m[102] + y[15]) * (t271 * t262 + (t275 * t267 + t277));
+        const gic_real t261 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t262 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t263 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t264 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t265 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t266 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t263 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t264 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t265);
+        const gic_real t267 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t268 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t269 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t270 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t271 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZX] *
+            t270);
+        const gic_real t272 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t273 = (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z]) * (t261 *
+            t262 + (t266 * t267 + t271 * t272));
+        const gic_real t274 = (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t263 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t264 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t265)) * t267;
+        const gic_real t275 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YX] *
+            t270);
+        const gic_real t276 = (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y]) * (t266 *
+            t262 + (t274 + t275 * t272));
+        const gic_real t277 = (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XZ] * t268 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * t269 + m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XX] *
+            t270)) * t272;
+        const gic_real t278 = (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) * (t271 *
+            t262 + (t275 * t267 + t277));
         const gic_real t279 = t273 + (t276 + t278);
         const gic_real t280 = t107 + (t144 + t166) + (t203 + t225) + (t260 + t279);
-        const gic_real t281 = m[125] * R(0.09182100000000004);
-        const gic_real t282 = m[123] * R(-0.030000000000000027);
-        const gic_real t283 = t281 + (t282 + m[124] * R(-0.08910630000000008));
-        const gic_real t284 = m[131] * R(0.09182100000000004);
-        const gic_real t285 = m[129] * R(-0.030000000000000027);
-        const gic_real t286 = t284 + (t285 + m[130] * R(-0.08910630000000008));
-        const gic_real t287 = m[134] * t283 - m[132] * t286;
-        const gic_real t288 = m[128] * R(0.09182100000000004);
-        const gic_real t289 = m[126] * R(-0.030000000000000027);
-        const gic_real t290 = t288 + (t289 + m[127] * R(-0.08910630000000008));
-        const gic_real t291 = m[133] * t286 - m[134] * t290;
-        const gic_real t292 = m[132] * t287 - m[133] * t291 + (m[138] * t290 - m[139] * t283);
-        const gic_real t293 = m[136] + t287;
-        const gic_real t294 = m[120] + t283;
-        const gic_real t295 = m[122] + t286;
-        const gic_real t296 = t293 + (y[17] * t294 - y[15] * t295);
+        /* wheel tire_r_r */
+        const gic_real t281 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(0.09182100000000004);
+        const gic_real t282 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(-0.030000000000000027);
+        const gic_real t283 = t281 + (t282 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.08910630000000008));
+        const gic_real t284 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(0.09182100000000004);
+        const gic_real t285 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(-0.030000000000000027);
+        const gic_real t286 = t284 + (t285 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.08910630000000008));
+        const gic_real t287 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t283 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t286;
+        const gic_real t288 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(0.09182100000000004);
+        const gic_real t289 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(-0.030000000000000027);
+        const gic_real t290 = t288 + (t289 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.08910630000000008));
+        const gic_real t291 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t286 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t290;
+        const gic_real t292 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t287 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t291 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t283);
+        const gic_real t293 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] + t287;
+        const gic_real t294 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t283;
+        const gic_real t295 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t286;
+        const gic_real t296 = t293 + (y[FIVE_LINK_STATE_OMEGA_Z] * t294 - y[FIVE_LINK_STATE_OMEGA_X] * t295);
         const gic_real t297 = t293 + t296;
-        const gic_real t298 = m[135] + t291;
-        const gic_real t299 = m[121] + t290;
-        const gic_real t300 = t298 + (y[16] * t295 - y[17] * t299);
+        const gic_real t298 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] + t291;
+        const gic_real t299 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t290;
+        const gic_real t300 = t298 + (y[FIVE_LINK_STATE_OMEGA_Y] * t295 - y[FIVE_LINK_STATE_OMEGA_Z] * t299);
         const gic_real t301 = t298 + t300;
-        const gic_real t302 = y[15] * t297 - y[16] * t301 + (rate[15] * t299 - rate[16] * t294);
-        const gic_real t303 = m[143] + t292 + (t17 + t302) + rate[21] * (m[149] + (m[144] * t290 - m[145] * t283));
-        const gic_real t304 = m[132] * t290 - m[133] * t283;
-        const gic_real t305 = m[137] + t304;
-        const gic_real t306 = t305 + (y[15] * t299 - y[16] * t294);
-        const gic_real t307 = m[134] * t291 - m[132] * t304 + (m[140] * t283 - m[138] * t286);
+        const gic_real t302 = y[FIVE_LINK_STATE_OMEGA_X] * t297 - y[FIVE_LINK_STATE_OMEGA_Y] * t301 +
+            (rate[FIVE_LINK_STATE_OMEGA_X] * t299 - rate[FIVE_LINK_STATE_OMEGA_Y] * t294);
+        const gic_real t303 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Z] + t292 + (t17 + t302) +
+            rate[FIVE_LINK_STATE_SPRING_R_R_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 5] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * t290 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] *
+            t283));
+        const gic_real t304 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t290 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t283;
+        const gic_real t305 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] + t304;
+        const gic_real t306 = t305 + (y[FIVE_LINK_STATE_OMEGA_X] * t299 - y[FIVE_LINK_STATE_OMEGA_Y] * t294);
+        const gic_real t307 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t291 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t304 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t283 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] * t286);
         const gic_real t308 = t305 + t306;
-        const gic_real t309 = y[17] * t301 - y[15] * t308 + (rate[17] * t294 - rate[15] * t295);
-        const gic_real t310 = m[142] + t307 + (t29 + t309) + rate[21] * (m[148] + (m[146] * t283 - m[144] * t286));
-        const gic_real t311 = m[133] * t304 - m[134] * t287 + (m[139] * t286 - m[140] * t290);
-        const gic_real t312 = y[16] * t308 - y[17] * t297 + (rate[16] * t295 - rate[17] * t299);
-        const gic_real t313 = m[141] + t311 + (t35 + t312) + rate[21] * (m[147] + (m[145] * t286 - m[146] * t290));
+        const gic_real t309 = y[FIVE_LINK_STATE_OMEGA_Z] * t301 - y[FIVE_LINK_STATE_OMEGA_X] * t308 +
+            (rate[FIVE_LINK_STATE_OMEGA_Z] * t294 - rate[FIVE_LINK_STATE_OMEGA_X] * t295);
+        const gic_real t310 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_Y] + t307 + (t29 + t309) +
+            rate[FIVE_LINK_STATE_SPRING_R_R_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 4] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * t283 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] *
+            t286));
+        const gic_real t311 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t304 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t287 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] * t286 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] * t290);
+        const gic_real t312 = y[FIVE_LINK_STATE_OMEGA_Y] * t308 - y[FIVE_LINK_STATE_OMEGA_Z] * t297 +
+            (rate[FIVE_LINK_STATE_OMEGA_Y] * t295 - rate[FIVE_LINK_STATE_OMEGA_Z] * t299);
+        const gic_real t313 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ACCELERATION_X] + t311 + (t35 + t312) +
+            rate[FIVE_LINK_STATE_SPRING_R_R_RATE] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 3] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * t286 - m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] *
+            t290));
         const gic_real t314 = t303 * (t21 + t306) + (t310 * (t31 + t296) + t313 * (t37 + t300));
         const gic_real t315 = R(90.555) * t314;
-        const gic_real t316 = m[131] * (m[131] * R(4.7728205)) + (m[130] * (m[130] * R(7.58122)) + m[129] * (m[129] * R(4.8947505)));
-        const gic_real t317 = m[140] + (rate[17] + (m[133] * y[15] - m[132] * y[16])) + m[146] * rate[21];
-        const gic_real t318 = m[128] * R(4.7728205);
-        const gic_real t319 = m[127] * R(7.58122);
-        const gic_real t320 = m[126] * R(4.8947505);
-        const gic_real t321 = m[131] * t318 + (m[130] * t319 + m[129] * t320);
-        const gic_real t322 = m[139] + (rate[16] + (m[132] * y[17] - m[134] * y[15])) + m[145] * rate[21];
-        const gic_real t323 = m[125] * R(4.7728205);
-        const gic_real t324 = m[124] * R(7.58122);
-        const gic_real t325 = m[123] * R(4.8947505);
-        const gic_real t326 = m[131] * t323 + (m[130] * t324 + m[129] * t325);
-        const gic_real t327 = m[138] + (rate[15] + (m[134] * y[16] - m[133] * y[17])) + m[144] * rate[21];
-        const gic_real t328 = (m[134] + y[17]) * (t316 * t317 + (t321 * t322 + t326 * t327));
-        const gic_real t329 = (m[128] * t318 + (m[127] * t319 + m[126] * t320)) * t322;
-        const gic_real t330 = m[128] * t323 + (m[127] * t324 + m[126] * t325);
-        const gic_real t331 = (m[133] + y[16]) * (t321 * t317 + (t329 + t330 * t327));
-        const gic_real t332 = (m[125] * t323 + (m[124] * t324 + m[123] * t325)) * t327;
-        const gic_real t333 = (m[132] + y[15]) * (t326 * t317 + (t330 * t322 + t332));
+        const gic_real t316 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * R(4.7728205)) +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] *
+            R(7.58122)) + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] * R(4.8947505)));
+        const gic_real t317 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Z] + (rate[FIVE_LINK_STATE_OMEGA_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_X] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Y])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 2] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t318 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * R(4.7728205);
+        const gic_real t319 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(7.58122);
+        const gic_real t320 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] * R(4.8947505);
+        const gic_real t321 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t318 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t319 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t320);
+        const gic_real t322 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_Y] + (rate[FIVE_LINK_STATE_OMEGA_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * y[FIVE_LINK_STATE_OMEGA_Z] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_X])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 1] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t323 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * R(4.7728205);
+        const gic_real t324 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(7.58122);
+        const gic_real t325 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] * R(4.8947505);
+        const gic_real t326 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZZ] * t323 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * t324 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZX] *
+            t325);
+        const gic_real t327 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_ALPHA_X] + (rate[FIVE_LINK_STATE_OMEGA_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * y[FIVE_LINK_STATE_OMEGA_Y] -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * y[FIVE_LINK_STATE_OMEGA_Z])) +
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_S + 0] * rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t328 = (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] + y[FIVE_LINK_STATE_OMEGA_Z]) * (t316 *
+            t317 + (t321 * t322 + t326 * t327));
+        const gic_real t329 = (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t318 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t319 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t320)) * t322;
+        const gic_real t330 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YZ] * t323 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * t324 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YX] *
+            t325);
+        const gic_real t331 = (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] + y[FIVE_LINK_STATE_OMEGA_Y]) * (t321 *
+            t317 + (t329 + t330 * t327));
+        const gic_real t332 = (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XZ] * t323 +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * t324 + m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XX] *
+            t325)) * t327;
+        const gic_real t333 = (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] + y[FIVE_LINK_STATE_OMEGA_X]) * (t326 *
+            t317 + (t330 * t322 + t332));
         const gic_real t334 = t328 + (t331 + t333);
-        const gic_real t335 = t115 + (m[157] * R(0.12319000000000002) + t116);
-        const gic_real t336 = t108 + (m[154] * R(0.12319000000000002) + t109);
-        const gic_real t337 = m[151] + t335;
+        const gic_real t335 = t115 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t116);
+        const gic_real t336 = t108 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t109);
+        const gic_real t337 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Y] + t335;
         const gic_real t338 = R(1.653405) + t336;
-        const gic_real t339 = m[167] + (m[162] * t335 - m[163] * t336) + (y[15] * t337 - y[16] * t338);
-        const gic_real t340 = t111 + (m[160] * R(0.12319000000000002) + t112);
-        const gic_real t341 = m[152] + t340;
-        const gic_real t342 = m[166] + (m[164] * t336 - m[162] * t340) + (y[17] * t338 - y[15] * t341);
-        const gic_real t343 = m[163] * t340 - m[164] * t335 + (y[16] * t341 - y[17] * t337);
-        const gic_real t344 = y[14] + (t8 * t339 + (t23 * t342 + t32 * t343));
-        const gic_real t345 = y[13] + (t12 * t339 + (t25 * t342 + t33 * t343));
-        const gic_real t346 = y[0] + (t16 * t341 + (t28 * t337 + t34 * t338));
-        const gic_real t347 = y[1] + (t12 * t341 + (t25 * t337 + t33 * t338));
+        const gic_real t339 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t335 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t336) + (y[FIVE_LINK_STATE_OMEGA_X] * t337 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t338);
+        const gic_real t340 = t111 + (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t112);
+        const gic_real t341 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_C_Z] + t340;
+        const gic_real t342 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t336 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_X] * t340) + (y[FIVE_LINK_STATE_OMEGA_Z] * t338 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t341);
+        const gic_real t343 = m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Y] * t340 -
+            m[FIVE_LINK_MOTION_WHEEL_F_L + FIVE_LINK_OMEGA_Z] * t335 + (y[FIVE_LINK_STATE_OMEGA_Y] * t341 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t337);
+        const gic_real t344 = y[FIVE_LINK_STATE_V_Z] + (t8 * t339 + (t23 * t342 + t32 * t343));
+        const gic_real t345 = y[FIVE_LINK_STATE_V_Y] + (t12 * t339 + (t25 * t342 + t33 * t343));
+        const gic_real t346 = y[FIVE_LINK_STATE_R_X] + (t16 * t341 + (t28 * t337 + t34 * t338));
+        const gic_real t347 = y[FIVE_LINK_STATE_R_Y] + (t12 * t341 + (t25 * t337 + t33 * t338));
         gic_real road348[3];
         if (!five_link_road_height(self, time, t346, t347, road348))
             return GIC_ERROR_ROAD;
-        const gic_real t349 = y[12] + (t16 * t339 + (t28 * t342 + t34 * t343));
+        const gic_real t349 = y[FIVE_LINK_STATE_V_X] + (t16 * t339 + (t28 * t342 + t34 * t343));
         const gic_real t350 = t345 * road348[2] + t349 * road348[1] - t344;
-        const gic_real t351 = y[2] + (t8 * t341 + (t23 * t337 + t32 * t338));
+        const gic_real t351 = y[FIVE_LINK_STATE_R_Z] + (t8 * t341 + (t23 * t337 + t32 * t338));
         const gic_real t352 = road348[0] + R(0.4699) - t351;
         const gic_real t353 = GIC_MIN(GIC_MAX(t352 * R(100.0), R(0.0)), R(1.0));
         const gic_real t354 = t350 * ((R(3.0) - (t353 + t353)) * (t353 * t353) * R(500.0));
-        const gic_real t355 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(6010.0));
-        const gic_real t356 = t355 + xd[3] * (xd[3] * R(6010.0)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t357 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t358 = t167 + (m[190] * R(-0.12319000000000002) + t168);
-        const gic_real t359 = m[187] + t357;
+        /* force spring_r_l */
+        const gic_real t355 = xd[FIVE_LINK_X_SPRING_F_L] * (xd[FIVE_LINK_X_SPRING_F_L] * R(17490.8)) +
+            xd[FIVE_LINK_X_SPRING_F_R] * (xd[FIVE_LINK_X_SPRING_F_R] * R(17490.8)) + xd[FIVE_LINK_X_SPRING_R_L] *
+            (xd[FIVE_LINK_X_SPRING_R_L] * R(6010.0));
+        const gic_real t356 = t355 + xd[FIVE_LINK_X_SPRING_R_R] * (xd[FIVE_LINK_X_SPRING_R_R] * R(6010.0)) +
+            xd[FIVE_LINK_X_RACK] * (xd[FIVE_LINK_X_RACK] * R(12000.0));
+        const gic_real t357 = t174 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t358 = t167 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t168);
+        const gic_real t359 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Y] + t357;
         const gic_real t360 = R(1.653405) + t358;
-        const gic_real t361 = m[203] + (m[198] * t357 - m[199] * t358) + (y[15] * t359 - y[16] * t360);
-        const gic_real t362 = t170 + (m[196] * R(-0.12319000000000002) + t171);
-        const gic_real t363 = m[188] + t362;
-        const gic_real t364 = m[202] + (m[200] * t358 - m[198] * t362) + (y[17] * t360 - y[15] * t363);
-        const gic_real t365 = m[199] * t362 - m[200] * t357 + (y[16] * t363 - y[17] * t359);
-        const gic_real t366 = y[14] + (t8 * t361 + (t23 * t364 + t32 * t365));
-        const gic_real t367 = y[13] + (t12 * t361 + (t25 * t364 + t33 * t365));
-        const gic_real t368 = y[0] + (t16 * t363 + (t28 * t359 + t34 * t360));
-        const gic_real t369 = y[1] + (t12 * t363 + (t25 * t359 + t33 * t360));
+        const gic_real t361 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t357 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t358) + (y[FIVE_LINK_STATE_OMEGA_X] * t359 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t360);
+        const gic_real t362 = t170 + (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t171);
+        const gic_real t363 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_C_Z] + t362;
+        const gic_real t364 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t358 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_X] * t362) + (y[FIVE_LINK_STATE_OMEGA_Z] * t360 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t363);
+        const gic_real t365 = m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Y] * t362 -
+            m[FIVE_LINK_MOTION_WHEEL_F_R + FIVE_LINK_OMEGA_Z] * t357 + (y[FIVE_LINK_STATE_OMEGA_Y] * t363 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t359);
+        const gic_real t366 = y[FIVE_LINK_STATE_V_Z] + (t8 * t361 + (t23 * t364 + t32 * t365));
+        const gic_real t367 = y[FIVE_LINK_STATE_V_Y] + (t12 * t361 + (t25 * t364 + t33 * t365));
+        const gic_real t368 = y[FIVE_LINK_STATE_R_X] + (t16 * t363 + (t28 * t359 + t34 * t360));
+        const gic_real t369 = y[FIVE_LINK_STATE_R_Y] + (t12 * t363 + (t25 * t359 + t33 * t360));
         gic_real road370[3];
         if (!five_link_road_height(self, time, t368, t369, road370))
             return GIC_ERROR_ROAD;
-        const gic_real t371 = y[12] + (t16 * t361 + (t28 * t364 + t34 * t365));
+        const gic_real t371 = y[FIVE_LINK_STATE_V_X] + (t16 * t361 + (t28 * t364 + t34 * t365));
         const gic_real t372 = t367 * road370[2] + t371 * road370[1] - t366;
-        const gic_real t373 = y[2] + (t8 * t363 + (t23 * t359 + t32 * t360));
+        const gic_real t373 = y[FIVE_LINK_STATE_R_Z] + (t8 * t363 + (t23 * t359 + t32 * t360));
         const gic_real t374 = R(0.4699) + road370[0] - t373;
         const gic_real t375 = GIC_MIN(GIC_MAX(R(100.0) * t374, R(0.0)), R(1.0));
         const gic_real t376 = t372 * (R(500.0) * ((R(3.0) - (t375 + t375)) * (t375 * t375)));
-        const gic_real t377 = t344 * GIC_MAX(t354 + t352 * R(283000.0), R(0.0)) - t356 + t366 * GIC_MAX(t376 + R(283000.0) * t374, R(0.0));
-        const gic_real t378 = t233 + (m[97] * R(0.12319000000000002) + t234);
-        const gic_real t379 = t226 + (m[94] * R(0.12319000000000002) + t227);
-        const gic_real t380 = m[91] + t378;
-        const gic_real t381 = m[90] + t379;
-        const gic_real t382 = m[107] + (m[102] * t378 - m[103] * t379) + (y[15] * t380 - y[16] * t381);
-        const gic_real t383 = t229 + (m[100] * R(0.12319000000000002) + t230);
-        const gic_real t384 = m[92] + t383;
-        const gic_real t385 = m[106] + (m[104] * t379 - m[102] * t383) + (y[17] * t381 - y[15] * t384);
-        const gic_real t386 = m[105] + (m[103] * t383 - m[104] * t378) + (y[16] * t384 - y[17] * t380);
-        const gic_real t387 = y[14] + (t8 * t382 + (t23 * t385 + t32 * t386));
-        const gic_real t388 = y[13] + (t12 * t382 + (t25 * t385 + t33 * t386));
-        const gic_real t389 = y[0] + (t16 * t384 + (t28 * t380 + t34 * t381));
-        const gic_real t390 = y[1] + (t12 * t384 + (t25 * t380 + t33 * t381));
+        const gic_real t377 = t344 * GIC_MAX(t354 + t352 * R(283000.0), R(0.0)) - t356 + t366 * GIC_MAX(t376 +
+            R(283000.0) * t374, R(0.0));
+        const gic_real t378 = t233 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_YY] * R(0.12319000000000002) + t234);
+        const gic_real t379 = t226 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_XY] * R(0.12319000000000002) + t227);
+        const gic_real t380 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Y] + t378;
+        const gic_real t381 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_X] + t379;
+        const gic_real t382 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t378 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t379) + (y[FIVE_LINK_STATE_OMEGA_X] * t380 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t381);
+        const gic_real t383 = t229 + (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_A_ZY] * R(0.12319000000000002) + t230);
+        const gic_real t384 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_C_Z] + t383;
+        const gic_real t385 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t379 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_X] * t383) + (y[FIVE_LINK_STATE_OMEGA_Z] * t381 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t384);
+        const gic_real t386 = m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Y] * t383 -
+            m[FIVE_LINK_MOTION_WHEEL_R_L + FIVE_LINK_OMEGA_Z] * t378) + (y[FIVE_LINK_STATE_OMEGA_Y] * t384 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t380);
+        const gic_real t387 = y[FIVE_LINK_STATE_V_Z] + (t8 * t382 + (t23 * t385 + t32 * t386));
+        const gic_real t388 = y[FIVE_LINK_STATE_V_Y] + (t12 * t382 + (t25 * t385 + t33 * t386));
+        const gic_real t389 = y[FIVE_LINK_STATE_R_X] + (t16 * t384 + (t28 * t380 + t34 * t381));
+        const gic_real t390 = y[FIVE_LINK_STATE_R_Y] + (t12 * t384 + (t25 * t380 + t33 * t381));
         gic_real road391[3];
         if (!five_link_road_height(self, time, t389, t390, road391))
             return GIC_ERROR_ROAD;
-        const gic_real t392 = y[12] + (t16 * t382 + (t28 * t385 + t34 * t386));
+        const gic_real t392 = y[FIVE_LINK_STATE_V_X] + (t16 * t382 + (t28 * t385 + t34 * t386));
         const gic_real t393 = t388 * road391[2] + t392 * road391[1] - t387;
-        const gic_real t394 = y[2] + (t8 * t384 + (t23 * t380 + t32 * t381));
+        const gic_real t394 = y[FIVE_LINK_STATE_R_Z] + (t8 * t384 + (t23 * t380 + t32 * t381));
         const gic_real t395 = R(0.4699) + road391[0] - t394;
         const gic_real t396 = GIC_MIN(GIC_MAX(R(100.0) * t395, R(0.0)), R(1.0));
         const gic_real t397 = t393 * (R(500.0) * ((R(3.0) - (t396 + t396)) * (t396 * t396)));
-        const gic_real t398 = t288 + (m[127] * R(-0.12319000000000002) + t289);
-        const gic_real t399 = t281 + (m[124] * R(-0.12319000000000002) + t282);
-        const gic_real t400 = m[121] + t398;
-        const gic_real t401 = m[120] + t399;
-        const gic_real t402 = m[137] + (m[132] * t398 - m[133] * t399) + (y[15] * t400 - y[16] * t401);
-        const gic_real t403 = t284 + (m[130] * R(-0.12319000000000002) + t285);
-        const gic_real t404 = m[122] + t403;
-        const gic_real t405 = m[136] + (m[134] * t399 - m[132] * t403) + (y[17] * t401 - y[15] * t404);
-        const gic_real t406 = m[135] + (m[133] * t403 - m[134] * t398) + (y[16] * t404 - y[17] * t400);
-        const gic_real t407 = y[14] + (t8 * t402 + (t23 * t405 + t32 * t406));
-        const gic_real t408 = y[13] + (t12 * t402 + (t25 * t405 + t33 * t406));
-        const gic_real t409 = y[0] + (t16 * t404 + (t28 * t400 + t34 * t401));
-        const gic_real t410 = y[1] + (t12 * t404 + (t25 * t400 + t33 * t401));
+        const gic_real t398 = t288 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_YY] * R(-0.12319000000000002) + t289);
+        const gic_real t399 = t281 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_XY] * R(-0.12319000000000002) + t282);
+        const gic_real t400 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Y] + t398;
+        const gic_real t401 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_X] + t399;
+        const gic_real t402 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Z] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t398 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t399) + (y[FIVE_LINK_STATE_OMEGA_X] * t400 -
+            y[FIVE_LINK_STATE_OMEGA_Y] * t401);
+        const gic_real t403 = t284 + (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_A_ZY] * R(-0.12319000000000002) + t285);
+        const gic_real t404 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_C_Z] + t403;
+        const gic_real t405 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_Y] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t399 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_X] * t403) + (y[FIVE_LINK_STATE_OMEGA_Z] * t401 -
+            y[FIVE_LINK_STATE_OMEGA_X] * t404);
+        const gic_real t406 = m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_VELOCITY_X] +
+            (m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Y] * t403 -
+            m[FIVE_LINK_MOTION_WHEEL_R_R + FIVE_LINK_OMEGA_Z] * t398) + (y[FIVE_LINK_STATE_OMEGA_Y] * t404 -
+            y[FIVE_LINK_STATE_OMEGA_Z] * t400);
+        const gic_real t407 = y[FIVE_LINK_STATE_V_Z] + (t8 * t402 + (t23 * t405 + t32 * t406));
+        const gic_real t408 = y[FIVE_LINK_STATE_V_Y] + (t12 * t402 + (t25 * t405 + t33 * t406));
+        const gic_real t409 = y[FIVE_LINK_STATE_R_X] + (t16 * t404 + (t28 * t400 + t34 * t401));
+        const gic_real t410 = y[FIVE_LINK_STATE_R_Y] + (t12 * t404 + (t25 * t400 + t33 * t401));
         gic_real road411[3];
         if (!five_link_road_height(self, time, t409, t410, road411))
             return GIC_ERROR_ROAD;
-        const gic_real t412 = y[12] + (t16 * t402 + (t28 * t405 + t34 * t406));
+        const gic_real t412 = y[FIVE_LINK_STATE_V_X] + (t16 * t402 + (t28 * t405 + t34 * t406));
         const gic_real t413 = t408 * road411[2] + t412 * road411[1] - t407;
-        const gic_real t414 = y[2] + (t8 * t404 + (t23 * t400 + t32 * t401));
+        const gic_real t414 = y[FIVE_LINK_STATE_R_Z] + (t8 * t404 + (t23 * t400 + t32 * t401));
         const gic_real t415 = R(0.4699) + road411[0] - t414;
         const gic_real t416 = GIC_MIN(GIC_MAX(R(100.0) * t415, R(0.0)), R(1.0));
         const gic_real t417 = t413 * (R(500.0) * ((R(3.0) - (t416 + t416)) * (t416 * t416)));
-        const gic_real t418 = t377 + t387 * GIC_MAX(t397 + R(283000.0) * t395, R(0.0)) + t407 * GIC_MAX(t417 + R(283000.0) * t415, R(0.0));
+        const gic_real t418 = t377 + t387 * GIC_MAX(t397 + R(283000.0) * t395, R(0.0)) + t407 * GIC_MAX(t417 +
+            R(283000.0) * t415, R(0.0));
         const gic_real t419 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t420 = t419 + (GIC_FABS(t80) + GIC_FABS(t71)) + (GIC_FABS(t106) + GIC_FABS(t97));
         const gic_real t421 = t420 + (GIC_FABS(t166) + GIC_FABS(t144)) + (GIC_FABS(t225) + GIC_FABS(t203));
         const gic_real t422 = t421 + (GIC_FABS(t279) + GIC_FABS(t260)) + (GIC_FABS(t334) + GIC_FABS(t315));
         const gic_real t423 = t3 + (t280 + (t315 + t334));
         const gic_real t424 = t422 + (GIC_FABS(t418) + GIC_FABS(t3));
-        const gic_real t425 = rate[15];
-        const gic_real t426 = rate[16];
-        const gic_real t427 = rate[17];
-        const gic_real t428 = rate[18];
-        const gic_real t429 = rate[19];
-        const gic_real t430 = rate[20];
-        const gic_real t431 = rate[21];
-        const gic_real t432 = rate[22];
-        energy[0] = t423;
-        energy[1] = t418;
-        energy[2] = t424;
-        acc[0] = t425;
-        acc[3] = t35;
-        acc[1] = t426;
-        acc[4] = t29;
-        acc[2] = t427;
-        acc[5] = t17;
-        acc[6] = t428;
-        acc[7] = t429;
-        acc[8] = t430;
-        acc[9] = t431;
-        acc[10] = t432;
+        const gic_real t425 = rate[FIVE_LINK_STATE_OMEGA_X];
+        const gic_real t426 = rate[FIVE_LINK_STATE_OMEGA_Y];
+        const gic_real t427 = rate[FIVE_LINK_STATE_OMEGA_Z];
+        const gic_real t428 = rate[FIVE_LINK_STATE_SPRING_F_L_RATE];
+        const gic_real t429 = rate[FIVE_LINK_STATE_SPRING_F_R_RATE];
+        const gic_real t430 = rate[FIVE_LINK_STATE_SPRING_R_L_RATE];
+        const gic_real t431 = rate[FIVE_LINK_STATE_SPRING_R_R_RATE];
+        const gic_real t432 = rate[FIVE_LINK_STATE_RACK_RATE];
+        energy[FIVE_LINK_ENERGY_RATE] = t423;
+        energy[FIVE_LINK_ENERGY_POWER] = t418;
+        energy[FIVE_LINK_ENERGY_MAGNITUDES] = t424;
+        acc[FIVE_LINK_UNKNOWN_ALPHA_X] = t425;
+        acc[FIVE_LINK_UNKNOWN_ACCELERATION_X] = t35;
+        acc[FIVE_LINK_UNKNOWN_ALPHA_Y] = t426;
+        acc[FIVE_LINK_UNKNOWN_ACCELERATION_Y] = t29;
+        acc[FIVE_LINK_UNKNOWN_ALPHA_Z] = t427;
+        acc[FIVE_LINK_UNKNOWN_ACCELERATION_Z] = t17;
+        acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_L] = t428;
+        acc[FIVE_LINK_UNKNOWN_OF_SPRING_F_R] = t429;
+        acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_L] = t430;
+        acc[FIVE_LINK_UNKNOWN_OF_SPRING_R_R] = t431;
+        acc[FIVE_LINK_UNKNOWN_OF_RACK] = t432;
     }
     return GIC_OK;
 }
 
 GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
 {
-    gic_real e[4], acc[FIVE_LINK_UNKNOWN_ROOM], unit[FIVE_LINK_UNKNOWN_ROOM], tau0[FIVE_LINK_UNKNOWN_ROOM], tau[FIVE_LINK_UNKNOWN_ROOM];
+    gic_real e[4], acc[FIVE_LINK_UNKNOWN_ROOM], unit[FIVE_LINK_UNKNOWN_ROOM], tau0[FIVE_LINK_UNKNOWN_ROOM],
+        tau[FIVE_LINK_UNKNOWN_ROOM];
     gic_real M[FIVE_LINK_UNKNOWN_ROOM][FIVE_LINK_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = five_link_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -5739,7 +7706,7 @@ GIC_COLD int five_link_self_test(five_link *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int five_link_any_setup(void *self)
 {

@@ -71,12 +71,12 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x3f5b3067
+#define FIVE_LINK_H 0x3ca0d223
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "five_link.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "five_link.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -85,7 +85,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    FIVE_LINK_ABI = 6,
+    FIVE_LINK_ABI = 7,
     FIVE_LINK_FREE_BASE = 1,
     FIVE_LINK_STATES = 23,
     FIVE_LINK_SLOW = 23,
@@ -122,7 +122,8 @@ enum {
     FIVE_LINK_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[FIVE_LINK_STATE_...], .input[FIVE_LINK_INPUT_...], .output[FIVE_LINK_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[FIVE_LINK_STATE_...], .input[FIVE_LINK_INPUT_...],
+ * .output[FIVE_LINK_OUTPUT_...]. */
 enum {
     FIVE_LINK_STATE_R_X = 0, /* m */
     FIVE_LINK_STATE_R_Y = 1, /* m */
@@ -227,40 +228,49 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct five_link {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[FIVE_LINK_STATE_ROOM];
     gic_real input[FIVE_LINK_INPUT_ROOM];
     gic_real output[FIVE_LINK_OUTPUT_ROOM];
-    gic_real parameter[FIVE_LINK_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (five_link_model.parameter_geometric) by five_link_setup_with */
+    gic_real parameter[FIVE_LINK_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (five_link_model.parameter_geometric) by
+                                                    * five_link_setup_with */
     gic_real port[FIVE_LINK_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[FIVE_LINK_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[FIVE_LINK_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[FIVE_LINK_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(FIVE_LINK_STATE_ROOM, FIVE_LINK_STATES - FIVE_LINK_SLOW)];
     gic_real scratch[GIC_SCRATCH(FIVE_LINK_STATE_ROOM, FIVE_LINK_INPUT_ROOM)];
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } five_link;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int five_link_setup(five_link *self);
 
-/* The same as if the file had these numbers (FIVE_LINK_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (FIVE_LINK_PARAMETERS) as values of its tunable parameters; self->parameter
+ * will do. */
 int five_link_setup_with(five_link *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: FIVE_LINK_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: FIVE_LINK_STATES numbers. rate is
+ * written only on GIC_OK. */
 int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int five_link_step(five_link *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -272,19 +282,20 @@ int five_link_poses(five_link *self, gic_real *pose);
 /* Present time, s. */
 gic_real five_link_time(const five_link *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *five_link_status_text(int status);
 const char *five_link_status_subset(const five_link *self);
 const char *five_link_status_state(const five_link *self);
 const char *five_link_status_condition(const five_link *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void five_link_snapshot(const five_link *self, five_link *copy);
 void five_link_restore(five_link *self, const five_link *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int five_link_self_test(five_link *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

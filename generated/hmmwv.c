@@ -78,7 +78,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x56fef7d9
+#if HMMWV_H != 0x3135796d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -139,16 +139,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -168,10 +169,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -196,10 +213,130 @@ typedef struct hmmwv_links {
     gic_real x[HMMWV_DEPENDENCE_ROOM], rate[HMMWV_DEPENDENCE_ROOM], change[HMMWV_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[HMMWV_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[HMMWV_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } hmmwv_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef HMMWV_LAYOUT_NAMES
+#define HMMWV_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    HMMWV_C_X = 0,
+    HMMWV_C_Y = 1,
+    HMMWV_C_Z = 2,
+    HMMWV_A_XX = 3,
+    HMMWV_A_XY = 4,
+    HMMWV_A_XZ = 5,
+    HMMWV_A_YX = 6,
+    HMMWV_A_YY = 7,
+    HMMWV_A_YZ = 8,
+    HMMWV_A_ZX = 9,
+    HMMWV_A_ZY = 10,
+    HMMWV_A_ZZ = 11,
+    HMMWV_OMEGA_X = 12,
+    HMMWV_OMEGA_Y = 13,
+    HMMWV_OMEGA_Z = 14,
+    HMMWV_VELOCITY_X = 15,
+    HMMWV_VELOCITY_Y = 16,
+    HMMWV_VELOCITY_Z = 17,
+    HMMWV_ALPHA_X = 18,
+    HMMWV_ALPHA_Y = 19,
+    HMMWV_ALPHA_Z = 20,
+    HMMWV_ACCELERATION_X = 21,
+    HMMWV_ACCELERATION_Y = 22,
+    HMMWV_ACCELERATION_Z = 23,
+    HMMWV_S = 24, /* unit velocities, 6 numbers a coordinate */
+    HMMWV_I_FIRST_X = 0,
+    HMMWV_I_FIRST_Y = 1,
+    HMMWV_I_FIRST_Z = 2,
+    HMMWV_I_SECOND_XX = 3,
+    HMMWV_I_SECOND_YY = 4,
+    HMMWV_I_SECOND_ZZ = 5,
+    HMMWV_I_SECOND_XY = 6,
+    HMMWV_I_SECOND_XZ = 7,
+    HMMWV_I_SECOND_YZ = 8,
+    HMMWV_I_FORCE_X = 9,
+    HMMWV_I_FORCE_Y = 10,
+    HMMWV_I_FORCE_Z = 11,
+    HMMWV_I_MOMENT_X = 12,
+    HMMWV_I_MOMENT_Y = 13,
+    HMMWV_I_MOMENT_Z = 14,
+    HMMWV_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    HMMWV_MOTION_RACK = 0,
+    HMMWV_MOTION_LCA_F_L = 30,
+    HMMWV_MOTION_LCA_F_R = 60,
+    HMMWV_MOTION_WHEEL_F_L = 150,
+    HMMWV_MOTION_WHEEL_F_R = 186,
+    HMMWV_MOTION_LCA_R_L = 90,
+    HMMWV_MOTION_LCA_R_R = 120,
+    HMMWV_MOTION_WHEEL_R_L = 222,
+    HMMWV_MOTION_WHEEL_R_R = 252,
+    HMMWV_INERTIA_RACK = 0,
+    HMMWV_INERTIA_LCA_F_L = 23,
+    HMMWV_INERTIA_LCA_F_R = 46,
+    HMMWV_INERTIA_LCA_R_L = 69,
+    HMMWV_INERTIA_LCA_R_R = 92,
+    HMMWV_INERTIA_WHEEL_F_L = 115,
+    HMMWV_INERTIA_WHEEL_F_R = 147,
+    HMMWV_INERTIA_WHEEL_R_L = 179,
+    HMMWV_INERTIA_WHEEL_R_R = 202,
+    HMMWV_SUBSET_CHASSIS = 0,
+    HMMWV_SUBSET_RACK = 1,
+    HMMWV_SUBSET_LCA_F_L = 2,
+    HMMWV_SUBSET_LCA_F_R = 3,
+    HMMWV_SUBSET_LCA_R_L = 4,
+    HMMWV_SUBSET_LCA_R_R = 5,
+    HMMWV_SUBSET_WHEEL_F_L = 6,
+    HMMWV_SUBSET_WHEEL_F_R = 7,
+    HMMWV_SUBSET_WHEEL_R_L = 8,
+    HMMWV_SUBSET_WHEEL_R_R = 9,
+    HMMWV_X_SPRING_F_L = 0,
+    HMMWV_X_SPRING_F_R = 1,
+    HMMWV_X_SPRING_R_L = 2,
+    HMMWV_X_SPRING_R_R = 3,
+    HMMWV_X_RACK = 4,
+    HMMWV_Q_X = 0,
+    HMMWV_Q_Y = 1,
+    HMMWV_Q_Z = 2,
+    HMMWV_Q_P0 = 3,
+    HMMWV_Q_P1 = 4,
+    HMMWV_Q_P2 = 5,
+    HMMWV_Q_P3 = 6,
+    HMMWV_POSE_CHASSIS = 0,
+    HMMWV_POSE_RACK = 7,
+    HMMWV_POSE_LCA_F_L = 14,
+    HMMWV_POSE_LCA_F_R = 21,
+    HMMWV_POSE_WHEEL_F_L = 28,
+    HMMWV_POSE_WHEEL_F_R = 35,
+    HMMWV_POSE_LCA_R_L = 42,
+    HMMWV_POSE_LCA_R_R = 49,
+    HMMWV_POSE_WHEEL_R_L = 56,
+    HMMWV_POSE_WHEEL_R_R = 63,
+    HMMWV_UNKNOWN_ALPHA_X = 0,
+    HMMWV_UNKNOWN_ALPHA_Y = 1,
+    HMMWV_UNKNOWN_ALPHA_Z = 2,
+    HMMWV_UNKNOWN_ACCELERATION_X = 3,
+    HMMWV_UNKNOWN_ACCELERATION_Y = 4,
+    HMMWV_UNKNOWN_ACCELERATION_Z = 5,
+    HMMWV_UNKNOWN_OF_SPRING_F_L = 6,
+    HMMWV_UNKNOWN_OF_SPRING_F_R = 7,
+    HMMWV_UNKNOWN_OF_SPRING_R_L = 8,
+    HMMWV_UNKNOWN_OF_SPRING_R_R = 9,
+    HMMWV_UNKNOWN_OF_RACK = 10,
+    HMMWV_ENERGY_RATE = 0,
+    HMMWV_ENERGY_POWER = 1,
+    HMMWV_ENERGY_MAGNITUDES = 2,
+    HMMWV_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real hmmwv_k_rack[1][1] = {
     { /* rack */
@@ -213,45 +350,46 @@ static const gic_real hmmwv_k_rack[1][1] = {
 static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const hmmwv_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[HMMWV_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[HMMWV_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[HMMWV_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[HMMWV_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[HMMWV_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[HMMWV_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[HMMWV_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[HMMWV_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[HMMWV_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[HMMWV_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[HMMWV_I_FORCE_Y] = inertia_force_y;
+        inertia[HMMWV_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[HMMWV_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[HMMWV_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -265,17 +403,49 @@ static int hmmwv_solve_rack(hmmwv *self, const gic_real *GIC_RESTRICT k, const h
 static GIC_COLD void hmmwv_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[HMMWV_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[HMMWV_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[HMMWV_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  spring_f_l.arm^2 + spring_f_l.distance^2
+ *    1  (a^2 + b^2 of spring_f_l)
+ *    2  (a^2 + b^2 of spring_f_l) * 0.0001
+ *    3  spring_f_l.a
+ *    4  spring_f_l.b * sign
+ *    5  spring_f_l.a * sign
+ *    6  spring_f_l.b
+ *    7  from arm_f_l.side_b, spring_f_l.point_b, 1 / (a^2 + b^2 of spring_f_l)
+ *    8  1 / (a^2 + b^2 of spring_f_l) * 0.046609
+ *    9  (-0.046609) * 1 / (a^2 + b^2 of spring_f_l)
+ *   10  -arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   11  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   12  (-0.970969) * 1 / (a^2 + b^2 of spring_f_l)
+ *   13  arm_f_l.side_b_z * 1 / (a^2 + b^2 of spring_f_l)
+ *   14  arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   15  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   16  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *   17  spring_f_l.point_a_z
+ *   18  lca_f_l.com_z
+ *   19  lca_f_l.com_y
+ *   20  arm_f_l.point_a_y
+ *   21  arm_f_l.point_a_x * 23.965
+ *   22  scale of the determinant
+ *   23  arm_f_l.point_a_x
+ *   24  spring_f_l.point_b_z
+ *   25  spring_f_l.point_b_y
+ *   26  spring_f_l.point_a_y
+ *   27  scale of spring_f_l
+ */
 static const gic_real hmmwv_k_lca_f_l[4][28] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
@@ -321,12 +491,13 @@ static const gic_real hmmwv_k_lca_f_l[4][28] = {
 static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, const hmmwv_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -338,100 +509,105 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
         const gic_real t5 = t3 * k[5] + k[6] * t1;
         const gic_real t6 = t4 * k[7] + t5 * k[8];
         const gic_real t7 = t4 * k[9] + t5 * k[7];
-        const gic_real t8 = t5 * k[10] + t4 * k[11];
-        motion[7] = t8;
-        const gic_real t9 = t5 * k[12] + t4 * k[13];
-        motion[8] = t9;
-        const gic_real t10 = t5 * k[11] + t4 * k[14];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[13] + t4 * k[15];
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[10] + t4 * k[11];
+        motion[HMMWV_A_YY] = a_yy;
+        const gic_real a_yz = t5 * k[12] + t4 * k[13];
+        motion[HMMWV_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * k[11] + t4 * k[14];
+        motion[HMMWV_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[13] + t4 * k[15];
+        motion[HMMWV_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[16];
         const gic_real t13 = t7 - k[17];
-        const gic_real t14 = t9 * k[18] + t8 * k[19];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * k[18] + a_yy * k[19];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * k[18] + t10 * k[19];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * k[18] + a_zy * k[19];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[20] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * k[21]);
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * k[21]);
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[HMMWV_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[HMMWV_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * k[21]);
+        inertia[HMMWV_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * k[21]);
+        inertia[HMMWV_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[22] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[HMMWV_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[HMMWV_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[HMMWV_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[HMMWV_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[HMMWV_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[22] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[HMMWV_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - k[23] * turn[1] + t44);
         const gic_real t52 = k[23] * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[HMMWV_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[HMMWV_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[HMMWV_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(k[21] * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(k[21] * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = k[21] * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - k[21] * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[HMMWV_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(k[21] * t38);
+        inertia[HMMWV_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(k[21] * t37);
+        inertia[HMMWV_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[HMMWV_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[HMMWV_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = k[21] * t59 + (t58 - t19 * inertia_force_x);
+        inertia[HMMWV_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[HMMWV_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - k[21] * t60;
+        inertia[HMMWV_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[HMMWV_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[HMMWV_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -445,35 +621,56 @@ static int hmmwv_solve_lca_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, cons
 static GIC_COLD void hmmwv_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = k[24] * motion[HMMWV_A_ZZ] + k[25] * motion[HMMWV_A_ZY];
         const gic_real t2 = t1 - k[17];
-        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t3 = k[24] * motion[HMMWV_A_YZ] + k[25] * motion[HMMWV_A_YY];
         const gic_real t4 = k[20] + t3 - k[26];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
         const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[HMMWV_A_ZY] * motion[HMMWV_A_ZY] +
+            motion[HMMWV_A_YY] * motion[HMMWV_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[HMMWV_A_YZ] + motion[HMMWV_A_ZY])) + GIC_FABS(motion[HMMWV_A_YY] -
+            motion[HMMWV_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[HMMWV_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[HMMWV_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[HMMWV_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[HMMWV_OMEGA_X] - rate[0] * motion[HMMWV_S + 0]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[HMMWV_OMEGA_X];
+        const gic_real t16 = t1 * motion[HMMWV_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[HMMWV_ALPHA_X] - motion[HMMWV_OMEGA_X] * t16) - t4 *
+            (motion[HMMWV_OMEGA_X] * t15 + t1 * motion[HMMWV_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[HMMWV_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.axis_a_y
+ *    5  upper_f_l.axis_a_y * (-0.059522)
+ *    6  sign
+ *    7  sign * 2.92808
+ *    8  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *    9  upper_f_l.point_b_y * 8.57363
+ *   10  from tierod_f_l.point_b, upper_f_l.point_b
+ *   11  from upper_f_l.point_b, tierod_f_l.point_b
+ *   12  wheel_f_l.com_y
+ *   13  tierod_f_l.point_b_y
+ *   14  upper_f_l.point_b_y
+ */
 static const gic_real hmmwv_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
@@ -502,37 +699,39 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = t1 + k[2];
-        motion[1] = t4;
-        const gic_real t5 = R(0.23411769999999998) - t2;
-        const gic_real t6 = R(0.05422899999999997) - t2;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = k[3] - t4;
+        const gic_real t1 = k[0] * m1[HMMWV_A_YY];
+        const gic_real c_z = k[0] * m1[HMMWV_A_ZY];
+        motion[HMMWV_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[HMMWV_C_Y];
+        const gic_real c_y = t1 + k[2];
+        motion[HMMWV_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t5 = R(0.23411769999999998) - c_z;
+        const gic_real t6 = R(0.05422899999999997) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[HMMWV_S + 0] * c_z;
+        const gic_real s_1_5 = m1[HMMWV_S + 0] * t1;
+        motion[HMMWV_S + 11] = s_1_5;
+        const gic_real t9 = m1[HMMWV_OMEGA_X] * (m1[HMMWV_OMEGA_X] * t1) + m1[HMMWV_ALPHA_X] * c_z;
+        const gic_real t10 = k[3] - c_y;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
-        const gic_real t12 = t3 - t4;
-        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t12 = t3 - c_y;
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * s_1_5;
         const gic_real t14 = rate[1] * t7;
         const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
         const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t19;
-        const gic_real t20 = rate[1] * t8;
-        motion[17] = t20;
-        const gic_real t21 = -t14;
-        motion[16] = t21;
-        const gic_real t22 = -t9;
-        motion[22] = t22;
-        const gic_real t23 = -t7;
-        motion[34] = t23;
+        const gic_real acceleration_z = m1[HMMWV_ALPHA_X] * t1 - m1[HMMWV_OMEGA_X] * (m1[HMMWV_OMEGA_X] * c_z);
+        motion[HMMWV_ACCELERATION_Z] = acceleration_z;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[HMMWV_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t14;
+        motion[HMMWV_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t9;
+        motion[HMMWV_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[HMMWV_S + 10] = s_1_4;
         const gic_real t24 = R(0.5) * (R(0.04548219048831004) + t15);
         const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
         const gic_real t26 = R(4.3116545195287515e-08) + t16;
@@ -550,8 +749,9 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
         const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
         const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
-        const gic_real t37 = t34 + (t2 - R(0.23411769999999998));
-        const gic_real t38 = t35 + (t4 - k[3]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t37 = t34 + (c_z - R(0.23411769999999998));
+        const gic_real t38 = t35 + (c_y - k[3]);
         const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
         const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
         const gic_real t41 = t36 + R(0.059522000000000075);
@@ -560,7 +760,7 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t44 = t35 * t37 - t34 * t38;
         const gic_real t45 = t36 * t38 - t35 * t41;
         const gic_real t46 = t34 * t41 - t36 * t37;
-        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t47 = t7 * t38 - s_1_5 * t37;
         const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
         const gic_real t49 = R(8.573627050492615) * t40;
         const gic_real t50 = t44 * t43 - t45 * t39;
@@ -586,39 +786,40 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t66 = t35 * t62 - t34 * t61;
         const gic_real t67 = t63 + R(0.2910617987184667) * t36;
         const gic_real t68 = t34 * t63 - t36 * t62;
-        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t69 = t64 + (c_y - t3);
         const gic_real t70 = t36 * t61 - t35 * t63;
-        const gic_real t71 = t65 + (t2 - R(0.05422899999999997));
-        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
-        motion[4] = t72;
+        const gic_real t71 = t65 + (c_z - R(0.05422899999999997));
+        const gic_real a_xy = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[HMMWV_A_XY] = a_xy;
         const gic_real t73 = t67 + R(0.2147570000000001);
-        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
-        motion[7] = t74;
-        const gic_real t75 = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
-        motion[8] = t75;
+        const gic_real a_yy = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[HMMWV_A_YY] = a_yy;
+        const gic_real a_yz = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
+        motion[HMMWV_A_YZ] = a_yz;
         const gic_real t76 = t67 * t69 - t64 * t73;
         const gic_real t77 = t65 * t73 - t67 * t71;
         const gic_real t78 = t64 * t71 - t65 * t69;
-        const gic_real t79 = t7 * t69 - t8 * t71;
-        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
-        motion[10] = t80;
-        const gic_real t81 = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
-        motion[11] = t81;
+        const gic_real t79 = t7 * t69 - s_1_5 * t71;
+        const gic_real a_zy = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[HMMWV_A_ZY] = a_zy;
+        const gic_real a_zz = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
+        motion[HMMWV_A_ZZ] = a_zz;
         const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
-        const gic_real t83 = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
-        motion[5] = t83;
-        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
-        motion[6] = t84;
-        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
-        motion[9] = t85;
-        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
-        motion[3] = t86;
+        const gic_real a_xz = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
+        motion[HMMWV_A_XZ] = a_xz;
+        const gic_real a_yx = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
+        motion[HMMWV_A_YX] = a_yx;
+        const gic_real a_zx = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
+        motion[HMMWV_A_ZX] = a_zx;
+        const gic_real a_xx = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
+        motion[HMMWV_A_XX] = a_xx;
         const gic_real t87 = R(1.0) / t82;
-        const gic_real t88 = R(2.8083995) * t74;
-        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182100000000004) * t75 + k[12] * t74);
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182100000000004) * t81 + k[12] * t80);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t83 + k[12] * t72);
-        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(2.8083995) * t80));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t88 = R(2.8083995) * a_yy;
+        const gic_real t89 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + k[12] * a_yy);
+        const gic_real t90 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz + k[12] * a_zy);
+        const gic_real t91 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + k[12] * a_xy);
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(2.8083995) * a_zy));
         const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
         const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
         const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
@@ -628,173 +829,175 @@ static int hmmwv_solve_wheel_f_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
         const gic_real t99 = t51 * t87;
         const gic_real t100 = t52 * t87;
         const gic_real t101 = t50 * t87;
-        const gic_real t102 = t4 + t89;
-        const gic_real t103 = t2 + t90;
+        const gic_real t102 = c_y + t89;
+        const gic_real t103 = c_z + t90;
         const gic_real t104 = R(1.653405) + t91;
-        const gic_real t105 = R(0.12192999999999987) * t86;
-        const gic_real t106 = R(2.8083995) * t72;
-        const gic_real t107 = t69 * t99;
-        motion[26] = t107;
-        const gic_real t108 = t69 * t100;
-        motion[24] = t108;
-        const gic_real t109 = t69 * t101;
-        motion[25] = t109;
-        const gic_real t110 = R(0.12192999999999987) * t84;
-        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
-        motion[32] = t111;
-        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
-        motion[30] = t112;
-        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
-        motion[31] = t113;
-        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
-        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
-        const gic_real t116 = t74 * t106 + t84 * t105;
-        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
-        motion[14] = t117;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[12] = t118;
-        const gic_real t119 = t80 * t106 + t85 * t105;
-        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
-        motion[13] = t120;
-        const gic_real t121 = t80 * t88 + t85 * t110;
-        const gic_real t122 = t108 * t89 - t109 * t91;
-        const gic_real t123 = turn[2] + t117;
-        const gic_real t124 = t36 * t117 - t34 * t118;
-        const gic_real t125 = t67 * t117 - t65 * t118;
-        const gic_real t126 = t65 * t120 - t64 * t117;
-        const gic_real t127 = t64 * t118 - t67 * t120;
-        const gic_real t128 = t34 * t120 - t35 * t117;
-        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t105 = R(0.12192999999999987) * a_xx;
+        const gic_real t106 = R(2.8083995) * a_xy;
+        const gic_real s_0_2 = t69 * t99;
+        motion[HMMWV_S + 2] = s_0_2;
+        const gic_real s_0_0 = t69 * t100;
+        motion[HMMWV_S + 0] = s_0_0;
+        const gic_real s_0_1 = t69 * t101;
+        motion[HMMWV_S + 1] = s_0_1;
+        const gic_real t110 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[HMMWV_S + 8] = s_1_2;
+        const gic_real s_1_0 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[HMMWV_S + 6] = s_1_0;
+        const gic_real s_1_1 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[HMMWV_S + 7] = s_1_1;
+        const gic_real t114 = a_yx * t110 + (R(4.7728205) + a_yy * t88);
+        const gic_real t115 = a_xx * t105 + (R(4.7728205) + a_xy * t106);
+        const gic_real t116 = a_yy * t106 + a_yx * t105;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[HMMWV_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[HMMWV_OMEGA_X] = omega_x;
+        const gic_real t119 = a_zy * t106 + a_zx * t105;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[HMMWV_OMEGA_Y] = omega_y;
+        const gic_real t121 = a_zy * t88 + a_zx * t110;
+        const gic_real t122 = s_0_0 * t89 - s_0_1 * t91;
+        const gic_real t123 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t124 = t36 * omega_z - t34 * omega_x;
+        const gic_real t125 = t67 * omega_z - t65 * omega_x;
+        const gic_real t126 = t65 * omega_y - t64 * omega_z;
+        const gic_real t127 = t64 * omega_x - t67 * omega_y;
+        const gic_real t128 = t34 * omega_y - t35 * omega_z;
+        const gic_real t129 = t35 * omega_x - t36 * omega_y;
         const gic_real t130 = t124 - t14;
-        const gic_real t131 = t125 - (m0[16] + t14);
-        const gic_real t132 = t118 * t89 - t120 * t91;
-        const gic_real t133 = t117 * t91 - t118 * t90;
-        const gic_real t134 = t20 + t127;
-        const gic_real t135 = t118 * t124 - t120 * t128;
-        const gic_real t136 = t20 + t129;
-        const gic_real t137 = t120 * t129 - t117 * t124;
-        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
-        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
-        const gic_real t140 = t117 * t128 - t118 * t129;
-        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
-        const gic_real t142 = t120 * t90 - t117 * t89;
-        const gic_real t143 = t20 + t132;
-        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
-        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t131 = t125 - (m0[HMMWV_VELOCITY_Y] + t14);
+        const gic_real t132 = omega_x * t89 - omega_y * t91;
+        const gic_real t133 = omega_z * t91 - omega_x * t90;
+        const gic_real t134 = velocity_z + t127;
+        const gic_real t135 = omega_x * t124 - omega_y * t128;
+        const gic_real t136 = velocity_z + t129;
+        const gic_real t137 = omega_y * t129 - omega_z * t124;
+        const gic_real t138 = t9 * t69 - acceleration_z * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - acceleration_z * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = omega_z * t128 - omega_x * t129;
+        const gic_real t141 = t71 * (omega_x * t125 - omega_y * t126) + t69 * (omega_z * t126 - omega_x * t127);
+        const gic_real t142 = omega_y * t90 - omega_z * t89;
+        const gic_real t143 = velocity_z + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * acceleration_z - R(0.21526024724178433) * t135 -
+            (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (omega_y * t127 - omega_z * t125);
         const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
         const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
         const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
         const gic_real t149 = t133 - t14;
-        const gic_real t150 = turn[1] + t120;
-        const gic_real t151 = turn[0] + t118;
-        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t150 = turn[1] + omega_y;
+        const gic_real t151 = turn[0] + omega_x;
+        const gic_real t152 = s_0_0 * t115 + (s_0_2 * t119 + s_0_1 * t116);
         const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
         const gic_real t154 = t145 - t141;
         const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
         const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
-        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
-        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
-        motion[18] = t158;
-        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
-        motion[19] = t159;
-        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
-        motion[20] = t160;
-        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t157 = acceleration_z + omega_x * t133 - omega_y * t142 - turn[1] * t147;
+        const gic_real alpha_x = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[HMMWV_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[HMMWV_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[HMMWV_ALPHA_Z] = alpha_z;
+        const gic_real t161 = turn[2] * t147 + (omega_z * t142 - t9 - omega_x * t132);
         const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
-        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
-        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
-        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
-        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
-        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
-        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
-        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
-        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
-        inertia[9] = t170;
+        const gic_real t163 = turn[1] * t148 + (omega_y * t132 - omega_z * t133) - turn[2] * t153;
+        const gic_real t164 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t165 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t166 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t167 = alpha_x * t89 + (turn[0] * t153 + t157) - alpha_y * t91;
+        const gic_real t168 = alpha_z * t91 + (t161 - turn[0] * t148) - alpha_x * t90;
+        const gic_real t169 = s_0_0 * t116 + (s_0_2 * t121 + s_0_1 * t114);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t90 + t163 - alpha_z * t89);
+        inertia[HMMWV_I_FORCE_X] = inertia_force_x;
         const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
         const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
         const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
-        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
-        const gic_real t175 = t113 * t90 - t111 * t89;
-        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
-        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
-        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
-        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
-        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
-        const gic_real t181 = t109 * t90 - t107 * t89;
-        const gic_real t182 = t107 * t91 - t108 * t90;
-        const gic_real t183 = R(90.555) * t167;
-        inertia[11] = t183;
-        const gic_real t184 = R(90.555) * t122;
-        inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t175;
-        inertia[22] = t185;
-        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
-        const gic_real t187 = R(90.555) * t104;
-        inertia[0] = t187;
-        const gic_real t188 = R(90.555) * t102;
-        inertia[1] = t188;
-        const gic_real t189 = R(90.555) * t168;
-        inertia[10] = t189;
-        const gic_real t190 = R(90.555) * t181;
-        inertia[15] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[16] = t191;
-        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
-        const gic_real t193 = R(90.555) * t176;
-        inertia[23] = t193;
-        const gic_real t194 = R(90.555) * t177;
-        inertia[24] = t194;
-        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        const gic_real t174 = s_0_0 * t119 + (s_0_2 * t92 + s_0_1 * t121);
+        const gic_real t175 = s_1_1 * t90 - s_1_2 * t89;
+        const gic_real t176 = s_1_2 * t91 - t7 - s_1_0 * t90;
+        const gic_real t177 = s_1_5 + s_1_0 * t89 - s_1_1 * t91;
+        const gic_real t178 = s_1_0 * t115 + (s_1_2 * t119 + s_1_1 * t116);
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t121 + s_1_1 * t114);
+        const gic_real t180 = s_1_0 * t119 + (s_1_2 * t92 + s_1_1 * t121);
+        const gic_real t181 = s_0_1 * t90 - s_0_2 * t89;
+        const gic_real t182 = s_0_2 * t91 - s_0_0 * t90;
+        const gic_real inertia_force_z = R(90.555) * t167;
+        inertia[HMMWV_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t122;
+        inertia[HMMWV_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t175;
+        inertia[HMMWV_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t186 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t104;
+        inertia[HMMWV_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t102;
+        inertia[HMMWV_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t168;
+        inertia[HMMWV_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t181;
+        inertia[HMMWV_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t182;
+        inertia[HMMWV_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t192 = s_0_2 * t173 + s_0_1 * t172 + (s_0_0 * t171 + inertia_force_z * t122);
+        const gic_real along_1_force_y = R(90.555) * t176;
+        inertia[HMMWV_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t177;
+        inertia[HMMWV_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t195 = s_1_2 * t173 + s_1_1 * t172 + (s_1_0 * t171 + inertia_force_z * t177);
         if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
-        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
-        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
-        const gic_real t199 = R(90.555) * t103;
-        inertia[2] = t199;
-        const gic_real t200 = t102 * t188;
-        const gic_real t201 = t104 * t187;
-        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
-        inertia[12] = t202;
-        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
-        inertia[13] = t203;
-        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
-        inertia[14] = t204;
-        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
-        inertia[18] = t205;
-        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
-        inertia[19] = t206;
-        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
-        inertia[20] = t207;
-        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
-        inertia[21] = t208;
-        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
-        inertia[25] = t209;
-        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
-        inertia[26] = t210;
-        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
-        inertia[27] = t211;
-        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
-        inertia[28] = t212;
-        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
-        inertia[29] = t213;
-        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
-        inertia[30] = t214;
-        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
-        inertia[31] = t215;
-        const gic_real t216 = t103 * t199;
-        const gic_real t217 = t200 + (t92 + t201);
-        inertia[5] = t217;
-        const gic_real t218 = t116 - t102 * t187;
-        inertia[6] = t218;
-        const gic_real t219 = t119 - t103 * t187;
-        inertia[7] = t219;
-        const gic_real t220 = t121 - t103 * t188;
-        inertia[8] = t220;
-        const gic_real t221 = t216 + (t115 + t200);
-        inertia[3] = t221;
-        const gic_real t222 = t216 + (t114 + t201);
-        inertia[4] = t222;
+        const gic_real t196 = s_0_2 * t174 + s_0_1 * t169 + (s_0_0 * t152 + t122 * along_0_force_z);
+        const gic_real t197 = s_0_2 * t180 + s_0_1 * t179 + (s_0_0 * t178 + t181 * along_1_force_x);
+        const gic_real t198 = s_1_2 * t180 + s_1_1 * t179 + (s_1_0 * t178 + t175 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t103;
+        inertia[HMMWV_I_FIRST_Z] = inertia_first_z;
+        const gic_real t200 = t102 * inertia_first_y;
+        const gic_real t201 = t104 * inertia_first_x;
+        const gic_real inertia_moment_x = t171 + t102 * inertia_force_z - t103 * inertia_force_y;
+        inertia[HMMWV_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t172 + t103 * inertia_force_x - t104 * inertia_force_z;
+        inertia[HMMWV_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t173 + t104 * inertia_force_y - t102 * inertia_force_x;
+        inertia[HMMWV_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t152 + t102 * along_0_force_z - t103 * along_0_force_y;
+        inertia[HMMWV_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t169 + t103 * along_0_force_x - t104 * along_0_force_z;
+        inertia[HMMWV_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t174 + t104 * along_0_force_y - t102 * along_0_force_x;
+        inertia[HMMWV_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t182 + inertia_force_x * t181 + t192;
+        inertia[HMMWV_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t178 + t102 * along_1_force_z - t103 * along_1_force_y;
+        inertia[HMMWV_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t179 + t103 * along_1_force_x - t104 * along_1_force_z;
+        inertia[HMMWV_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t104 * along_1_force_y + (t180 - t102 * along_1_force_x);
+        inertia[HMMWV_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t176 + inertia_force_x * t175 + t195;
+        inertia[HMMWV_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t182 * along_0_force_y + t181 * along_0_force_x + t196;
+        inertia[HMMWV_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t197 + (t122 * along_1_force_z + t182 * along_1_force_y);
+        inertia[HMMWV_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t198 + (t177 * along_1_force_z + t176 * along_1_force_y);
+        inertia[HMMWV_I_COORDINATE + 16] = mass_2;
+        const gic_real t216 = t103 * inertia_first_z;
+        const gic_real inertia_second_zz = t200 + (t92 + t201);
+        inertia[HMMWV_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t116 - t102 * inertia_first_x;
+        inertia[HMMWV_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t119 - t103 * inertia_first_x;
+        inertia[HMMWV_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t121 - t103 * inertia_first_y;
+        inertia[HMMWV_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t216 + (t115 + t200);
+        inertia[HMMWV_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t216 + (t114 + t201);
+        inertia[HMMWV_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -813,98 +1016,142 @@ static GIC_COLD void hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, co
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[HMMWV_A_YY];
+        const gic_real t2 = k[0] * m1[HMMWV_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[HMMWV_C_Y] - (t1 + k[2]))) +
+            GIC_FABS(R(2.928075656552032) * (motion[HMMWV_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[HMMWV_A_ZZ] + (k[13] * motion[HMMWV_A_ZY] +
+            R(-0.14025880000000002) * motion[HMMWV_A_ZX]);
+        const gic_real t5 = motion[HMMWV_C_Z] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[HMMWV_A_YZ] + (k[13] * motion[HMMWV_A_YY] +
+            R(-0.14025880000000002) * motion[HMMWV_A_YX]);
+        const gic_real t7 = motion[HMMWV_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[HMMWV_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[HMMWV_A_XZ] + (k[13] * motion[HMMWV_A_XY] +
+            R(-0.14025880000000002) * motion[HMMWV_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
-        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[3];
-        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.33360360000000006) * motion[HMMWV_A_ZZ] + (k[14] * motion[HMMWV_A_ZY] +
+            R(-0.017475200000000024) * motion[HMMWV_A_ZX]);
+        const gic_real t16 = motion[HMMWV_C_Z] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[HMMWV_A_YZ] + (k[14] * motion[HMMWV_A_YY] +
+            R(-0.017475200000000024) * motion[HMMWV_A_YX]);
+        const gic_real t18 = motion[HMMWV_C_Y] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[HMMWV_A_XZ] + (k[14] * motion[HMMWV_A_XY] +
+            R(-0.017475200000000024) * motion[HMMWV_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[HMMWV_A_ZX] * motion[HMMWV_A_ZX] + (motion[HMMWV_A_YX] * motion[HMMWV_A_YX] +
+            motion[HMMWV_A_XX] * motion[HMMWV_A_XX]) - R(1.0);
+        const gic_real t27 = motion[HMMWV_A_ZY] * motion[HMMWV_A_ZY] + (motion[HMMWV_A_YY] * motion[HMMWV_A_YY] +
+            motion[HMMWV_A_XY] * motion[HMMWV_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[HMMWV_A_ZX] * motion[HMMWV_A_ZY] + (motion[HMMWV_A_YX] *
+            motion[HMMWV_A_YY] + motion[HMMWV_A_XX] * motion[HMMWV_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[HMMWV_A_YX] * motion[HMMWV_A_ZY] - motion[HMMWV_A_YY] *
+            motion[HMMWV_A_ZX] - motion[HMMWV_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[HMMWV_A_XY] * motion[HMMWV_A_ZX] - motion[HMMWV_A_XX] *
+            motion[HMMWV_A_ZY] - motion[HMMWV_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[HMMWV_A_XX] * motion[HMMWV_A_YY] - motion[HMMWV_A_XY] *
+            motion[HMMWV_A_YX] - motion[HMMWV_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[HMMWV_S + 0] + t34 * motion[HMMWV_S + 1] + t35 *
+            motion[HMMWV_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[HMMWV_S + 0] + t38 * motion[HMMWV_S + 1] + t39 * motion[HMMWV_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[HMMWV_S + 0] + t42 * motion[HMMWV_S + 1] + t43 *
+            motion[HMMWV_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
-        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t53 = t52 + GIC_FABS(m1[24]);
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[HMMWV_S + 0]) + GIC_FABS(motion[HMMWV_S + 1]) +
+            GIC_FABS(motion[HMMWV_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[HMMWV_S + 0] * t2 + motion[HMMWV_S + 10])) +
+            GIC_FABS(R(2.928075656552032) * (motion[HMMWV_S + 11] - m1[HMMWV_S + 0] * t1));
+        const gic_real t48 = t33 * motion[HMMWV_S + 6] + t34 * motion[HMMWV_S + 7] + t35 * motion[HMMWV_S + 8] + t9 *
+            motion[HMMWV_S + 10];
+        const gic_real t49 = t37 * motion[HMMWV_S + 6] + t38 * motion[HMMWV_S + 7] + t39 * motion[HMMWV_S + 8] + t18 *
+            motion[HMMWV_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[HMMWV_S + 11])) + GIC_FABS(t23 * (t49 + t16 *
+            motion[HMMWV_S + 11]));
+        const gic_real t51 = t41 * motion[HMMWV_S + 6] + t42 * motion[HMMWV_S + 7] + t43 * motion[HMMWV_S + 8] + k[4] *
+            motion[HMMWV_S + 10];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_S + 10]) + GIC_FABS(motion[HMMWV_S + 11])) +
+            (GIC_FABS(motion[HMMWV_S + 6]) + GIC_FABS(motion[HMMWV_S + 7]) + GIC_FABS(motion[HMMWV_S + 8]));
+        const gic_real t53 = t52 + GIC_FABS(m1[HMMWV_S + 0]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[HMMWV_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[HMMWV_OMEGA_X] - rate[0] * motion[HMMWV_S + 0] - rate[1] *
+            motion[HMMWV_S + 6]) + GIC_FABS(motion[HMMWV_OMEGA_Y] - rate[0] * motion[HMMWV_S + 1] - rate[1] *
+            motion[HMMWV_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[HMMWV_OMEGA_Z] - rate[0] * motion[HMMWV_S + 2] - rate[1] *
+            motion[HMMWV_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[HMMWV_VELOCITY_Y] - rate[1] *
+            motion[HMMWV_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[HMMWV_VELOCITY_Z] - rate[1] *
+            motion[HMMWV_S + 11]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[HMMWV_OMEGA_X]) + GIC_FABS(motion[HMMWV_OMEGA_Y]) +
+            GIC_FABS(motion[HMMWV_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t66 = motion[17] + t65;
-        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t68 = motion[16] + t67 - m0[16];
-        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t63 = R(2.928075656552032) * (m1[HMMWV_OMEGA_X] * (m1[HMMWV_OMEGA_X] * t1) + m1[HMMWV_ALPHA_X] *
+            t2 + motion[HMMWV_ACCELERATION_Y]);
+        const gic_real t64 = R(2.928075656552032) * (motion[HMMWV_ACCELERATION_Z] - (m1[HMMWV_ALPHA_X] * t1 -
+            m1[HMMWV_OMEGA_X] * (m1[HMMWV_OMEGA_X] * t2)));
+        const gic_real t65 = t6 * motion[HMMWV_OMEGA_X] - t10 * motion[HMMWV_OMEGA_Y];
+        const gic_real t66 = motion[HMMWV_VELOCITY_Z] + t65;
+        const gic_real t67 = t10 * motion[HMMWV_OMEGA_Z] - t4 * motion[HMMWV_OMEGA_X];
+        const gic_real t68 = motion[HMMWV_VELOCITY_Y] + t67 - m0[HMMWV_VELOCITY_Y];
+        const gic_real t69 = t4 * motion[HMMWV_OMEGA_Y] - t6 * motion[HMMWV_OMEGA_Z];
+        const gic_real t70 = motion[HMMWV_OMEGA_X] * t67 - motion[HMMWV_OMEGA_Y] * t69 + (t6 * motion[HMMWV_ALPHA_X] -
+            t10 * motion[HMMWV_ALPHA_Y]);
+        const gic_real t71 = motion[HMMWV_OMEGA_Z] * t69 - motion[HMMWV_OMEGA_X] * t65 + (t10 * motion[HMMWV_ALPHA_Z] -
+            t4 * motion[HMMWV_ALPHA_X]);
+        const gic_real t72 = motion[HMMWV_OMEGA_Y] * t65 - motion[HMMWV_OMEGA_Z] * t67 + (t4 * motion[HMMWV_ALPHA_Y] -
+            t6 * motion[HMMWV_ALPHA_Z]);
+        const gic_real t73 = t5 * (motion[HMMWV_ACCELERATION_Z] + t70) + (t9 * (motion[HMMWV_ACCELERATION_Y] + t71) +
+            t11 * t72);
         const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
         const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
-        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t77 = motion[17] + t76;
-        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t79 = motion[16] + t78;
-        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t82 = motion[23] + t81;
-        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t84 = motion[22] + t83;
-        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t76 = t17 * motion[HMMWV_OMEGA_X] - t19 * motion[HMMWV_OMEGA_Y];
+        const gic_real t77 = motion[HMMWV_VELOCITY_Z] + t76;
+        const gic_real t78 = t19 * motion[HMMWV_OMEGA_Z] - t15 * motion[HMMWV_OMEGA_X];
+        const gic_real t79 = motion[HMMWV_VELOCITY_Y] + t78;
+        const gic_real t80 = t15 * motion[HMMWV_OMEGA_Y] - t17 * motion[HMMWV_OMEGA_Z];
+        const gic_real t81 = motion[HMMWV_OMEGA_X] * t78 - motion[HMMWV_OMEGA_Y] * t80 + (t17 * motion[HMMWV_ALPHA_X] -
+            t19 * motion[HMMWV_ALPHA_Y]);
+        const gic_real t82 = motion[HMMWV_ACCELERATION_Z] + t81;
+        const gic_real t83 = motion[HMMWV_OMEGA_Z] * t80 - motion[HMMWV_OMEGA_X] * t76 + (t19 * motion[HMMWV_ALPHA_Z] -
+            t15 * motion[HMMWV_ALPHA_X]);
+        const gic_real t84 = motion[HMMWV_ACCELERATION_Y] + t83;
+        const gic_real t85 = motion[HMMWV_OMEGA_Y] * t76 - motion[HMMWV_OMEGA_Z] * t78 + (t15 * motion[HMMWV_ALPHA_Y] -
+            t17 * motion[HMMWV_ALPHA_Z]);
         const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
-        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
-        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) *
+            R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_ACCELERATION_Z])) + (GIC_FABS(motion[HMMWV_ALPHA_X]) +
+            GIC_FABS(motion[HMMWV_ALPHA_Y]) + GIC_FABS(motion[HMMWV_ALPHA_Z]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[HMMWV_VELOCITY_Y]);
         const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
-        const gic_real t91 = GIC_FABS(m1[12]);
-        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t91 = GIC_FABS(m1[HMMWV_OMEGA_X]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[HMMWV_ALPHA_X])) + t60 * t60;
         const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
         const gic_real t94 = t62 + t93;
         worst[0] = t32;
@@ -912,6 +1159,16 @@ static GIC_COLD void hmmwv_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, co
     }
 }
 
+/* Columns, with the names of wheel_r_l:
+ *    0  hinge_r_l.point_a_y
+ *    1  lca_r_l.C_Y
+ *    2  upper_r_l.point_a_y
+ *    3  upper_r_l.point_b_y
+ *    4  sign
+ *    5  -upper_r_l.point_b_y
+ *    6  wheel_r_l.com_y
+ *    7  scale of the determinant
+ */
 static const gic_real hmmwv_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
@@ -935,32 +1192,34 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        motion[2] = t2;
-        const gic_real t3 = t1 + k[1];
-        motion[1] = t3;
-        const gic_real t4 = R(0.22567900000000007) - t2;
-        const gic_real t5 = m0[24] * t2;
-        const gic_real t6 = m0[24] * t1;
-        motion[29] = t6;
-        const gic_real t7 = m0[12] * (m0[12] * t1) + m0[18] * t2;
-        const gic_real t8 = k[2] - t3;
-        const gic_real t9 = t3 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_A_YY];
+        const gic_real c_z = k[0] * m0[HMMWV_A_ZY];
+        motion[HMMWV_C_Z] = c_z;
+        const gic_real c_y = t1 + k[1];
+        motion[HMMWV_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t4 = R(0.22567900000000007) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t5 = m0[HMMWV_S + 0] * c_z;
+        const gic_real s_0_5 = m0[HMMWV_S + 0] * t1;
+        motion[HMMWV_S + 5] = s_0_5;
+        const gic_real t7 = m0[HMMWV_OMEGA_X] * (m0[HMMWV_OMEGA_X] * t1) + m0[HMMWV_ALPHA_X] * c_z;
+        const gic_real t8 = k[2] - c_y;
+        const gic_real t9 = c_y - k[2];
         const gic_real t10 = rate[0] * t5;
-        const gic_real t11 = rate[0] * t6;
-        motion[17] = t11;
-        const gic_real t12 = m0[18] * t1 - m0[12] * (m0[12] * t2);
-        motion[23] = t12;
+        const gic_real velocity_z = rate[0] * s_0_5;
+        motion[HMMWV_VELOCITY_Z] = velocity_z;
+        const gic_real acceleration_z = m0[HMMWV_ALPHA_X] * t1 - m0[HMMWV_OMEGA_X] * (m0[HMMWV_OMEGA_X] * c_z);
+        motion[HMMWV_ACCELERATION_Z] = acceleration_z;
         const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.05231323408299997)));
         const gic_real t14 = k[3] * t9 - R(0.33401) * t4;
         const gic_real t15 = R(0.33401) * t9 + k[3] * t4;
-        const gic_real t16 = -t10;
-        motion[16] = t16;
-        const gic_real t17 = -t7;
-        motion[22] = t17;
-        const gic_real t18 = -t5;
-        motion[28] = t18;
+        const gic_real velocity_y = -t10;
+        motion[HMMWV_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t7;
+        motion[HMMWV_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_0_4 = -t5;
+        motion[HMMWV_S + 4] = s_0_4;
         const gic_real t19 = t14 * t14 + t15 * t15;
         const gic_real t20 = t19 - t13 * t13;
         if (!(t20 > R(0.0)))
@@ -969,110 +1228,113 @@ static int hmmwv_solve_wheel_r_l(hmmwv *self, const gic_real *GIC_RESTRICT k, co
             return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[4] * GIC_SQRT(t20);
         const gic_real t22 = R(1.0) / t19;
-        const gic_real t23 = t22 * (t15 * t13 - t14 * t21);
-        motion[10] = t23;
+        const gic_real a_zy = t22 * (t15 * t13 - t14 * t21);
+        motion[HMMWV_A_ZY] = a_zy;
         const gic_real t24 = t22 * (t15 * t21 + t14 * t13);
-        const gic_real t25 = R(4.7728205) + t23 * (R(2.8083995) * t23);
-        const gic_real t26 = -t23;
-        motion[8] = t26;
-        const gic_real t27 = R(-0.33401) * t23 + k[5] * t24;
-        const gic_real t28 = k[3] * t23 + R(-0.33401) * t24;
-        const gic_real t29 = R(0.09182100000000004) * t23 + k[6] * t24;
-        const gic_real t30 = k[6] * t23 - R(0.09182100000000004) * t24;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t25 = R(4.7728205) + a_zy * (R(2.8083995) * a_zy);
+        const gic_real a_yz = -a_zy;
+        motion[HMMWV_A_YZ] = a_yz;
+        const gic_real t27 = R(-0.33401) * a_zy + k[5] * t24;
+        const gic_real t28 = k[3] * a_zy + R(-0.33401) * t24;
+        const gic_real t29 = R(0.09182100000000004) * a_zy + k[6] * t24;
+        const gic_real t30 = k[6] * a_zy - R(0.09182100000000004) * t24;
         const gic_real t31 = R(2.8083995) * t24;
-        const gic_real t32 = -t24;
-        motion[7] = t32;
-        motion[11] = t32;
+        const gic_real a_yy = -t24;
+        motion[HMMWV_A_YY] = a_yy;
+        motion[HMMWV_A_ZZ] = a_yy;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t33 = t9 + t27;
-        const gic_real t34 = t2 - R(0.22567900000000007) + t28;
+        const gic_real t34 = c_z - R(0.22567900000000007) + t28;
         const gic_real t35 = R(4.7728205) + t24 * t31;
-        const gic_real t36 = t3 - t29;
-        const gic_real t37 = t23 * t31;
-        const gic_real t38 = t2 + t30;
-        const gic_real t39 = R(90.555) * t36;
-        inertia[1] = t39;
+        const gic_real t36 = c_y - t29;
+        const gic_real t37 = a_zy * t31;
+        const gic_real t38 = c_z + t30;
+        const gic_real inertia_first_y = R(90.555) * t36;
+        inertia[HMMWV_I_FIRST_Y] = inertia_first_y;
         const gic_real t40 = turn[2] * t25 - turn[1] * t37;
         const gic_real t41 = t27 * t34 - t28 * t33;
         const gic_real t42 = turn[1] * t38 - turn[2] * t36;
         const gic_real t43 = turn[1] * t35 - turn[2] * t37;
-        const gic_real t44 = R(90.555) * t38;
-        inertia[2] = t44;
-        const gic_real t45 = t36 * t39;
-        const gic_real t46 = -(t37 + t38 * t39);
-        inertia[8] = t46;
-        const gic_real t47 = -(R(-149.724089775) * t36);
-        inertia[6] = t47;
+        const gic_real inertia_first_z = R(90.555) * t38;
+        inertia[HMMWV_I_FIRST_Z] = inertia_first_z;
+        const gic_real t45 = t36 * inertia_first_y;
+        const gic_real inertia_second_yz = -(t37 + t38 * inertia_first_y);
+        inertia[HMMWV_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xy = -(R(-149.724089775) * t36);
+        inertia[HMMWV_I_SECOND_XY] = inertia_second_xy;
         const gic_real t48 = R(1.0) / t41;
-        const gic_real t49 = t38 * t44;
-        const gic_real t50 = t45 + (R(247.5545586544339) + t25);
-        inertia[5] = t50;
-        const gic_real t51 = -(R(-149.724089775) * t38);
-        inertia[7] = t51;
-        const gic_real t52 = t49 + (R(4.8947505) + t45);
-        inertia[3] = t52;
-        const gic_real t53 = t49 + (R(247.5545586544339) + t35);
-        inertia[4] = t53;
-        const gic_real t54 = t48 * (t5 * t33 - t6 * t34);
-        motion[24] = t54;
-        const gic_real t55 = rate[0] * t54;
-        motion[12] = t55;
-        const gic_real t56 = t5 + t54 * t30;
-        const gic_real t57 = t6 - t54 * t29;
-        const gic_real t58 = R(4.8947505) * t54;
-        if (!(k[7] * t41 - ahead[0] * GIC_FABS(t55) > R(0.004)))
+        const gic_real t49 = t38 * inertia_first_z;
+        const gic_real inertia_second_zz = t45 + (R(247.5545586544339) + t25);
+        inertia[HMMWV_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xz = -(R(-149.724089775) * t38);
+        inertia[HMMWV_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_xx = t49 + (R(4.8947505) + t45);
+        inertia[HMMWV_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t49 + (R(247.5545586544339) + t35);
+        inertia[HMMWV_I_SECOND_YY] = inertia_second_yy;
+        const gic_real s_0_0 = t48 * (t5 * t33 - s_0_5 * t34);
+        motion[HMMWV_S + 0] = s_0_0;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_OMEGA_X] = omega_x;
+        const gic_real t56 = t5 + s_0_0 * t30;
+        const gic_real t57 = s_0_5 - s_0_0 * t29;
+        const gic_real t58 = R(4.8947505) * s_0_0;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[7] * t41 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t59 = t28 * t55;
-        const gic_real t60 = t27 * t55;
-        const gic_real t61 = t55 * t30;
-        const gic_real t62 = t55 * t29;
-        const gic_real t63 = turn[0] + t55;
-        const gic_real t64 = turn[1] * t55;
-        const gic_real t65 = turn[2] * t55;
+        const gic_real t59 = t28 * omega_x;
+        const gic_real t60 = t27 * omega_x;
+        const gic_real t61 = omega_x * t30;
+        const gic_real t62 = omega_x * t29;
+        const gic_real t63 = turn[0] + omega_x;
+        const gic_real t64 = turn[1] * omega_x;
+        const gic_real t65 = turn[2] * omega_x;
         const gic_real t66 = R(90.555) * t56;
-        const gic_real t67 = t34 * (t55 * t59) + (t7 * t33 - t12 * t34);
-        const gic_real t68 = t11 + t60;
+        const gic_real t67 = t34 * (omega_x * t59) + (t7 * t33 - acceleration_z * t34);
+        const gic_real t68 = velocity_z + t60;
         const gic_real t69 = t10 + t59;
         const gic_real t70 = t10 + t61;
-        const gic_real t71 = t11 - t62;
+        const gic_real t71 = velocity_z - t62;
         const gic_real t72 = R(4.8947505) * t63;
-        const gic_real t73 = R(90.555) * t57;
-        inertia[17] = t73;
-        const gic_real t74 = -(R(-149.724089775) * t57);
-        inertia[19] = t74;
-        const gic_real t75 = -(R(-149.724089775) * t56);
-        inertia[20] = t75;
+        const gic_real along_0_force_z = R(90.555) * t57;
+        inertia[HMMWV_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_0_moment_y = -(R(-149.724089775) * t57);
+        inertia[HMMWV_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(R(-149.724089775) * t56);
+        inertia[HMMWV_I_COORDINATE + 5] = along_0_moment_z;
         const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t38 - t70 - t70;
         const gic_real t77 = t71 + (t71 + (turn[0] * t36 - R(-1.653405) * turn[1]));
-        const gic_real t78 = t33 * (t55 * t60) - t68 * t68 + (t67 - t69 * t69);
+        const gic_real t78 = t33 * (omega_x * t60) - t68 * t68 + (t67 - t69 * t69);
         const gic_real t79 = turn[2] * t72 + (t37 * t64 + t35 * t65 - t63 * t40);
         const gic_real t80 = t63 * t43 - t25 * t64 - t37 * t65 - turn[1] * t72;
-        const gic_real t81 = t36 * t73 + (t58 + t38 * t66);
-        inertia[18] = t81;
-        const gic_real t82 = turn[0] * t76 + (t12 - turn[1] * t42 - t55 * t61);
-        const gic_real t83 = t55 * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
-        const gic_real t84 = t48 * t78;
-        motion[18] = t84;
-        const gic_real t85 = R(90.555) * (turn[1] * t77 - turn[2] * t76);
-        inertia[9] = t85;
-        const gic_real t86 = t56 * t66 + (t54 * t58 + t57 * t73);
-        inertia[22] = t86;
-        const gic_real t87 = R(4.8947505) * t84 + (turn[1] * t40 - turn[2] * t43);
-        const gic_real t88 = -t66;
-        inertia[16] = t88;
-        const gic_real t89 = t82 - t84 * t29;
-        const gic_real t90 = t83 - t84 * t30;
-        const gic_real t91 = R(90.555) * t89;
-        inertia[11] = t91;
-        const gic_real t92 = t38 * t85 + t79 - R(-149.724089775) * t89;
-        inertia[13] = t92;
-        const gic_real t93 = R(90.555) * t90;
-        inertia[10] = t93;
-        const gic_real t94 = R(-149.724089775) * t90 + (t80 - t36 * t85);
-        inertia[14] = t94;
-        const gic_real t95 = t87 + t36 * t91 - t38 * t93;
-        inertia[12] = t95;
-        const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
-        inertia[21] = t96;
+        const gic_real along_0_moment_x = t36 * along_0_force_z + (t58 + t38 * t66);
+        inertia[HMMWV_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real t82 = turn[0] * t76 + (acceleration_z - turn[1] * t42 - omega_x * t61);
+        const gic_real t83 = omega_x * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
+        const gic_real alpha_x = t48 * t78;
+        motion[HMMWV_ALPHA_X] = alpha_x;
+        const gic_real inertia_force_x = R(90.555) * (turn[1] * t77 - turn[2] * t76);
+        inertia[HMMWV_I_FORCE_X] = inertia_force_x;
+        const gic_real mass_0 = t56 * t66 + (s_0_0 * t58 + t57 * along_0_force_z);
+        inertia[HMMWV_I_COORDINATE + 7] = mass_0;
+        const gic_real t87 = R(4.8947505) * alpha_x + (turn[1] * t40 - turn[2] * t43);
+        const gic_real along_0_force_y = -t66;
+        inertia[HMMWV_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t89 = t82 - alpha_x * t29;
+        const gic_real t90 = t83 - alpha_x * t30;
+        const gic_real inertia_force_z = R(90.555) * t89;
+        inertia[HMMWV_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t38 * inertia_force_x + t79 - R(-149.724089775) * t89;
+        inertia[HMMWV_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(90.555) * t90;
+        inertia[HMMWV_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = R(-149.724089775) * t90 + (t80 - t36 * inertia_force_x);
+        inertia[HMMWV_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = t87 + t36 * inertia_force_z - t38 * inertia_force_y;
+        inertia[HMMWV_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t87 + inertia_force_z * t57 - inertia_force_y * t56;
+        inertia[HMMWV_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1090,39 +1352,53 @@ static GIC_COLD void hmmwv_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, co
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
-        const gic_real t4 = R(0.33401) * motion[11] + k[3] * motion[10];
-        const gic_real t5 = motion[2] + t4 - R(0.22567900000000007);
-        const gic_real t6 = R(0.33401) * motion[8] + k[3] * motion[7];
-        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_A_YY];
+        const gic_real t2 = k[0] * m0[HMMWV_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS((motion[HMMWV_C_Y] - (t1 + k[1])) * R(2.928503331078754)) +
+            GIC_FABS((motion[HMMWV_C_Z] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.33401) * motion[HMMWV_A_ZZ] + k[3] * motion[HMMWV_A_ZY];
+        const gic_real t5 = motion[HMMWV_C_Z] + t4 - R(0.22567900000000007);
+        const gic_real t6 = R(0.33401) * motion[HMMWV_A_YZ] + k[3] * motion[HMMWV_A_YY];
+        const gic_real t7 = motion[HMMWV_C_Y] + t6 - k[2];
         const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
-        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) +
+            R(0.08651688980892147);
         const gic_real t10 = R(2.0) / t9;
-        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
-        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
-        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
-        const gic_real t16 = t15 + GIC_FABS(m0[24]);
-        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
-        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
-        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[HMMWV_A_ZY] * motion[HMMWV_A_ZY] +
+            motion[HMMWV_A_YY] * motion[HMMWV_A_YY] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[HMMWV_A_YZ] + motion[HMMWV_A_ZY])) + GIC_FABS(motion[HMMWV_A_YY] -
+            motion[HMMWV_A_ZZ]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[HMMWV_S + 0] * t2 + motion[HMMWV_S + 4])) +
+            GIC_FABS(R(2.928503331078754) * (motion[HMMWV_S + 5] - m0[HMMWV_S + 0] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[HMMWV_S + 0] + t7 * motion[HMMWV_S + 4];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_S + 4]) + GIC_FABS(motion[HMMWV_S + 5])) +
+            GIC_FABS(motion[HMMWV_S + 0]);
+        const gic_real t16 = t15 + GIC_FABS(m0[HMMWV_S + 0]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[HMMWV_S + 5]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[HMMWV_OMEGA_X] - rate[0] * motion[HMMWV_S + 0]) +
+            GIC_FABS(R(2.928503331078754) * (motion[HMMWV_VELOCITY_Y] - rate[0] * motion[HMMWV_S + 4]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_VELOCITY_Z]));
+        const gic_real t20 = GIC_FABS(motion[HMMWV_OMEGA_X]);
         const gic_real t21 = t16 * GIC_FABS(rate[0]);
-        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
-        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
-        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
-        const gic_real t25 = t6 * motion[12];
-        const gic_real t26 = motion[17] + t25;
-        const gic_real t27 = t4 * motion[12];
-        const gic_real t28 = motion[16] - t27;
-        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[HMMWV_VELOCITY_Z] - rate[0] *
+            motion[HMMWV_S + 5]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[HMMWV_OMEGA_X] * (m0[HMMWV_OMEGA_X] * t1) + m0[HMMWV_ALPHA_X] *
+            t2 + motion[HMMWV_ACCELERATION_Y]);
+        const gic_real t24 = R(2.928503331078754) * (motion[HMMWV_ACCELERATION_Z] - (m0[HMMWV_ALPHA_X] * t1 -
+            m0[HMMWV_OMEGA_X] * (m0[HMMWV_OMEGA_X] * t2)));
+        const gic_real t25 = t6 * motion[HMMWV_OMEGA_X];
+        const gic_real t26 = motion[HMMWV_VELOCITY_Z] + t25;
+        const gic_real t27 = t4 * motion[HMMWV_OMEGA_X];
+        const gic_real t28 = motion[HMMWV_VELOCITY_Y] - t27;
+        const gic_real t29 = t5 * (motion[HMMWV_ACCELERATION_Z] + (t6 * motion[HMMWV_ALPHA_X] - motion[HMMWV_OMEGA_X] *
+            t27)) + t7 * (motion[HMMWV_ACCELERATION_Y] - (motion[HMMWV_OMEGA_X] * t25 + t4 * motion[HMMWV_ALPHA_X]));
         const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
-        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
-        const gic_real t32 = GIC_FABS(m0[12]);
-        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_ACCELERATION_Z])) + GIC_FABS(motion[HMMWV_ALPHA_X]);
+        const gic_real t32 = GIC_FABS(m0[HMMWV_OMEGA_X]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[HMMWV_ALPHA_X]));
         const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
         const gic_real t35 = t17 + t22 + t34;
         worst[0] = t12;
@@ -1152,128 +1428,138 @@ static int hmmwv_recover_piece(hmmwv *self, hmmwv_links *links, const gic_real *
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[HMMWV_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = hmmwv_solve_rack(self, hmmwv_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[HMMWV_X_RACK];
+        links->rate[0] = xd[HMMWV_X_RACK];
+        status = hmmwv_solve_rack(self, hmmwv_k_rack[0], links, start + 5, self->motion + HMMWV_MOTION_RACK,
+            self->inertia + HMMWV_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = HMMWV_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[HMMWV_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[HMMWV_X_SPRING_F_L];
+        links->rate[0] = xd[HMMWV_X_SPRING_F_L];
+        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[0], links, start + 5, self->motion + HMMWV_MOTION_LCA_F_L,
+            self->inertia + HMMWV_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = HMMWV_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[HMMWV_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[HMMWV_X_SPRING_F_R];
+        links->rate[0] = xd[HMMWV_X_SPRING_F_R];
+        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[1], links, start + 5, self->motion + HMMWV_MOTION_LCA_F_R,
+            self->inertia + HMMWV_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = HMMWV_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: lca_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
+        links->x[0] = start[HMMWV_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_X_SPRING_R_L];
+        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[2], links, start + 5, self->motion + HMMWV_MOTION_LCA_R_L,
+            self->inertia + HMMWV_INERTIA_LCA_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 4;
+            self->head.subset = HMMWV_SUBSET_LCA_R_L;
             return status;
         }
     }
     /* stage 2: lca_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
+        links->x[0] = start[HMMWV_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_X_SPRING_R_R];
+        status = hmmwv_solve_lca_f_l(self, hmmwv_k_lca_f_l[3], links, start + 5, self->motion + HMMWV_MOTION_LCA_R_R,
+            self->inertia + HMMWV_INERTIA_LCA_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = HMMWV_SUBSET_LCA_R_R;
             return status;
         }
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[HMMWV_X_RACK] && links->same[HMMWV_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = hmmwv_solve_wheel_f_l(self, hmmwv_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + HMMWV_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[HMMWV_X_RACK];
+        links->rate[0] = xd[HMMWV_X_RACK];
+        links->x[1] = start[HMMWV_X_SPRING_F_L];
+        links->rate[1] = xd[HMMWV_X_SPRING_F_L];
+        status = hmmwv_solve_wheel_f_l(self, hmmwv_k_wheel_f_l[0], links, start + 5, self->motion +
+            HMMWV_MOTION_WHEEL_F_L, self->inertia + HMMWV_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = HMMWV_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[HMMWV_X_RACK] && links->same[HMMWV_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = hmmwv_solve_wheel_f_l(self, hmmwv_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
+        links->known[0] = self->motion + HMMWV_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[HMMWV_X_RACK];
+        links->rate[0] = xd[HMMWV_X_RACK];
+        links->x[1] = start[HMMWV_X_SPRING_F_R];
+        links->rate[1] = xd[HMMWV_X_SPRING_F_R];
+        status = hmmwv_solve_wheel_f_l(self, hmmwv_k_wheel_f_l[1], links, start + 5, self->motion +
+            HMMWV_MOTION_WHEEL_F_R, self->inertia + HMMWV_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = HMMWV_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     /* stage 3: wheel_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 90; /* lca_r_l */
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_solve_wheel_r_l(self, hmmwv_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
+        links->known[0] = self->motion + HMMWV_MOTION_LCA_R_L; /* lca_r_l */
+        links->x[0] = start[HMMWV_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_X_SPRING_R_L];
+        status = hmmwv_solve_wheel_r_l(self, hmmwv_k_wheel_r_l[0], links, start + 5, self->motion +
+            HMMWV_MOTION_WHEEL_R_L, self->inertia + HMMWV_INERTIA_WHEEL_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 8;
+            self->head.subset = HMMWV_SUBSET_WHEEL_R_L;
             return status;
         }
     }
     /* stage 3: wheel_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 120; /* lca_r_r */
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_solve_wheel_r_l(self, hmmwv_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
+        links->known[0] = self->motion + HMMWV_MOTION_LCA_R_R; /* lca_r_r */
+        links->x[0] = start[HMMWV_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_X_SPRING_R_R];
+        status = hmmwv_solve_wheel_r_l(self, hmmwv_k_wheel_r_l[1], links, start + 5, self->motion +
+            HMMWV_MOTION_WHEEL_R_R, self->inertia + HMMWV_INERTIA_WHEEL_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 9;
+            self->head.subset = HMMWV_SUBSET_WHEEL_R_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
 static int hmmwv_recover_way(hmmwv *self, hmmwv_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
@@ -1296,13 +1582,11 @@ static int hmmwv_recover_way(hmmwv *self, hmmwv_links *links, const gic_real *wa
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (HMMWV_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1363,15 +1647,15 @@ static void hmmwv_gather(hmmwv *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
-    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
+    memcpy(x + HMMWV_X_SPRING_F_L, y + HMMWV_STATE_SPRING_F_L, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + HMMWV_X_SPRING_F_L, y + HMMWV_STATE_SPRING_F_L_RATE, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int hmmwv_orient(const hmmwv *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -1418,53 +1702,94 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[91] + n[201];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 7] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 7];
         if (!(t1 > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 4, 9);
-        const gic_real t2 = n[114] + n[224];
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_LCA_R_L, HMMWV_STATE_SPRING_R_L);
+        const gic_real t2 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 7] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 7];
         if (!(t2 > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t3 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
-        const gic_real t4 = t3 + n[182] + n[205] + R(1173.18332588);
-        const gic_real t5 = n[87] + n[197];
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_LCA_R_R, HMMWV_STATE_SPRING_R_R);
+        const gic_real t3 = n[HMMWV_INERTIA_RACK + HMMWV_I_SECOND_XX] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_XX] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_XX] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_XX] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_XX] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_XX] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_XX];
+        const gic_real t4 = t3 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_XX] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_XX] + R(1173.18332588);
+        const gic_real t5 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 3] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 3];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t6 = R(1.0) / t1;
         const gic_real t7 = t5 * t6;
-        const gic_real t8 = n[110] + n[220];
+        const gic_real t8 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 3] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 3];
         const gic_real t9 = R(1.0) / t2;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = t4 - t5 * t7 - t8 * t10;
         if (!(t11 - t4 * R(1e-06) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t12 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
-        const gic_real t13 = t12 + n[183] + n[206] + R(3056.8666525999997);
-        const gic_real t14 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
-        const gic_real t15 = t14 + n[181] + n[204] + R(444.4287600000002);
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_OMEGA_X);
+        const gic_real t12 = R(19.803070388473838) + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_YY] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_YY] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_YY] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_YY] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_YY] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_YY];
+        const gic_real t13 = t12 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_YY] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_YY] + R(3056.8666525999997);
+        const gic_real t14 = R(0.4919654879999997) + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_FIRST_Z] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_FIRST_Z] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_FIRST_Z] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_FIRST_Z] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FIRST_Z] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FIRST_Z];
+        const gic_real t15 = t14 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_FIRST_Z] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_FIRST_Z] + R(444.4287600000002);
         const gic_real t16 = t15 * R(0.00039159296886992533);
-        const gic_real t17 = n[88] + n[198];
+        const gic_real t17 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 4] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 4];
         const gic_real t18 = t17 * t6;
-        const gic_real t19 = n[111] + n[221];
+        const gic_real t19 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 4] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 4];
         const gic_real t20 = t19 * t9;
         const gic_real t21 = t13 - t15 * t16 - t17 * t18 - t19 * t20;
-        const gic_real t22 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t23 = t22 + n[185] + n[208] - t17 * t7 - t19 * t10;
+        const gic_real t22 = n[HMMWV_INERTIA_RACK + HMMWV_I_SECOND_XY] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_XY] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_XY] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_XY] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_XY] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_XY] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_XY];
+        const gic_real t23 = t22 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_XY] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_XY] - t17 * t7 - t19 * t10;
         const gic_real t24 = R(1.0) / t11;
         const gic_real t25 = t23 * t24;
         const gic_real t26 = t21 - t23 * t25;
         if (!(t26 - t13 * R(1e-06) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 16);
-        const gic_real t27 = R(-286.39676489400006) + n[115] + n[147] + R(116.84512);
-        const gic_real t28 = n[86] + n[196];
-        const gic_real t29 = n[109] + n[219];
-        const gic_real t30 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
-        const gic_real t31 = t30 + n[180] + n[203];
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_OMEGA_Y);
+        const gic_real t27 = R(-286.39676489400006) + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FIRST_X] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FIRST_X] + R(116.84512);
+        const gic_real t28 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 2] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 2];
+        const gic_real t29 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 2] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 2];
+        const gic_real t30 = n[HMMWV_INERTIA_RACK + HMMWV_I_FIRST_Y] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_FIRST_Y] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_FIRST_Y] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_FIRST_Y] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_FIRST_Y] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FIRST_Y] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FIRST_Y];
+        const gic_real t31 = t30 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_FIRST_Y] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_FIRST_Y];
         const gic_real t32 = t31 - t28 * t7 - t29 * t10;
         const gic_real t33 = t27 + t28 * t18 + t29 * t20 + t32 * t25;
-        const gic_real t34 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t35 = n[89] + n[199];
-        const gic_real t36 = t34 + n[187] + n[210] + t31 * t16 - t35 * t18;
-        const gic_real t37 = n[112] + n[222];
-        const gic_real t38 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t39 = t38 + n[186] + n[209] + R(-24.88801056000001) - t35 * t7 - t37 * t10;
+        const gic_real t34 = n[HMMWV_INERTIA_RACK + HMMWV_I_SECOND_YZ] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_YZ] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_YZ] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_YZ] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_YZ] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_YZ] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_YZ];
+        const gic_real t35 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 5] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 5];
+        const gic_real t36 = t34 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_YZ] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_YZ] + t31 * t16 - t35 * t18;
+        const gic_real t37 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 5] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 5];
+        const gic_real t38 = R(-0.7077651653802236) + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_XZ] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_XZ] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_XZ] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_XZ] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_XZ] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_XZ];
+        const gic_real t39 = t38 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_XZ] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_XZ] + R(-24.88801056000001) - t35 * t7 - t37 * t10;
         const gic_real t40 = t36 - t37 * t20 - t39 * t25;
         const gic_real t41 = R(1.0) / t26;
         const gic_real t42 = t40 * t41;
@@ -1472,8 +1797,10 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t44 = t37 * t9;
         const gic_real t45 = t39 * t24;
         const gic_real t46 = t33 * t42 - (t28 * t43 + t29 * t44 + t32 * t45);
-        const gic_real t47 = n[85] + n[195];
-        const gic_real t48 = n[108] + n[218];
+        const gic_real t47 = n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 1] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 1];
+        const gic_real t48 = n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 1] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 1];
         const gic_real t49 = t15 + t47 * t7 + t48 * t10;
         const gic_real t50 = t27 - t47 * t43 - t48 * t44 + t49 * t45;
         const gic_real t51 = t49 * t25 - (t47 * t18 + t48 * t20);
@@ -1493,8 +1820,12 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t65 = t33 * t41;
         const gic_real t66 = t64 - t33 * t65;
         const gic_real t67 = t46 * t57 - t52 * t66;
-        const gic_real t68 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
-        const gic_real t69 = t68 + n[184] + n[207] + R(3576.74332672);
+        const gic_real t68 = n[HMMWV_INERTIA_RACK + HMMWV_I_SECOND_ZZ] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_SECOND_ZZ] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_SECOND_ZZ] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_SECOND_ZZ] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_SECOND_ZZ] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_SECOND_ZZ] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_SECOND_ZZ];
+        const gic_real t69 = t68 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_SECOND_ZZ] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_SECOND_ZZ] + R(3576.74332672);
         const gic_real t70 = t31 * R(0.00039159296886992533);
         const gic_real t71 = t69 - t31 * t70 - t35 * t43 - t37 * t44;
         const gic_real t72 = t71 - t39 * t45 - t40 * t42;
@@ -1503,70 +1834,95 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t75 = t72 * t59;
         const gic_real t76 = t75 - t52 * t52;
         if (!(t74 - t76 * R(0.002553672) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 14);
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_V_Z);
         const gic_real t77 = t72 * t66 - t46 * t46;
         if (!(t74 - t77 * R(0.002553672) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 13);
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_V_Y);
         if (!(t74 - R(1e-06) * (t69 * t73) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 17);
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_OMEGA_Z);
         if (!(t74 - R(1e-06) * (t66 * t75) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, -1, 17);
-        const gic_real t78 = n[45] + n[146];
-        const gic_real t79 = n[137] * R(0.00039159296886992533);
-        const gic_real t80 = n[41] + n[140];
+            return hmmwv_about(self, GIC_ERROR_MASS, -1, HMMWV_STATE_OMEGA_Z);
+        const gic_real t78 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 7] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 16];
+        const gic_real t79 = n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 7] * R(0.00039159296886992533);
+        const gic_real t80 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 3] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 10];
         const gic_real t81 = t80 * t24;
-        const gic_real t82 = n[42] + n[141] - n[137] * t16 - t80 * t25;
+        const gic_real t82 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 4] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 11] - n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 7] *
+            t16 - t80 * t25;
         const gic_real t83 = t82 * t41;
-        const gic_real t84 = t78 - n[137] * t79 - t80 * t81 - t82 * t83;
+        const gic_real t84 = t78 - n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 7] * t79 - t80 * t81 - t82 * t83;
         const gic_real t85 = R(1.0) / t74;
-        const gic_real t86 = n[43] + n[142] + n[137] * t70 - t80 * t45 - t82 * t42;
-        const gic_real t87 = n[39] + n[138] + t80 * t53 - t82 * t56;
-        const gic_real t88 = n[40] + n[139] - t80 * t63 + t82 * t65;
+        const gic_real t86 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 5] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 12] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 7] *
+            t70 - t80 * t45 - t82 * t42;
+        const gic_real t87 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 1] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 8] + t80 * t53 - t82 * t56;
+        const gic_real t88 = n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 2] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 9] - t80 * t63 + t82 * t65;
         const gic_real t89 = t86 * t73 + t87 * t67 + t88 * t60;
         const gic_real t90 = t52 * t46 - t72 * t57;
         const gic_real t91 = t86 * t67 + t87 * t77 + t88 * t90;
         const gic_real t92 = t86 * t60 + t87 * t90 + t88 * t76;
         const gic_real t93 = t85 * (t86 * t89 + t87 * t91 + t88 * t92);
         const gic_real t94 = t84 - t93;
-        const gic_real t95 = n[68] + n[178];
-        const gic_real t96 = n[169] * R(0.00039159296886992533);
-        const gic_real t97 = n[64] + n[172];
+        const gic_real t95 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 7] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 16];
+        const gic_real t96 = n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 7] * R(0.00039159296886992533);
+        const gic_real t97 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 3] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 10];
         const gic_real t98 = t97 * t24;
-        const gic_real t99 = n[65] + n[173] - n[169] * t16 - t97 * t25;
+        const gic_real t99 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 4] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 11] - n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 7] *
+            t16 - t97 * t25;
         const gic_real t100 = t99 * t41;
-        const gic_real t101 = t95 - n[169] * t96 - t97 * t98 - t99 * t100;
-        const gic_real t102 = n[66] + n[174] + n[169] * t70 - t97 * t45 - t99 * t42;
-        const gic_real t103 = n[62] + n[170] + t97 * t53 - t99 * t56;
-        const gic_real t104 = n[63] + n[171] - t97 * t63 + t99 * t65;
+        const gic_real t101 = t95 - n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 7] * t96 - t97 * t98 - t99 * t100;
+        const gic_real t102 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 5] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 12] + n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 7] *
+            t70 - t97 * t45 - t99 * t42;
+        const gic_real t103 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 1] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 8] + t97 * t53 - t99 * t56;
+        const gic_real t104 = n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 2] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 9] - t97 * t63 + t99 * t65;
         const gic_real t105 = t102 * t73 + t103 * t67 + t104 * t60;
         const gic_real t106 = t102 * t67 + t103 * t77 + t104 * t90;
         const gic_real t107 = t102 * t60 + t103 * t90 + t104 * t76;
         const gic_real t108 = t85 * (t102 * t105 + t103 * t106 + t104 * t107);
         const gic_real t109 = t101 - t108;
-        const gic_real t110 = R(9.072) + n[144] + n[176];
-        const gic_real t111 = n[130] + n[162];
+        const gic_real t110 = R(9.072) + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 14] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 14];
+        const gic_real t111 = n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 0] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 0];
         const gic_real t112 = t111 * R(0.00039159296886992533);
-        const gic_real t113 = R(-0.4919654879999997) + n[133] + n[165];
+        const gic_real t113 = R(-0.4919654879999997) + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 3] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 3];
         const gic_real t114 = t113 * t24;
-        const gic_real t115 = n[134] + n[166] - t111 * t16 - t113 * t25;
+        const gic_real t115 = n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 4] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 4] - t111 * t16 - t113 * t25;
         const gic_real t116 = t115 * t41;
         const gic_real t117 = t110 - t111 * t112 - t113 * t114 - t115 * t116;
-        const gic_real t118 = R(13.051414655999999) + n[135] + n[167] + t111 * t70 - t113 * t45;
+        const gic_real t118 = R(13.051414655999999) + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 5] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 5] + t111 * t70 - t113 * t45;
         const gic_real t119 = t118 - t115 * t42;
-        const gic_real t120 = R(9.072) + n[131] + n[163] + t113 * t53 - t115 * t56;
-        const gic_real t121 = n[132] + n[164] - t113 * t63 + t115 * t65;
+        const gic_real t120 = R(9.072) + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 1] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 1] + t113 * t53 - t115 * t56;
+        const gic_real t121 = n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 2] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 2] - t113 * t63 + t115 * t65;
         const gic_real t122 = t119 * t73 + t120 * t67 + t121 * t60;
         const gic_real t123 = t119 * t67 + t120 * t77 + t121 * t90;
         const gic_real t124 = t119 * t60 + t120 * t90 + t121 * t76;
         const gic_real t125 = t85 * (t119 * t122 + t120 * t123 + t121 * t124);
         const gic_real t126 = t117 - t125;
-        const gic_real t127 = n[177] - t111 * t96 - t113 * t98 - t115 * t100;
+        const gic_real t127 = n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 15] - t111 * t96 - t113 * t98 - t115 *
+            t100;
         const gic_real t128 = t85 * (t102 * t122 + t103 * t123 + t104 * t124);
         const gic_real t129 = t127 - t128;
         const gic_real t130 = t109 * t126 - t129 * t129;
         const gic_real t131 = t85 * (t86 * t105 + t87 * t106 + t88 * t107);
-        const gic_real t132 = n[169] * t79 + t97 * t81 + t99 * t83 + t131;
-        const gic_real t133 = n[145] - t111 * t79 - t113 * t81 - t115 * t83;
+        const gic_real t132 = n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 7] * t79 + t97 * t81 + t99 * t83 + t131;
+        const gic_real t133 = n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 15] - t111 * t79 - t113 * t81 - t115 *
+            t83;
         const gic_real t134 = t85 * (t86 * t122 + t87 * t123 + t88 * t124);
         const gic_real t135 = t133 - t134;
         const gic_real t136 = t132 * t126 + t135 * t129;
@@ -1575,58 +1931,72 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t139 = t94 * t109;
         const gic_real t140 = t139 - t132 * t132;
         if (!(t138 - R(1e-06) * (t110 * t140) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 1, 11);
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_RACK, HMMWV_STATE_RACK);
         const gic_real t141 = t94 * t126 - t135 * t135;
         if (!(t138 - R(1e-06) * (t95 * t141) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 3, 8);
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_LCA_F_R, HMMWV_STATE_SPRING_F_R);
         if (!(t138 - R(1e-06) * (t78 * t130) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 2, 7);
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_LCA_F_L, HMMWV_STATE_SPRING_F_L);
         if (!(t138 - R(1e-06) * (t126 * t139) > R(0.0)))
-            return hmmwv_about(self, GIC_ERROR_MASS, 2, 7);
-        const gic_real t142 = y[17] * R(0.5);
-        const gic_real t143 = y[16] * R(0.5);
-        const gic_real t144 = y[15] * R(0.5);
-        const gic_real t145 = -(e[3] * t142 + (e[2] * t143 + e[1] * t144));
+            return hmmwv_about(self, GIC_ERROR_MASS, HMMWV_SUBSET_LCA_F_L, HMMWV_STATE_SPRING_F_L);
+        /* rates of the state */
+        const gic_real t142 = y[HMMWV_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t143 = y[HMMWV_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t144 = y[HMMWV_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t142 + (e[2] * t143 + e[1] * t144));
         const gic_real t146 = e[3] + e[3];
         const gic_real t147 = e[1] * t146;
         const gic_real t148 = e[2] + e[2];
         const gic_real t149 = e[0] * t148;
         const gic_real t150 = t147 + t149;
-        const gic_real t151 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
+        /* wheel tire_f_r */
+        const gic_real t151 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] *
+            R(-0.004825999999999997));
         const gic_real t152 = e[3] * t148;
         const gic_real t153 = e[1] + e[1];
         const gic_real t154 = e[0] * t153;
         const gic_real t155 = t152 + t154;
         const gic_real t156 = t152 - t154;
-        const gic_real t157 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t158 = m[187] + t157;
+        const gic_real t157 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] *
+            R(-0.004825999999999997));
+        const gic_real t158 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t157;
         const gic_real t159 = R(1.653405) + t151;
-        const gic_real t160 = m[203] + (m[198] * t157 - m[199] * t151) + (y[15] * t158 - y[16] * t159);
+        const gic_real t160 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t157 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t151) +
+            (y[HMMWV_STATE_OMEGA_X] * t158 - y[HMMWV_STATE_OMEGA_Y] * t159);
         const gic_real t161 = e[1] * t153;
         const gic_real t162 = e[3] * t146;
         const gic_real t163 = R(1.0) - (t161 + t162);
-        const gic_real t164 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t165 = m[188] + t164;
-        const gic_real t166 = m[202] + (m[200] * t151 - m[198] * t164) + (y[17] * t159 - y[15] * t165);
+        const gic_real t164 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] *
+            R(-0.004825999999999997));
+        const gic_real t165 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t164;
+        const gic_real t166 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t151 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t164) +
+            (y[HMMWV_STATE_OMEGA_Z] * t159 - y[HMMWV_STATE_OMEGA_X] * t165);
         const gic_real t167 = e[2] * t153;
         const gic_real t168 = e[0] * t146;
         const gic_real t169 = t167 + t168;
-        const gic_real t170 = m[199] * t164 - m[200] * t157 + (y[16] * t165 - y[17] * t158);
-        const gic_real t171 = y[13] + (t156 * t160 + (t163 * t166 + t169 * t170));
+        const gic_real t170 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t164 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t157 + (y[HMMWV_STATE_OMEGA_Y] * t165 - y[HMMWV_STATE_OMEGA_Z] *
+            t158);
+        const gic_real t171 = y[HMMWV_STATE_V_Y] + (t156 * t160 + (t163 * t166 + t169 * t170));
         const gic_real t172 = t167 - t168;
         const gic_real t173 = e[2] * t148;
         const gic_real t174 = R(1.0) - (t173 + t162);
-        const gic_real t175 = y[0] + (t150 * t165 + (t172 * t158 + t174 * t159));
-        const gic_real t176 = y[1] + (t156 * t165 + (t163 * t158 + t169 * t159));
+        const gic_real t175 = y[HMMWV_STATE_R_X] + (t150 * t165 + (t172 * t158 + t174 * t159));
+        const gic_real t176 = y[HMMWV_STATE_R_Y] + (t156 * t165 + (t163 * t158 + t169 * t159));
         gic_real road177[3];
         if (!hmmwv_road_height(self, time, t175, t176, road177))
             return GIC_ERROR_ROAD;
-        const gic_real t178 = y[12] + (t150 * t160 + (t172 * t166 + t174 * t170));
+        const gic_real t178 = y[HMMWV_STATE_V_X] + (t150 * t160 + (t172 * t166 + t174 * t170));
         const gic_real t179 = R(1.0) - (t161 + t173);
         const gic_real t180 = t147 - t149;
-        const gic_real t181 = y[14] + (t179 * t160 + (t155 * t166 + t180 * t170));
+        const gic_real t181 = y[HMMWV_STATE_V_Z] + (t179 * t160 + (t155 * t166 + t180 * t170));
         const gic_real t182 = t171 * road177[2] + t178 * road177[1] - t181;
-        const gic_real t183 = y[2] + (t179 * t165 + (t155 * t158 + t180 * t159));
+        const gic_real t183 = y[HMMWV_STATE_R_Z] + (t179 * t165 + (t155 * t158 + t180 * t159));
         const gic_real t184 = R(0.4699) + road177[0] - t183;
         const gic_real t185 = GIC_MIN(GIC_MAX(R(100.0) * t184, R(0.0)), R(1.0));
         const gic_real t186 = t182 * (R(500.0) * ((R(3.0) - (t185 + t185)) * (t185 * t185)));
@@ -1634,25 +2004,38 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t188 = t155 * t187;
         const gic_real t189 = t180 * t187;
         const gic_real t190 = t151 * t188 - t157 * t189;
-        const gic_real t191 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t192 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t193 = m[151] + t192;
+        /* wheel tire_f_l */
+        const gic_real t191 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] *
+            R(-0.004825999999999997));
+        const gic_real t192 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] *
+            R(-0.004825999999999997));
+        const gic_real t193 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t192;
         const gic_real t194 = R(1.653405) + t191;
-        const gic_real t195 = m[167] + (m[162] * t192 - m[163] * t191) + (y[15] * t193 - y[16] * t194);
-        const gic_real t196 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t197 = m[152] + t196;
-        const gic_real t198 = m[166] + (m[164] * t191 - m[162] * t196) + (y[17] * t194 - y[15] * t197);
-        const gic_real t199 = m[163] * t196 - m[164] * t192 + (y[16] * t197 - y[17] * t193);
-        const gic_real t200 = y[13] + (t156 * t195 + (t163 * t198 + t169 * t199));
-        const gic_real t201 = y[0] + (t150 * t197 + (t172 * t193 + t174 * t194));
-        const gic_real t202 = y[1] + (t156 * t197 + (t163 * t193 + t169 * t194));
+        const gic_real t195 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t192 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t191) +
+            (y[HMMWV_STATE_OMEGA_X] * t193 - y[HMMWV_STATE_OMEGA_Y] * t194);
+        const gic_real t196 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.12319000000000002) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] *
+            R(-0.004825999999999997));
+        const gic_real t197 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t196;
+        const gic_real t198 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t191 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t196) +
+            (y[HMMWV_STATE_OMEGA_Z] * t194 - y[HMMWV_STATE_OMEGA_X] * t197);
+        const gic_real t199 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t196 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t192 + (y[HMMWV_STATE_OMEGA_Y] * t197 - y[HMMWV_STATE_OMEGA_Z] *
+            t193);
+        const gic_real t200 = y[HMMWV_STATE_V_Y] + (t156 * t195 + (t163 * t198 + t169 * t199));
+        const gic_real t201 = y[HMMWV_STATE_R_X] + (t150 * t197 + (t172 * t193 + t174 * t194));
+        const gic_real t202 = y[HMMWV_STATE_R_Y] + (t156 * t197 + (t163 * t193 + t169 * t194));
         gic_real road203[3];
         if (!hmmwv_road_height(self, time, t201, t202, road203))
             return GIC_ERROR_ROAD;
-        const gic_real t204 = y[12] + (t150 * t195 + (t172 * t198 + t174 * t199));
-        const gic_real t205 = y[14] + (t179 * t195 + (t155 * t198 + t180 * t199));
+        const gic_real t204 = y[HMMWV_STATE_V_X] + (t150 * t195 + (t172 * t198 + t174 * t199));
+        const gic_real t205 = y[HMMWV_STATE_V_Z] + (t179 * t195 + (t155 * t198 + t180 * t199));
         const gic_real t206 = t200 * road203[2] + t204 * road203[1] - t205;
-        const gic_real t207 = y[2] + (t179 * t197 + (t155 * t193 + t180 * t194));
+        const gic_real t207 = y[HMMWV_STATE_R_Z] + (t179 * t197 + (t155 * t193 + t180 * t194));
         const gic_real t208 = road203[0] + R(0.4699) - t207;
         const gic_real t209 = GIC_MIN(GIC_MAX(t208 * R(100.0), R(0.0)), R(1.0));
         const gic_real t210 = t206 * ((R(3.0) - (t209 + t209)) * (t209 * t209) * R(500.0));
@@ -1660,176 +2043,253 @@ static GIC_APART int hmmwv_dynamics(hmmwv *self, gic_real time, const gic_real *
         const gic_real t212 = t155 * t211;
         const gic_real t213 = t180 * t211;
         const gic_real t214 = t191 * t212 - t192 * t213;
-        const gic_real t215 = t214 + (R(1.653405) * t212 - m[151] * t213) + (R(1.653405) * t188 - m[187] * t189);
-        const gic_real t216 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t217 = m[223] + t216;
-        const gic_real t218 = R(-1.653405) * y[16];
-        const gic_real t219 = m[239] + m[234] * t216 + (y[15] * t217 - t218);
-        const gic_real t220 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t221 = R(-1.653405) * y[17];
-        const gic_real t222 = m[224] + t220;
-        const gic_real t223 = m[238] - m[234] * t220 + (t221 - y[15] * t222);
-        const gic_real t224 = y[16] * t222 - y[17] * t217;
-        const gic_real t225 = y[13] + (t156 * t219 + (t163 * t223 + t169 * t224));
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t215 = t214 + (R(1.653405) * t212 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t213) +
+            (R(1.653405) * t188 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t189);
+        /* wheel tire_r_l */
+        const gic_real t216 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.12319000000000002);
+        const gic_real t217 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t216;
+        const gic_real t218 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t219 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t216 + (y[HMMWV_STATE_OMEGA_X] * t217 - t218);
+        const gic_real t220 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.12319000000000002);
+        const gic_real t221 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t222 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t220;
+        const gic_real t223 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t220 + (t221 - y[HMMWV_STATE_OMEGA_X] * t222);
+        const gic_real t224 = y[HMMWV_STATE_OMEGA_Y] * t222 - y[HMMWV_STATE_OMEGA_Z] * t217;
+        const gic_real t225 = y[HMMWV_STATE_V_Y] + (t156 * t219 + (t163 * t223 + t169 * t224));
         const gic_real t226 = R(-1.653405) * t174;
         const gic_real t227 = R(-1.653405) * t169;
         gic_real road228[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t150 * t222 + (t172 * t217 + t226)), y[1] + (t156 * t222 + (t163 * t217 + t227)), road228))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t150 * t222 + (t172 * t217 + t226)),
+            y[HMMWV_STATE_R_Y] + (t156 * t222 + (t163 * t217 + t227)), road228))
             return GIC_ERROR_ROAD;
-        const gic_real t229 = y[12] + (t150 * t219 + (t172 * t223 + t174 * t224));
-        const gic_real t230 = y[14] + (t179 * t219 + (t155 * t223 + t180 * t224));
+        const gic_real t229 = y[HMMWV_STATE_V_X] + (t150 * t219 + (t172 * t223 + t174 * t224));
+        const gic_real t230 = y[HMMWV_STATE_V_Z] + (t179 * t219 + (t155 * t223 + t180 * t224));
         const gic_real t231 = t225 * road228[2] + t229 * road228[1] - t230;
         const gic_real t232 = R(-1.653405) * t180;
-        const gic_real t233 = R(0.4699) + road228[0] - (y[2] + (t179 * t222 + (t155 * t217 + t232)));
+        const gic_real t233 = R(0.4699) + road228[0] - (y[HMMWV_STATE_R_Z] + (t179 * t222 + (t155 * t217 + t232)));
         const gic_real t234 = GIC_MIN(GIC_MAX(R(100.0) * t233, R(0.0)), R(1.0));
         const gic_real t235 = t231 * (R(500.0) * ((R(3.0) - (t234 + t234)) * (t234 * t234)));
         const gic_real t236 = GIC_MAX(t235 + R(283000.0) * t233, R(0.0));
         const gic_real t237 = t155 * t236;
         const gic_real t238 = t180 * t236;
-        const gic_real t239 = t190 + t215 + (R(-1.653405) * t237 - m[223] * t238) - t216 * t238;
-        const gic_real t240 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t241 = m[253] + t240;
-        const gic_real t242 = m[269] + m[264] * t240 + (y[15] * t241 - t218);
-        const gic_real t243 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t244 = m[254] + t243;
-        const gic_real t245 = m[268] - m[264] * t243 + (t221 - y[15] * t244);
-        const gic_real t246 = y[16] * t244 - y[17] * t241;
-        const gic_real t247 = y[13] + (t156 * t242 + (t163 * t245 + t169 * t246));
+        const gic_real t239 = t190 + t215 + (R(-1.653405) * t237 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t238) -
+            t216 * t238;
+        /* wheel tire_r_r */
+        const gic_real t240 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.12319000000000002);
+        const gic_real t241 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t240;
+        const gic_real t242 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t240 + (y[HMMWV_STATE_OMEGA_X] * t241 - t218);
+        const gic_real t243 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.12319000000000002);
+        const gic_real t244 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t243;
+        const gic_real t245 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t243 + (t221 - y[HMMWV_STATE_OMEGA_X] * t244);
+        const gic_real t246 = y[HMMWV_STATE_OMEGA_Y] * t244 - y[HMMWV_STATE_OMEGA_Z] * t241;
+        const gic_real t247 = y[HMMWV_STATE_V_Y] + (t156 * t242 + (t163 * t245 + t169 * t246));
         gic_real road248[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t150 * t244 + (t226 + t172 * t241)), y[1] + (t156 * t244 + (t227 + t163 * t241)), road248))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t150 * t244 + (t226 + t172 * t241)),
+            y[HMMWV_STATE_R_Y] + (t156 * t244 + (t227 + t163 * t241)), road248))
             return GIC_ERROR_ROAD;
-        const gic_real t249 = y[12] + (t150 * t242 + (t172 * t245 + t174 * t246));
-        const gic_real t250 = y[14] + (t179 * t242 + (t155 * t245 + t180 * t246));
+        const gic_real t249 = y[HMMWV_STATE_V_X] + (t150 * t242 + (t172 * t245 + t174 * t246));
+        const gic_real t250 = y[HMMWV_STATE_V_Z] + (t179 * t242 + (t155 * t245 + t180 * t246));
         const gic_real t251 = t247 * road248[2] + t249 * road248[1] - t250;
-        const gic_real t252 = R(0.4699) + road248[0] - (y[2] + (t179 * t244 + (t232 + t155 * t241)));
+        const gic_real t252 = R(0.4699) + road248[0] - (y[HMMWV_STATE_R_Z] + (t179 * t244 + (t232 + t155 * t241)));
         const gic_real t253 = GIC_MIN(GIC_MAX(R(100.0) * t252, R(0.0)), R(1.0));
         const gic_real t254 = t251 * (R(500.0) * ((R(3.0) - (t253 + t253)) * (t253 * t253)));
         const gic_real t255 = GIC_MAX(t254 + R(283000.0) * t252, R(0.0));
         const gic_real t256 = t155 * t255;
         const gic_real t257 = t180 * t255;
-        const gic_real t258 = t239 + (R(-1.653405) * t256 - m[253] * t257) - t240 * t257;
-        const gic_real t259 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t260 = y[16] * R(3056.8666525999997);
-        const gic_real t261 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t262 = t259 + n[193] + n[216] + (y[15] * t260 - y[16] * t261);
-        const gic_real t263 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t264 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t265 = y[16] * R(0.056);
-        const gic_real t266 = t263 + n[188] + n[211] - R(2086.52) * (y[17] * t264 + y[16] * t265);
+        const gic_real t258 = t239 + (R(-1.653405) * t256 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t257) - t240 * t257;
+        const gic_real t259 = n[HMMWV_INERTIA_RACK + HMMWV_I_MOMENT_Z] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_MOMENT_Z] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_MOMENT_Z] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_MOMENT_Z] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_MOMENT_Z] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_MOMENT_Z] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_MOMENT_Z];
+        const gic_real t260 = y[HMMWV_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t261 = y[HMMWV_STATE_OMEGA_Z] * R(-24.88801056000001) + y[HMMWV_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t262 = t259 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_MOMENT_Z] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_MOMENT_Z] + (y[HMMWV_STATE_OMEGA_X] * t260 - y[HMMWV_STATE_OMEGA_Y] *
+            t261);
+        const gic_real t263 = n[HMMWV_INERTIA_RACK + HMMWV_I_FORCE_X] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_FORCE_X] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_FORCE_X] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_FORCE_X] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_FORCE_X] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FORCE_X] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FORCE_X];
+        const gic_real t264 = y[HMMWV_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t265 = y[HMMWV_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t266 = t263 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_FORCE_X] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_FORCE_X] - R(2086.52) * (y[HMMWV_STATE_OMEGA_Z] * t264 +
+            y[HMMWV_STATE_OMEGA_Y] * t265);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
         const gic_real t267 = t257 + (t238 + (t213 + t189)) - t266;
         const gic_real t268 = t179 * t236;
         const gic_real t269 = t216 * t268 - t220 * t237;
-        const gic_real t270 = m[251] * t268 + m[250] * t237 + m[246] * t269 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4));
-        const gic_real t271 = t270 - (n[90] + n[200]);
+        const gic_real t270 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] * t268 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] *
+            t237 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t269 - ((x[HMMWV_X_SPRING_R_L] - R(0.33727)) *
+            R(369167.2) + xd[HMMWV_X_SPRING_R_L] * R(24780.4));
+        const gic_real t271 = t270 - (n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_COORDINATE + 6] +
+            n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_COORDINATE + 6]);
         const gic_real t272 = t179 * t255;
         const gic_real t273 = t240 * t272 - t243 * t256;
-        const gic_real t274 = m[281] * t272 + m[280] * t256 + m[276] * t273 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4));
-        const gic_real t275 = t274 - (n[113] + n[223]);
+        const gic_real t274 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] * t272 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] *
+            t256 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t273 - (R(369167.2) * (x[HMMWV_X_SPRING_R_R] -
+            R(0.33727)) + xd[HMMWV_X_SPRING_R_R] * R(24780.4));
+        const gic_real t275 = t274 - (n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_COORDINATE + 6] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_COORDINATE + 6]);
+        /* accelerations */
         const gic_real t276 = t258 - t262 + t267 * t70 - t271 * t43 - t275 * t44;
         const gic_real t277 = t179 * t187;
         const gic_real t278 = t157 * t277 - t164 * t188;
         const gic_real t279 = t179 * t211;
         const gic_real t280 = t192 * t279 - t196 * t212;
-        const gic_real t281 = t280 + (m[151] * t279 - m[152] * t212) + (m[187] * t277 - m[188] * t188);
-        const gic_real t282 = t269 + (t278 + t281 + (m[223] * t268 - m[224] * t237));
-        const gic_real t283 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t284 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t285 = t283 + n[191] + n[214] + (y[16] * t284 - y[17] * t260);
-        const gic_real t286 = t273 + (t282 + (m[253] * t272 - m[254] * t256)) - t285;
+        const gic_real t281 = t280 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t279 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t212) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t277 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t188);
+        const gic_real t282 = t269 + (t278 + t281 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t268 -
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t237));
+        const gic_real t283 = n[HMMWV_INERTIA_RACK + HMMWV_I_MOMENT_X] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_MOMENT_X] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_MOMENT_X] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_MOMENT_X] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_MOMENT_X] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_MOMENT_X] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_MOMENT_X];
+        const gic_real t284 = y[HMMWV_STATE_OMEGA_Z] * R(3576.74332672) + y[HMMWV_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t285 = t283 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_MOMENT_X] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_MOMENT_X] + (y[HMMWV_STATE_OMEGA_Y] * t284 - y[HMMWV_STATE_OMEGA_Z] *
+            t260);
+        const gic_real t286 = t273 + (t282 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t272 -
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t256)) - t285;
         const gic_real t287 = t286 - t271 * t7 - t275 * t10;
         const gic_real t288 = t164 * t189 - t151 * t277;
         const gic_real t289 = t196 * t213 - t191 * t279;
-        const gic_real t290 = t289 + (m[152] * t213 - R(1.653405) * t279) + (m[188] * t189 - R(1.653405) * t277);
-        const gic_real t291 = t220 * t238 + (t288 + t290 + (m[224] * t238 - R(-1.653405) * t268));
-        const gic_real t292 = t243 * t257 + (t291 + (m[254] * t257 - R(-1.653405) * t272));
-        const gic_real t293 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t294 = t293 + n[192] + n[215] + (y[17] * t261 - y[15] * t284);
+        const gic_real t290 = t289 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t213 - R(1.653405) * t279) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t189 - R(1.653405) * t277);
+        const gic_real t291 = t220 * t238 + (t288 + t290 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t238 -
+            R(-1.653405) * t268));
+        const gic_real t292 = t243 * t257 + (t291 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t257 - R(-1.653405) *
+            t272));
+        const gic_real t293 = n[HMMWV_INERTIA_RACK + HMMWV_I_MOMENT_Y] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_MOMENT_Y] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_MOMENT_Y] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_MOMENT_Y] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_MOMENT_Y] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_MOMENT_Y] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_MOMENT_Y];
+        const gic_real t294 = t293 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_MOMENT_Y] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_MOMENT_Y] + (y[HMMWV_STATE_OMEGA_Z] * t261 - y[HMMWV_STATE_OMEGA_X] *
+            t284);
         const gic_real t295 = t292 - t294 - t267 * t16 - t271 * t18 - t275 * t20;
         const gic_real t296 = t295 - t25 * t287;
         const gic_real t297 = t276 - t45 * t287 - t42 * t296;
-        const gic_real t298 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t299 = y[16] * R(0.21300000000000008);
-        const gic_real t300 = t298 + n[189] + n[212] + R(2086.52) * (y[15] * t265 + y[17] * t299);
+        const gic_real t298 = n[HMMWV_INERTIA_RACK + HMMWV_I_FORCE_Y] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_FORCE_Y] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_FORCE_Y] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_FORCE_Y] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_FORCE_Y] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FORCE_Y] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FORCE_Y];
+        const gic_real t299 = y[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t300 = t298 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_FORCE_Y] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_FORCE_Y] + R(2086.52) * (y[HMMWV_STATE_OMEGA_X] * t265 +
+            y[HMMWV_STATE_OMEGA_Z] * t299);
         const gic_real t301 = t256 + (t237 + (t212 + t188)) - t300 - t271 * t54;
         const gic_real t302 = t301 - t275 * t55 + t53 * t287 - t56 * t296;
-        const gic_real t303 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t304 = t303 + n[190] + n[213] + R(2086.52) * (y[15] * t264 - y[16] * t299);
+        const gic_real t303 = n[HMMWV_INERTIA_RACK + HMMWV_I_FORCE_Z] + n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_FORCE_Z] +
+            n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_FORCE_Z] + n[HMMWV_INERTIA_LCA_R_L + HMMWV_I_FORCE_Z] +
+            n[HMMWV_INERTIA_LCA_R_R + HMMWV_I_FORCE_Z] + n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_FORCE_Z] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_FORCE_Z];
+        const gic_real t304 = t303 + n[HMMWV_INERTIA_WHEEL_R_L + HMMWV_I_FORCE_Z] +
+            n[HMMWV_INERTIA_WHEEL_R_R + HMMWV_I_FORCE_Z] + R(2086.52) * (y[HMMWV_STATE_OMEGA_X] * t264 -
+            y[HMMWV_STATE_OMEGA_Y] * t299);
         const gic_real t305 = t272 + (t268 + (t279 + t277)) - t304 - t271 * t61;
         const gic_real t306 = t305 - t275 * t62 - t63 * t287 + t65 * t296;
         const gic_real t307 = R(1.0) / t138;
-        const gic_real t308 = m[185] * t279 + m[184] * t212 + (m[182] * t214 + (m[181] * t289 + m[180] * t280));
-        const gic_real t309 = t308 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
+        const gic_real t308 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] * t279 +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] * t212 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t214 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t289 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t280));
+        const gic_real t309 = t308 - ((x[HMMWV_X_SPRING_F_L] - R(0.31903)) * R(167070.9) + xd[HMMWV_X_SPRING_F_L] *
+            R(17490.8)) - (n[HMMWV_INERTIA_LCA_F_L + HMMWV_I_COORDINATE + 6] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 13]);
         const gic_real t310 = t309 - t267 * t79 - t81 * t287 - t83 * t296;
         const gic_real t311 = t85 * (t89 * t297 + t91 * t302 + t92 * t306);
         const gic_real t312 = t310 - t311;
-        const gic_real t313 = m[221] * t277 + m[220] * t188 + (m[218] * t190 + (m[217] * t288 + m[216] * t278));
-        const gic_real t314 = t313 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
+        const gic_real t313 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] * t277 +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] * t188 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t190 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t288 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t278));
+        const gic_real t314 = t313 - (R(167070.9) * (x[HMMWV_X_SPRING_F_R] - R(0.31903)) + xd[HMMWV_X_SPRING_F_R] *
+            R(17490.8)) - (n[HMMWV_INERTIA_LCA_F_R + HMMWV_I_COORDINATE + 6] +
+            n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 13]);
         const gic_real t315 = t314 - t267 * t96 - t98 * t287 - t100 * t296;
         const gic_real t316 = t85 * (t105 * t297 + t106 * t302 + t107 * t306);
         const gic_real t317 = t315 - t316;
-        const gic_real t318 = m[176] * t214 + (m[175] * t289 + m[174] * t280) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t319 = t318 + (m[212] * t190 + (m[211] * t288 + m[210] * t278));
-        const gic_real t320 = t319 - (n[21] + n[136] + n[168]) - t267 * t112 - t114 * t287;
+        const gic_real t318 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t214 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t289 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t280) -
+            (x[HMMWV_X_RACK] * R(100000.0) + xd[HMMWV_X_RACK] * R(12000.0));
+        const gic_real t319 = t318 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t190 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t288 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t278));
+        const gic_real t320 = t319 - (n[HMMWV_INERTIA_RACK + HMMWV_I_COORDINATE + 6] +
+            n[HMMWV_INERTIA_WHEEL_F_L + HMMWV_I_COORDINATE + 6] + n[HMMWV_INERTIA_WHEEL_F_R + HMMWV_I_COORDINATE + 6]) -
+            t267 * t112 - t114 * t287;
         const gic_real t321 = t85 * (t122 * t297 + t123 * t302 + t124 * t306);
         const gic_real t322 = t320 - t116 * t296 - t321;
-        const gic_real t323 = t307 * (t130 * t312 + t136 * t317 - t137 * t322);
-        const gic_real t324 = t60 * t297 + t90 * t302 + t76 * t306 - t92 * t323;
+        const gic_real rate_of_spring_f_l_rate = t307 * (t130 * t312 + t136 * t317 - t137 * t322);
+        const gic_real t324 = t60 * t297 + t90 * t302 + t76 * t306 - t92 * rate_of_spring_f_l_rate;
         const gic_real t325 = t94 * t129 + t132 * t135;
-        const gic_real t326 = t307 * (t136 * t312 + t141 * t317 - t325 * t322);
-        const gic_real t327 = t307 * (t140 * t322 - (t137 * t312 + t325 * t317));
-        const gic_real t328 = t85 * (t324 - t107 * t326 - t124 * t327);
-        const gic_real t329 = t67 * t297 + t77 * t302 + t90 * t306 - t91 * t323;
-        const gic_real t330 = t85 * (t329 - t106 * t326 - t123 * t327);
-        const gic_real t331 = t73 * t297 + t67 * t302 + t60 * t306 - t89 * t323;
-        const gic_real t332 = t85 * (t331 - t105 * t326 - t122 * t327);
-        const gic_real t333 = t41 * t296 - t42 * t332 - t56 * t330 + t65 * t328;
-        const gic_real t334 = t333 - t83 * t323 - t100 * t326 - t116 * t327;
-        const gic_real t335 = t267 * R(0.00039159296886992533) - t16 * t334 + t70 * t332 - t79 * t323;
-        const gic_real t336 = t335 - t96 * t326 - t112 * t327;
-        const gic_real t337 = t24 * t287 - t25 * t334 - t45 * t332 + t53 * t330;
-        const gic_real t338 = t337 - t63 * t328 - t81 * t323 - t98 * t326;
-        const gic_real t339 = t338 - t114 * t327;
-        const gic_real t340 = R(-9.81) + (t179 * t328 + (t155 * t330 + t180 * t336));
-        const gic_real t341 = t271 * t6 - t7 * t339 - t18 * t334 - t43 * t332;
-        const gic_real t342 = t275 * t9 - t10 * t339 - t20 * t334 - t44 * t332;
-        const gic_real t343 = y[12];
-        const gic_real t344 = y[13];
-        const gic_real t345 = y[14];
-        const gic_real t346 = e[2] * t142 - e[3] * t143 + e[0] * t144;
-        const gic_real t347 = e[3] * t144 - e[1] * t142 + e[0] * t143;
-        const gic_real t348 = e[1] * t143 - e[2] * t144 + e[0] * t142;
-        const gic_real t349 = t150 * t328 + (t172 * t330 + t174 * t336);
-        const gic_real t350 = t156 * t328 + (t163 * t330 + t169 * t336);
-        const gic_real t351 = xd[0];
-        const gic_real t352 = xd[1];
-        const gic_real t353 = xd[2];
-        const gic_real t354 = t341 - t54 * t330 - t61 * t328;
-        const gic_real t355 = xd[3];
-        const gic_real t356 = t342 - t55 * t330 - t62 * t328;
-        const gic_real t357 = xd[4];
-        rate[0] = t343;
-        rate[1] = t344;
-        rate[2] = t345;
-        rate[3] = t145;
-        rate[4] = t346;
-        rate[5] = t347;
-        rate[6] = t348;
-        rate[12] = t349;
-        rate[15] = t339;
-        rate[13] = t350;
-        rate[16] = t334;
-        rate[14] = t340;
-        rate[17] = t332;
-        rate[7] = t351;
-        rate[18] = t323;
-        rate[8] = t352;
-        rate[19] = t326;
-        rate[9] = t353;
-        rate[20] = t354;
-        rate[10] = t355;
-        rate[21] = t356;
-        rate[11] = t357;
-        rate[22] = t327;
+        const gic_real rate_of_spring_f_r_rate = t307 * (t136 * t312 + t141 * t317 - t325 * t322);
+        const gic_real rate_of_rack_rate = t307 * (t140 * t322 - (t137 * t312 + t325 * t317));
+        const gic_real t328 = t85 * (t324 - t107 * rate_of_spring_f_r_rate - t124 * rate_of_rack_rate);
+        const gic_real t329 = t67 * t297 + t77 * t302 + t90 * t306 - t91 * rate_of_spring_f_l_rate;
+        const gic_real t330 = t85 * (t329 - t106 * rate_of_spring_f_r_rate - t123 * rate_of_rack_rate);
+        const gic_real t331 = t73 * t297 + t67 * t302 + t60 * t306 - t89 * rate_of_spring_f_l_rate;
+        const gic_real rate_of_omega_z = t85 * (t331 - t105 * rate_of_spring_f_r_rate - t122 * rate_of_rack_rate);
+        const gic_real t333 = t41 * t296 - t42 * rate_of_omega_z - t56 * t330 + t65 * t328;
+        const gic_real rate_of_omega_y = t333 - t83 * rate_of_spring_f_l_rate - t100 * rate_of_spring_f_r_rate - t116 *
+            rate_of_rack_rate;
+        const gic_real t335 = t267 * R(0.00039159296886992533) - t16 * rate_of_omega_y + t70 * rate_of_omega_z - t79 *
+            rate_of_spring_f_l_rate;
+        const gic_real t336 = t335 - t96 * rate_of_spring_f_r_rate - t112 * rate_of_rack_rate;
+        const gic_real t337 = t24 * t287 - t25 * rate_of_omega_y - t45 * rate_of_omega_z + t53 * t330;
+        const gic_real t338 = t337 - t63 * t328 - t81 * rate_of_spring_f_l_rate - t98 * rate_of_spring_f_r_rate;
+        const gic_real rate_of_omega_x = t338 - t114 * rate_of_rack_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t179 * t328 + (t155 * t330 + t180 * t336));
+        const gic_real t341 = t271 * t6 - t7 * rate_of_omega_x - t18 * rate_of_omega_y - t43 * rate_of_omega_z;
+        const gic_real t342 = t275 * t9 - t10 * rate_of_omega_x - t20 * rate_of_omega_y - t44 * rate_of_omega_z;
+        const gic_real rate_of_r_x = y[HMMWV_STATE_V_X];
+        const gic_real rate_of_r_y = y[HMMWV_STATE_V_Y];
+        const gic_real rate_of_r_z = y[HMMWV_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t142 - e[3] * t143 + e[0] * t144;
+        const gic_real rate_of_e2 = e[3] * t144 - e[1] * t142 + e[0] * t143;
+        const gic_real rate_of_e3 = e[1] * t143 - e[2] * t144 + e[0] * t142;
+        const gic_real rate_of_v_x = t150 * t328 + (t172 * t330 + t174 * t336);
+        const gic_real rate_of_v_y = t156 * t328 + (t163 * t330 + t169 * t336);
+        const gic_real rate_of_spring_f_l = xd[HMMWV_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_r = xd[HMMWV_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[HMMWV_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_l_rate = t341 - t54 * t330 - t61 * t328;
+        const gic_real rate_of_spring_r_r = xd[HMMWV_X_SPRING_R_R];
+        const gic_real rate_of_spring_r_r_rate = t342 - t55 * t330 - t62 * t328;
+        const gic_real rate_of_rack = xd[HMMWV_X_RACK];
+        rate[HMMWV_STATE_R_X] = rate_of_r_x;
+        rate[HMMWV_STATE_R_Y] = rate_of_r_y;
+        rate[HMMWV_STATE_R_Z] = rate_of_r_z;
+        rate[HMMWV_STATE_E0] = rate_of_e0;
+        rate[HMMWV_STATE_E1] = rate_of_e1;
+        rate[HMMWV_STATE_E2] = rate_of_e2;
+        rate[HMMWV_STATE_E3] = rate_of_e3;
+        rate[HMMWV_STATE_V_X] = rate_of_v_x;
+        rate[HMMWV_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[HMMWV_STATE_V_Y] = rate_of_v_y;
+        rate[HMMWV_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[HMMWV_STATE_V_Z] = rate_of_v_z;
+        rate[HMMWV_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[HMMWV_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[HMMWV_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[HMMWV_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[HMMWV_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[HMMWV_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[HMMWV_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[HMMWV_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[HMMWV_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
+        rate[HMMWV_STATE_RACK] = rate_of_rack;
+        rate[HMMWV_STATE_RACK_RATE] = rate_of_rack_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -1859,466 +2319,568 @@ static int hmmwv_measure(const hmmwv *self, gic_real time, const gic_real *y, co
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[14] - R(-9.81);
+        const gic_real t10 = rate[HMMWV_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[13] + t5 * rate[12]));
+        /* output chassis_acceleration */
+        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[HMMWV_STATE_V_Y] + t5 * rate[HMMWV_STATE_V_X]));
         const gic_real t15 = e[2] * t6;
         const gic_real t16 = e[0] * t1;
         const gic_real t17 = t15 - t16;
         const gic_real t18 = t11 + t12;
         const gic_real t19 = e[3] * t1;
         const gic_real t20 = R(1.0) - (t7 + t19);
-        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[13] + t17 * rate[12]));
+        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[HMMWV_STATE_V_Y] + t17 * rate[HMMWV_STATE_V_X]));
         const gic_real t22 = R(1.0) - (t8 + t19);
         const gic_real t23 = t2 - t4;
         const gic_real t24 = t15 + t16;
-        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[13] + t22 * rate[12]));
-        const gic_real t26 = m[161] * R(0.09182100000000004);
-        const gic_real t27 = m[159] * R(-0.004825999999999997);
-        const gic_real t28 = t26 + (m[160] * R(0.12319000000000002) + t27);
-        const gic_real t29 = m[152] + t28;
-        const gic_real t30 = m[158] * R(0.09182100000000004);
-        const gic_real t31 = m[156] * R(-0.004825999999999997);
-        const gic_real t32 = t30 + (m[157] * R(0.12319000000000002) + t31);
-        const gic_real t33 = m[151] + t32;
-        const gic_real t34 = m[155] * R(0.09182100000000004);
-        const gic_real t35 = m[153] * R(-0.004825999999999997);
-        const gic_real t36 = t34 + (m[154] * R(0.12319000000000002) + t35);
+        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[HMMWV_STATE_V_Y] + t22 * rate[HMMWV_STATE_V_X]));
+        /* wheel tire_f_l */
+        const gic_real t26 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t27 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t28 = t26 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.12319000000000002) + t27);
+        const gic_real t29 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t28;
+        const gic_real t30 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t31 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t32 = t30 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.12319000000000002) + t31);
+        const gic_real t33 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t32;
+        const gic_real t34 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t35 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = t34 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.12319000000000002) + t35);
         const gic_real t37 = R(1.653405) + t36;
-        const gic_real t38 = y[0] + (t5 * t29 + (t17 * t33 + t22 * t37));
-        const gic_real t39 = y[1] + (t13 * t29 + (t20 * t33 + t24 * t37));
-        const gic_real t40 = y[2] + (t9 * t29 + (t18 * t33 + t23 * t37));
-        const gic_real t41 = m[197] * R(0.09182100000000004);
-        const gic_real t42 = m[195] * R(-0.004825999999999997);
-        const gic_real t43 = t41 + (m[196] * R(-0.12319000000000002) + t42);
-        const gic_real t44 = m[188] + t43;
-        const gic_real t45 = m[194] * R(0.09182100000000004);
-        const gic_real t46 = m[192] * R(-0.004825999999999997);
-        const gic_real t47 = t45 + (m[193] * R(-0.12319000000000002) + t46);
-        const gic_real t48 = m[187] + t47;
-        const gic_real t49 = m[191] * R(0.09182100000000004);
-        const gic_real t50 = m[189] * R(-0.004825999999999997);
-        const gic_real t51 = t49 + (m[190] * R(-0.12319000000000002) + t50);
+        const gic_real output_wheel_f_l_x = y[HMMWV_STATE_R_X] + (t5 * t29 + (t17 * t33 + t22 * t37));
+        const gic_real output_wheel_f_l_y = y[HMMWV_STATE_R_Y] + (t13 * t29 + (t20 * t33 + t24 * t37));
+        const gic_real output_wheel_f_l_z = y[HMMWV_STATE_R_Z] + (t9 * t29 + (t18 * t33 + t23 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t42 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t43 = t41 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.12319000000000002) + t42);
+        const gic_real t44 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t43;
+        const gic_real t45 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t46 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t47 = t45 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.12319000000000002) + t46);
+        const gic_real t48 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t47;
+        const gic_real t49 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t50 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t51 = t49 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.12319000000000002) + t50);
         const gic_real t52 = R(1.653405) + t51;
-        const gic_real t53 = y[0] + (t5 * t44 + (t17 * t48 + t22 * t52));
-        const gic_real t54 = y[1] + (t13 * t44 + (t20 * t48 + t24 * t52));
-        const gic_real t55 = y[2] + (t9 * t44 + (t18 * t48 + t23 * t52));
-        const gic_real t56 = m[233] * R(0.09182100000000004);
-        const gic_real t57 = t56 + m[232] * R(0.12319000000000002);
-        const gic_real t58 = m[224] + t57;
-        const gic_real t59 = m[230] * R(0.09182100000000004);
-        const gic_real t60 = t59 + m[229] * R(0.12319000000000002);
-        const gic_real t61 = m[223] + t60;
+        const gic_real output_wheel_f_r_x = y[HMMWV_STATE_R_X] + (t5 * t44 + (t17 * t48 + t22 * t52));
+        const gic_real output_wheel_f_r_y = y[HMMWV_STATE_R_Y] + (t13 * t44 + (t20 * t48 + t24 * t52));
+        const gic_real output_wheel_f_r_z = y[HMMWV_STATE_R_Z] + (t9 * t44 + (t18 * t48 + t23 * t52));
+        /* wheel tire_r_l */
+        const gic_real t56 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t57 = t56 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.12319000000000002);
+        const gic_real t58 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t57;
+        const gic_real t59 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t60 = t59 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.12319000000000002);
+        const gic_real t61 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t60;
         const gic_real t62 = R(-1.653405) * t22;
-        const gic_real t63 = y[0] + (t5 * t58 + (t17 * t61 + t62));
+        const gic_real output_wheel_r_l_x = y[HMMWV_STATE_R_X] + (t5 * t58 + (t17 * t61 + t62));
         const gic_real t64 = R(-1.653405) * t24;
-        const gic_real t65 = y[1] + (t13 * t58 + (t20 * t61 + t64));
+        const gic_real output_wheel_r_l_y = y[HMMWV_STATE_R_Y] + (t13 * t58 + (t20 * t61 + t64));
         const gic_real t66 = R(-1.653405) * t23;
-        const gic_real t67 = y[2] + (t9 * t58 + (t18 * t61 + t66));
-        const gic_real t68 = m[263] * R(0.09182100000000004);
-        const gic_real t69 = t68 + m[262] * R(-0.12319000000000002);
-        const gic_real t70 = m[254] + t69;
-        const gic_real t71 = m[260] * R(0.09182100000000004);
-        const gic_real t72 = t71 + m[259] * R(-0.12319000000000002);
-        const gic_real t73 = m[253] + t72;
-        const gic_real t74 = y[0] + (t5 * t70 + (t62 + t17 * t73));
-        const gic_real t75 = y[1] + (t13 * t70 + (t64 + t20 * t73));
-        const gic_real t76 = y[2] + (t9 * t70 + (t66 + t18 * t73));
-        const gic_real t77 = x[0] - R(0.31903);
+        const gic_real output_wheel_r_l_z = y[HMMWV_STATE_R_Z] + (t9 * t58 + (t18 * t61 + t66));
+        /* wheel tire_r_r */
+        const gic_real t68 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t69 = t68 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.12319000000000002);
+        const gic_real t70 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t69;
+        const gic_real t71 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t72 = t71 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.12319000000000002);
+        const gic_real t73 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t72;
+        const gic_real output_wheel_r_r_x = y[HMMWV_STATE_R_X] + (t5 * t70 + (t62 + t17 * t73));
+        const gic_real output_wheel_r_r_y = y[HMMWV_STATE_R_Y] + (t13 * t70 + (t64 + t20 * t73));
+        const gic_real output_wheel_r_r_z = y[HMMWV_STATE_R_Z] + (t9 * t70 + (t66 + t18 * t73));
+        /* force spring_f_l */
+        const gic_real t77 = x[HMMWV_X_SPRING_F_L] - R(0.31903);
         const gic_real t78 = t77 * R(167070.9);
-        const gic_real t79 = xd[0] * R(17490.8);
-        const gic_real t80 = x[1] - R(0.31903);
+        const gic_real t79 = xd[HMMWV_X_SPRING_F_L] * R(17490.8);
+        /* force spring_f_r */
+        const gic_real t80 = x[HMMWV_X_SPRING_F_R] - R(0.31903);
         const gic_real t81 = R(167070.9) * t80;
-        const gic_real t82 = xd[1] * R(17490.8);
-        const gic_real t83 = x[2] - R(0.33727);
+        const gic_real t82 = xd[HMMWV_X_SPRING_F_R] * R(17490.8);
+        /* force spring_r_l */
+        const gic_real t83 = x[HMMWV_X_SPRING_R_L] - R(0.33727);
         const gic_real t84 = t83 * R(369167.2);
-        const gic_real t85 = xd[2] * R(24780.4);
-        const gic_real t86 = x[3] - R(0.33727);
+        const gic_real t85 = xd[HMMWV_X_SPRING_R_L] * R(24780.4);
+        /* force spring_r_r */
+        const gic_real t86 = x[HMMWV_X_SPRING_R_R] - R(0.33727);
         const gic_real t87 = R(369167.2) * t86;
-        const gic_real t88 = xd[3] * R(24780.4);
-        const gic_real t89 = x[4] * R(100000.0);
-        const gic_real t90 = xd[4] * R(12000.0);
-        const gic_real t91 = m[167] + (m[162] * t32 - m[163] * t36) + (y[15] * t33 - y[16] * t37);
-        const gic_real t92 = m[166] + (m[164] * t36 - m[162] * t28) + (y[17] * t37 - y[15] * t29);
-        const gic_real t93 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
-        const gic_real t94 = y[13] + (t13 * t91 + (t20 * t92 + t24 * t93));
+        const gic_real t88 = xd[HMMWV_X_SPRING_R_R] * R(24780.4);
+        /* force rack */
+        const gic_real t89 = x[HMMWV_X_RACK] * R(100000.0);
+        const gic_real t90 = xd[HMMWV_X_RACK] * R(12000.0);
+        const gic_real t91 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] *
+            t32 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t36) + (y[HMMWV_STATE_OMEGA_X] * t33 -
+            y[HMMWV_STATE_OMEGA_Y] * t37);
+        const gic_real t92 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] *
+            t36 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t28) + (y[HMMWV_STATE_OMEGA_Z] * t37 -
+            y[HMMWV_STATE_OMEGA_X] * t29);
+        const gic_real t93 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t28 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t32 + (y[HMMWV_STATE_OMEGA_Y] * t29 - y[HMMWV_STATE_OMEGA_Z] *
+            t33);
+        const gic_real t94 = y[HMMWV_STATE_V_Y] + (t13 * t91 + (t20 * t92 + t24 * t93));
         gic_real road95[3];
-        if (!hmmwv_road_height(self, time, t38, t39, road95))
+        if (!hmmwv_road_height(self, time, output_wheel_f_l_x, output_wheel_f_l_y, road95))
             return GIC_ERROR_ROAD;
-        const gic_real t96 = y[12] + (t5 * t91 + (t17 * t92 + t22 * t93));
-        const gic_real t97 = y[14] + (t9 * t91 + (t18 * t92 + t23 * t93));
-        const gic_real t98 = t94 * road95[2] + t96 * road95[1] - t97;
-        const gic_real t99 = road95[0] + R(0.4699) - t40;
-        const gic_real t100 = GIC_MIN(GIC_MAX(t99 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t101 = t98 * ((R(3.0) - (t100 + t100)) * (t100 * t100) * R(500.0));
-        const gic_real t102 = GIC_MAX(t101 + t99 * R(283000.0), R(0.0));
-        const gic_real t103 = m[203] + (m[198] * t47 - m[199] * t51) + (y[15] * t48 - y[16] * t52);
-        const gic_real t104 = m[202] + (m[200] * t51 - m[198] * t43) + (y[17] * t52 - y[15] * t44);
-        const gic_real t105 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
-        const gic_real t106 = y[13] + (t13 * t103 + (t20 * t104 + t24 * t105));
+        const gic_real t96 = y[HMMWV_STATE_V_X] + (t5 * t91 + (t17 * t92 + t22 * t93));
+        const gic_real t97 = y[HMMWV_STATE_V_Z] + (t9 * t91 + (t18 * t92 + t23 * t93));
+        const gic_real output_tire_f_l_deflection_rate = t94 * road95[2] + t96 * road95[1] - t97;
+        const gic_real output_tire_f_l_deflection = road95[0] + R(0.4699) - output_wheel_f_l_z;
+        const gic_real t100 = GIC_MIN(GIC_MAX(output_tire_f_l_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t101 = output_tire_f_l_deflection_rate * ((R(3.0) - (t100 + t100)) * (t100 * t100) * R(500.0));
+        const gic_real output_tire_f_l_fz = GIC_MAX(t101 + output_tire_f_l_deflection * R(283000.0), R(0.0));
+        const gic_real t103 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t47 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t51) +
+            (y[HMMWV_STATE_OMEGA_X] * t48 - y[HMMWV_STATE_OMEGA_Y] * t52);
+        const gic_real t104 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t51 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t43) +
+            (y[HMMWV_STATE_OMEGA_Z] * t52 - y[HMMWV_STATE_OMEGA_X] * t44);
+        const gic_real t105 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t43 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t47 + (y[HMMWV_STATE_OMEGA_Y] * t44 - y[HMMWV_STATE_OMEGA_Z] *
+            t48);
+        const gic_real t106 = y[HMMWV_STATE_V_Y] + (t13 * t103 + (t20 * t104 + t24 * t105));
         gic_real road107[3];
-        if (!hmmwv_road_height(self, time, t53, t54, road107))
+        if (!hmmwv_road_height(self, time, output_wheel_f_r_x, output_wheel_f_r_y, road107))
             return GIC_ERROR_ROAD;
-        const gic_real t108 = y[12] + (t5 * t103 + (t17 * t104 + t22 * t105));
-        const gic_real t109 = y[14] + (t9 * t103 + (t18 * t104 + t23 * t105));
-        const gic_real t110 = t106 * road107[2] + t108 * road107[1] - t109;
-        const gic_real t111 = R(0.4699) + road107[0] - t55;
-        const gic_real t112 = GIC_MIN(GIC_MAX(R(100.0) * t111, R(0.0)), R(1.0));
-        const gic_real t113 = t110 * (R(500.0) * ((R(3.0) - (t112 + t112)) * (t112 * t112)));
-        const gic_real t114 = GIC_MAX(t113 + R(283000.0) * t111, R(0.0));
-        const gic_real t115 = R(-1.653405) * y[16];
-        const gic_real t116 = m[239] + m[234] * t60 + (y[15] * t61 - t115);
-        const gic_real t117 = R(-1.653405) * y[17];
-        const gic_real t118 = m[238] - m[234] * t57 + (t117 - y[15] * t58);
-        const gic_real t119 = y[16] * t58 - y[17] * t61;
-        const gic_real t120 = y[13] + (t13 * t116 + (t20 * t118 + t24 * t119));
+        const gic_real t108 = y[HMMWV_STATE_V_X] + (t5 * t103 + (t17 * t104 + t22 * t105));
+        const gic_real t109 = y[HMMWV_STATE_V_Z] + (t9 * t103 + (t18 * t104 + t23 * t105));
+        const gic_real output_tire_f_r_deflection_rate = t106 * road107[2] + t108 * road107[1] - t109;
+        const gic_real output_tire_f_r_deflection = R(0.4699) + road107[0] - output_wheel_f_r_z;
+        const gic_real t112 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_f_r_deflection, R(0.0)), R(1.0));
+        const gic_real t113 = output_tire_f_r_deflection_rate * (R(500.0) * ((R(3.0) - (t112 + t112)) * (t112 * t112)));
+        const gic_real output_tire_f_r_fz = GIC_MAX(t113 + R(283000.0) * output_tire_f_r_deflection, R(0.0));
+        const gic_real t115 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t116 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t60 + (y[HMMWV_STATE_OMEGA_X] * t61 - t115);
+        const gic_real t117 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t118 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t57 + (t117 - y[HMMWV_STATE_OMEGA_X] * t58);
+        const gic_real t119 = y[HMMWV_STATE_OMEGA_Y] * t58 - y[HMMWV_STATE_OMEGA_Z] * t61;
+        const gic_real t120 = y[HMMWV_STATE_V_Y] + (t13 * t116 + (t20 * t118 + t24 * t119));
         gic_real road121[3];
-        if (!hmmwv_road_height(self, time, t63, t65, road121))
+        if (!hmmwv_road_height(self, time, output_wheel_r_l_x, output_wheel_r_l_y, road121))
             return GIC_ERROR_ROAD;
-        const gic_real t122 = y[12] + (t5 * t116 + (t17 * t118 + t22 * t119));
-        const gic_real t123 = y[14] + (t9 * t116 + (t18 * t118 + t23 * t119));
-        const gic_real t124 = t120 * road121[2] + t122 * road121[1] - t123;
-        const gic_real t125 = R(0.4699) + road121[0] - t67;
-        const gic_real t126 = GIC_MIN(GIC_MAX(R(100.0) * t125, R(0.0)), R(1.0));
-        const gic_real t127 = t124 * (R(500.0) * ((R(3.0) - (t126 + t126)) * (t126 * t126)));
-        const gic_real t128 = GIC_MAX(t127 + R(283000.0) * t125, R(0.0));
-        const gic_real t129 = m[269] + m[264] * t72 + (y[15] * t73 - t115);
-        const gic_real t130 = m[268] - m[264] * t69 + (t117 - y[15] * t70);
-        const gic_real t131 = y[16] * t70 - y[17] * t73;
-        const gic_real t132 = y[13] + (t13 * t129 + (t20 * t130 + t24 * t131));
+        const gic_real t122 = y[HMMWV_STATE_V_X] + (t5 * t116 + (t17 * t118 + t22 * t119));
+        const gic_real t123 = y[HMMWV_STATE_V_Z] + (t9 * t116 + (t18 * t118 + t23 * t119));
+        const gic_real output_tire_r_l_deflection_rate = t120 * road121[2] + t122 * road121[1] - t123;
+        const gic_real output_tire_r_l_deflection = R(0.4699) + road121[0] - output_wheel_r_l_z;
+        const gic_real t126 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_l_deflection, R(0.0)), R(1.0));
+        const gic_real t127 = output_tire_r_l_deflection_rate * (R(500.0) * ((R(3.0) - (t126 + t126)) * (t126 * t126)));
+        const gic_real output_tire_r_l_fz = GIC_MAX(t127 + R(283000.0) * output_tire_r_l_deflection, R(0.0));
+        const gic_real t129 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t72 + (y[HMMWV_STATE_OMEGA_X] * t73 - t115);
+        const gic_real t130 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t69 + (t117 - y[HMMWV_STATE_OMEGA_X] * t70);
+        const gic_real t131 = y[HMMWV_STATE_OMEGA_Y] * t70 - y[HMMWV_STATE_OMEGA_Z] * t73;
+        const gic_real t132 = y[HMMWV_STATE_V_Y] + (t13 * t129 + (t20 * t130 + t24 * t131));
         gic_real road133[3];
-        if (!hmmwv_road_height(self, time, t74, t75, road133))
+        if (!hmmwv_road_height(self, time, output_wheel_r_r_x, output_wheel_r_r_y, road133))
             return GIC_ERROR_ROAD;
-        const gic_real t134 = y[12] + (t5 * t129 + (t17 * t130 + t22 * t131));
-        const gic_real t135 = y[14] + (t9 * t129 + (t18 * t130 + t23 * t131));
-        const gic_real t136 = t132 * road133[2] + t134 * road133[1] - t135;
-        const gic_real t137 = R(0.4699) + road133[0] - t76;
-        const gic_real t138 = GIC_MIN(GIC_MAX(R(100.0) * t137, R(0.0)), R(1.0));
-        const gic_real t139 = t136 * (R(500.0) * ((R(3.0) - (t138 + t138)) * (t138 * t138)));
-        const gic_real t140 = GIC_MAX(t139 + R(283000.0) * t137, R(0.0));
-        const gic_real t141 = y[17] * (y[17] * R(3570.2)) + (y[16] * (y[16] * R(2955.66)) + y[15] * (y[15] * R(1078.52)));
-        const gic_real t142 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t143 = y[16] * R(0.21300000000000008);
-        const gic_real t144 = y[16] * R(0.056);
-        const gic_real t145 = y[14] + (t18 * t142 + t23 * t143 - t9 * t144);
-        const gic_real t146 = y[13] + (t20 * t142 + t24 * t143 - t13 * t144);
-        const gic_real t147 = y[12] + (t17 * t142 + t22 * t143 - t5 * t144);
+        const gic_real t134 = y[HMMWV_STATE_V_X] + (t5 * t129 + (t17 * t130 + t22 * t131));
+        const gic_real t135 = y[HMMWV_STATE_V_Z] + (t9 * t129 + (t18 * t130 + t23 * t131));
+        const gic_real output_tire_r_r_deflection_rate = t132 * road133[2] + t134 * road133[1] - t135;
+        const gic_real output_tire_r_r_deflection = R(0.4699) + road133[0] - output_wheel_r_r_z;
+        const gic_real t138 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_r_deflection, R(0.0)), R(1.0));
+        const gic_real t139 = output_tire_r_r_deflection_rate * (R(500.0) * ((R(3.0) - (t138 + t138)) * (t138 * t138)));
+        const gic_real output_tire_r_r_fz = GIC_MAX(t139 + R(283000.0) * output_tire_r_r_deflection, R(0.0));
+        /* output energy */
+        const gic_real t141 = y[HMMWV_STATE_OMEGA_Z] * (y[HMMWV_STATE_OMEGA_Z] * R(3570.2)) + (y[HMMWV_STATE_OMEGA_Y] *
+            (y[HMMWV_STATE_OMEGA_Y] * R(2955.66)) + y[HMMWV_STATE_OMEGA_X] * (y[HMMWV_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t142 = y[HMMWV_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t143 = y[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t144 = y[HMMWV_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t145 = y[HMMWV_STATE_V_Z] + (t18 * t142 + t23 * t143 - t9 * t144);
+        const gic_real t146 = y[HMMWV_STATE_V_Y] + (t20 * t142 + t24 * t143 - t13 * t144);
+        const gic_real t147 = y[HMMWV_STATE_V_X] + (t17 * t142 + t22 * t143 - t5 * t144);
         const gic_real t148 = R(2086.52) * (t145 * t145 + (t146 * t146 + t147 * t147));
-        const gic_real t149 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t150 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t151 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t152 = y[14] + (t9 * t149 + (t18 * t150 + t23 * t151));
-        const gic_real t153 = y[13] + (t13 * t149 + (t20 * t150 + t24 * t151));
-        const gic_real t154 = y[12] + (t5 * t149 + (t17 * t150 + t22 * t151));
+        const gic_real t149 = m[HMMWV_MOTION_RACK + HMMWV_C_Y] * y[HMMWV_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t150 = m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] + (R(1.438648) * y[HMMWV_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_X]);
+        const gic_real t151 = R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t152 = y[HMMWV_STATE_V_Z] + (t9 * t149 + (t18 * t150 + t23 * t151));
+        const gic_real t153 = y[HMMWV_STATE_V_Y] + (t13 * t149 + (t20 * t150 + t24 * t151));
+        const gic_real t154 = y[HMMWV_STATE_V_X] + (t5 * t149 + (t17 * t150 + t22 * t151));
         const gic_real t155 = R(9.072) * (t152 * t152 + (t153 * t153 + t154 * t154));
-        const gic_real t156 = y[17] * y[17] + (y[16] * y[16] + y[15] * y[15]) + t155;
-        const gic_real t157 = y[17] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t158 = m[38] * R(0.8938);
-        const gic_real t159 = m[37] * R(0.4469);
-        const gic_real t160 = m[41] * t158 + m[40] * t159;
-        const gic_real t161 = y[17] * t160 + y[16] * (m[38] * t158 + m[37] * t159);
-        const gic_real t162 = m[42] + y[15];
-        const gic_real t163 = y[17] * (t157 + y[16] * t160) + (y[16] * t161 + t162 * (t162 * R(0.4469)));
-        const gic_real t164 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t156 = y[HMMWV_STATE_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Z] + (y[HMMWV_STATE_OMEGA_Y] *
+            y[HMMWV_STATE_OMEGA_Y] + y[HMMWV_STATE_OMEGA_X] * y[HMMWV_STATE_OMEGA_X]) + t155;
+        const gic_real t157 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(0.8938)) + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.4469)));
+        const gic_real t158 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t159 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t160 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * t158 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * t159;
+        const gic_real t161 = y[HMMWV_STATE_OMEGA_Z] * t160 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * t158 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * t159);
+        const gic_real t162 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t163 = y[HMMWV_STATE_OMEGA_Z] * (t157 + y[HMMWV_STATE_OMEGA_Y] * t160) +
+            (y[HMMWV_STATE_OMEGA_Y] * t161 + t162 * (t162 * R(0.4469)));
+        const gic_real t164 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.24689200985615367);
         const gic_real t165 = R(0.307086) + t164;
-        const gic_real t166 = R(1.688965) * y[16];
-        const gic_real t167 = m[42] * t164 + (y[15] * t165 - t166);
-        const gic_real t168 = R(1.688965) * y[17];
-        const gic_real t169 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t170 = t168 - y[15] * t169 - m[42] * t169;
-        const gic_real t171 = y[16] * t169 - y[17] * t165;
-        const gic_real t172 = y[14] + (t9 * t167 + (t18 * t170 + t23 * t171));
-        const gic_real t173 = y[13] + (t13 * t167 + (t20 * t170 + t24 * t171));
-        const gic_real t174 = y[12] + (t5 * t167 + (t17 * t170 + t22 * t171));
+        const gic_real t166 = R(1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t167 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t164 + (y[HMMWV_STATE_OMEGA_X] * t165 - t166);
+        const gic_real t168 = R(1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t169 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.24689200985615367);
+        const gic_real t170 = t168 - y[HMMWV_STATE_OMEGA_X] * t169 - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t169;
+        const gic_real t171 = y[HMMWV_STATE_OMEGA_Y] * t169 - y[HMMWV_STATE_OMEGA_Z] * t165;
+        const gic_real t172 = y[HMMWV_STATE_V_Z] + (t9 * t167 + (t18 * t170 + t23 * t171));
+        const gic_real t173 = y[HMMWV_STATE_V_Y] + (t13 * t167 + (t20 * t170 + t24 * t171));
+        const gic_real t174 = y[HMMWV_STATE_V_X] + (t5 * t167 + (t17 * t170 + t22 * t171));
         const gic_real t175 = R(23.965) * (t172 * t172 + (t173 * t173 + t174 * t174));
         const gic_real t176 = R(0.5) * (t141 + t148) + R(0.5) * t156 + R(0.5) * (t163 + t175);
-        const gic_real t177 = y[17] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t178 = m[68] * R(0.8938);
-        const gic_real t179 = m[67] * R(0.4469);
-        const gic_real t180 = m[71] * t178 + m[70] * t179;
-        const gic_real t181 = y[17] * t180 + y[16] * (m[68] * t178 + m[67] * t179);
-        const gic_real t182 = m[72] + y[15];
-        const gic_real t183 = y[17] * (t177 + y[16] * t180) + (y[16] * t181 + t182 * (R(0.4469) * t182));
-        const gic_real t184 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t177 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(0.8938)) + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(0.4469)));
+        const gic_real t178 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t179 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t180 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * t178 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * t179;
+        const gic_real t181 = y[HMMWV_STATE_OMEGA_Z] * t180 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * t178 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * t179);
+        const gic_real t182 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t183 = y[HMMWV_STATE_OMEGA_Z] * (t177 + y[HMMWV_STATE_OMEGA_Y] * t180) +
+            (y[HMMWV_STATE_OMEGA_Y] * t181 + t182 * (R(0.4469) * t182));
+        const gic_real t184 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(-0.24689200985615367);
         const gic_real t185 = R(-0.307086) + t184;
-        const gic_real t186 = m[72] * t184 + (y[15] * t185 - t166);
-        const gic_real t187 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t188 = t168 - y[15] * t187 - m[72] * t187;
-        const gic_real t189 = y[16] * t187 - y[17] * t185;
-        const gic_real t190 = y[14] + (t9 * t186 + (t18 * t188 + t23 * t189));
-        const gic_real t191 = y[13] + (t13 * t186 + (t20 * t188 + t24 * t189));
-        const gic_real t192 = y[12] + (t5 * t186 + (t17 * t188 + t22 * t189));
+        const gic_real t186 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t184 + (y[HMMWV_STATE_OMEGA_X] * t185 - t166);
+        const gic_real t187 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(-0.24689200985615367);
+        const gic_real t188 = t168 - y[HMMWV_STATE_OMEGA_X] * t187 - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t187;
+        const gic_real t189 = y[HMMWV_STATE_OMEGA_Y] * t187 - y[HMMWV_STATE_OMEGA_Z] * t185;
+        const gic_real t190 = y[HMMWV_STATE_V_Z] + (t9 * t186 + (t18 * t188 + t23 * t189));
+        const gic_real t191 = y[HMMWV_STATE_V_Y] + (t13 * t186 + (t20 * t188 + t24 * t189));
+        const gic_real t192 = y[HMMWV_STATE_V_X] + (t5 * t186 + (t17 * t188 + t22 * t189));
         const gic_real t193 = R(23.965) * (t190 * t190 + (t191 * t191 + t192 * t192));
-        const gic_real t194 = m[164] + y[17];
-        const gic_real t195 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t196 = m[163] + y[16];
-        const gic_real t197 = m[158] * R(4.7728205);
-        const gic_real t198 = m[157] * R(7.58122);
-        const gic_real t199 = m[156] * R(4.8947505);
-        const gic_real t200 = m[161] * t197 + (m[160] * t198 + m[159] * t199);
-        const gic_real t201 = m[162] + y[15];
-        const gic_real t202 = m[155] * R(4.7728205);
-        const gic_real t203 = m[154] * R(7.58122);
-        const gic_real t204 = m[153] * R(4.8947505);
-        const gic_real t205 = m[161] * t202 + (m[160] * t203 + m[159] * t204);
+        const gic_real t194 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t195 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t196 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t197 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t198 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t199 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t200 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t197 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t198 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t199);
+        const gic_real t201 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t202 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t203 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(7.58122);
+        const gic_real t204 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t205 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t202 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t203 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t204);
         const gic_real t206 = t194 * (t194 * t195 + (t196 * t200 + t201 * t205));
-        const gic_real t207 = t196 * (m[158] * t197 + (m[157] * t198 + m[156] * t199));
-        const gic_real t208 = m[158] * t202 + (m[157] * t203 + m[156] * t204);
-        const gic_real t209 = t201 * (m[155] * t202 + (m[154] * t203 + m[153] * t204));
+        const gic_real t207 = t196 * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t197 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * t198 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t199));
+        const gic_real t208 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t202 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t203 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t204);
+        const gic_real t209 = t201 * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * t202 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * t203 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * t204));
         const gic_real t210 = t196 * (t194 * t200 + (t207 + t201 * t208)) + t201 * (t194 * t205 + (t196 * t208 + t209));
-        const gic_real t211 = t30 + (t31 + m[157] * R(0.08910630000000008));
-        const gic_real t212 = t34 + (t35 + m[154] * R(0.08910630000000008));
-        const gic_real t213 = m[151] + t211;
+        const gic_real t211 = t30 + (t31 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.08910630000000008));
+        const gic_real t212 = t34 + (t35 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.08910630000000008));
+        const gic_real t213 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t211;
         const gic_real t214 = R(1.653405) + t212;
-        const gic_real t215 = m[167] + (m[162] * t211 - m[163] * t212) + (y[15] * t213 - y[16] * t214);
-        const gic_real t216 = t26 + (t27 + m[160] * R(0.08910630000000008));
-        const gic_real t217 = m[152] + t216;
-        const gic_real t218 = m[166] + (m[164] * t212 - m[162] * t216) + (y[17] * t214 - y[15] * t217);
-        const gic_real t219 = m[163] * t216 - m[164] * t211 + (y[16] * t217 - y[17] * t213);
-        const gic_real t220 = y[14] + (t9 * t215 + (t18 * t218 + t23 * t219));
-        const gic_real t221 = y[13] + (t13 * t215 + (t20 * t218 + t24 * t219));
-        const gic_real t222 = y[12] + (t5 * t215 + (t17 * t218 + t22 * t219));
+        const gic_real t215 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t211 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t212) +
+            (y[HMMWV_STATE_OMEGA_X] * t213 - y[HMMWV_STATE_OMEGA_Y] * t214);
+        const gic_real t216 = t26 + (t27 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.08910630000000008));
+        const gic_real t217 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t216;
+        const gic_real t218 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t212 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t216) +
+            (y[HMMWV_STATE_OMEGA_Z] * t214 - y[HMMWV_STATE_OMEGA_X] * t217);
+        const gic_real t219 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t216 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t211 + (y[HMMWV_STATE_OMEGA_Y] * t217 - y[HMMWV_STATE_OMEGA_Z] *
+            t213);
+        const gic_real t220 = y[HMMWV_STATE_V_Z] + (t9 * t215 + (t18 * t218 + t23 * t219));
+        const gic_real t221 = y[HMMWV_STATE_V_Y] + (t13 * t215 + (t20 * t218 + t24 * t219));
+        const gic_real t222 = y[HMMWV_STATE_V_X] + (t5 * t215 + (t17 * t218 + t22 * t219));
         const gic_real t223 = R(90.555) * (t220 * t220 + (t221 * t221 + t222 * t222));
         const gic_real t224 = t176 + R(0.5) * (t183 + t193) + R(0.5) * (t206 + t210 + t223);
-        const gic_real t225 = m[200] + y[17];
-        const gic_real t226 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t227 = m[199] + y[16];
-        const gic_real t228 = m[194] * R(4.7728205);
-        const gic_real t229 = m[193] * R(7.58122);
-        const gic_real t230 = m[192] * R(4.8947505);
-        const gic_real t231 = m[197] * t228 + (m[196] * t229 + m[195] * t230);
-        const gic_real t232 = m[198] + y[15];
-        const gic_real t233 = m[191] * R(4.7728205);
-        const gic_real t234 = m[190] * R(7.58122);
-        const gic_real t235 = m[189] * R(4.8947505);
-        const gic_real t236 = m[197] * t233 + (m[196] * t234 + m[195] * t235);
+        const gic_real t225 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t226 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t227 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t228 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t229 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t230 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t231 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t228 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t229 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t230);
+        const gic_real t232 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t233 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t234 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(7.58122);
+        const gic_real t235 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t236 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t233 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t234 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t235);
         const gic_real t237 = t225 * (t225 * t226 + (t227 * t231 + t232 * t236));
-        const gic_real t238 = t227 * (m[194] * t228 + (m[193] * t229 + m[192] * t230));
-        const gic_real t239 = m[194] * t233 + (m[193] * t234 + m[192] * t235);
-        const gic_real t240 = t232 * (m[191] * t233 + (m[190] * t234 + m[189] * t235));
+        const gic_real t238 = t227 * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t228 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * t229 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t230));
+        const gic_real t239 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t233 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t234 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t235);
+        const gic_real t240 = t232 * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * t233 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * t234 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * t235));
         const gic_real t241 = t227 * (t225 * t231 + (t238 + t232 * t239)) + t232 * (t225 * t236 + (t227 * t239 + t240));
-        const gic_real t242 = t45 + (t46 + m[193] * R(-0.08910630000000008));
-        const gic_real t243 = t49 + (t50 + m[190] * R(-0.08910630000000008));
-        const gic_real t244 = m[187] + t242;
+        const gic_real t242 = t45 + (t46 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.08910630000000008));
+        const gic_real t243 = t49 + (t50 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.08910630000000008));
+        const gic_real t244 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t242;
         const gic_real t245 = R(1.653405) + t243;
-        const gic_real t246 = m[203] + (m[198] * t242 - m[199] * t243) + (y[15] * t244 - y[16] * t245);
-        const gic_real t247 = t41 + (t42 + m[196] * R(-0.08910630000000008));
-        const gic_real t248 = m[188] + t247;
-        const gic_real t249 = m[202] + (m[200] * t243 - m[198] * t247) + (y[17] * t245 - y[15] * t248);
-        const gic_real t250 = m[199] * t247 - m[200] * t242 + (y[16] * t248 - y[17] * t244);
-        const gic_real t251 = y[14] + (t9 * t246 + (t18 * t249 + t23 * t250));
-        const gic_real t252 = y[13] + (t13 * t246 + (t20 * t249 + t24 * t250));
-        const gic_real t253 = y[12] + (t5 * t246 + (t17 * t249 + t22 * t250));
+        const gic_real t246 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t242 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t243) +
+            (y[HMMWV_STATE_OMEGA_X] * t244 - y[HMMWV_STATE_OMEGA_Y] * t245);
+        const gic_real t247 = t41 + (t42 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.08910630000000008));
+        const gic_real t248 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t247;
+        const gic_real t249 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t243 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t247) +
+            (y[HMMWV_STATE_OMEGA_Z] * t245 - y[HMMWV_STATE_OMEGA_X] * t248);
+        const gic_real t250 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t247 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t242 + (y[HMMWV_STATE_OMEGA_Y] * t248 - y[HMMWV_STATE_OMEGA_Z] *
+            t244);
+        const gic_real t251 = y[HMMWV_STATE_V_Z] + (t9 * t246 + (t18 * t249 + t23 * t250));
+        const gic_real t252 = y[HMMWV_STATE_V_Y] + (t13 * t246 + (t20 * t249 + t24 * t250));
+        const gic_real t253 = y[HMMWV_STATE_V_X] + (t5 * t246 + (t17 * t249 + t22 * t250));
         const gic_real t254 = R(90.555) * (t251 * t251 + (t252 * t252 + t253 * t253));
-        const gic_real t255 = y[17] * (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469)));
-        const gic_real t256 = m[98] * R(0.8938);
-        const gic_real t257 = m[97] * R(0.4469);
-        const gic_real t258 = m[101] * t256 + m[100] * t257;
-        const gic_real t259 = y[17] * t258 + y[16] * (m[98] * t256 + m[97] * t257);
-        const gic_real t260 = m[102] + y[15];
-        const gic_real t261 = y[17] * (t255 + y[16] * t258) + (y[16] * t259 + t260 * (R(0.4469) * t260));
-        const gic_real t262 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t255 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(0.8938)) + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.4469)));
+        const gic_real t256 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t257 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t258 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * t256 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * t257;
+        const gic_real t259 = y[HMMWV_STATE_OMEGA_Z] * t258 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * t256 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * t257);
+        const gic_real t260 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t261 = y[HMMWV_STATE_OMEGA_Z] * (t255 + y[HMMWV_STATE_OMEGA_Y] * t258) +
+            (y[HMMWV_STATE_OMEGA_Y] * t259 + t260 * (R(0.4469) * t260));
+        const gic_real t262 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.246867347245056);
         const gic_real t263 = R(0.307086) + t262;
-        const gic_real t264 = R(-1.688965) * y[16];
-        const gic_real t265 = m[102] * t262 + (y[15] * t263 - t264);
-        const gic_real t266 = R(-1.688965) * y[17];
-        const gic_real t267 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t268 = t266 - y[15] * t267 - m[102] * t267;
-        const gic_real t269 = y[16] * t267 - y[17] * t263;
-        const gic_real t270 = y[14] + (t9 * t265 + (t18 * t268 + t23 * t269));
-        const gic_real t271 = y[13] + (t13 * t265 + (t20 * t268 + t24 * t269));
-        const gic_real t272 = y[12] + (t5 * t265 + (t17 * t268 + t22 * t269));
+        const gic_real t264 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t265 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t262 + (y[HMMWV_STATE_OMEGA_X] * t263 - t264);
+        const gic_real t266 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t267 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.246867347245056);
+        const gic_real t268 = t266 - y[HMMWV_STATE_OMEGA_X] * t267 - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t267;
+        const gic_real t269 = y[HMMWV_STATE_OMEGA_Y] * t267 - y[HMMWV_STATE_OMEGA_Z] * t263;
+        const gic_real t270 = y[HMMWV_STATE_V_Z] + (t9 * t265 + (t18 * t268 + t23 * t269));
+        const gic_real t271 = y[HMMWV_STATE_V_Y] + (t13 * t265 + (t20 * t268 + t24 * t269));
+        const gic_real t272 = y[HMMWV_STATE_V_X] + (t5 * t265 + (t17 * t268 + t22 * t269));
         const gic_real t273 = R(23.965) * (t270 * t270 + (t271 * t271 + t272 * t272));
         const gic_real t274 = t224 + R(0.5) * (t237 + t241 + t254) + R(0.5) * (t261 + t273);
-        const gic_real t275 = y[17] * (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469)));
-        const gic_real t276 = m[128] * R(0.8938);
-        const gic_real t277 = m[127] * R(0.4469);
-        const gic_real t278 = m[131] * t276 + m[130] * t277;
-        const gic_real t279 = y[17] * t278 + y[16] * (m[128] * t276 + m[127] * t277);
-        const gic_real t280 = m[132] + y[15];
-        const gic_real t281 = y[17] * (t275 + y[16] * t278) + (y[16] * t279 + t280 * (R(0.4469) * t280));
-        const gic_real t282 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t275 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(0.8938)) + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(0.4469)));
+        const gic_real t276 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t277 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t278 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * t276 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * t277;
+        const gic_real t279 = y[HMMWV_STATE_OMEGA_Z] * t278 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * t276 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * t277);
+        const gic_real t280 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t281 = y[HMMWV_STATE_OMEGA_Z] * (t275 + y[HMMWV_STATE_OMEGA_Y] * t278) +
+            (y[HMMWV_STATE_OMEGA_Y] * t279 + t280 * (R(0.4469) * t280));
+        const gic_real t282 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(-0.246867347245056);
         const gic_real t283 = R(-0.307086) + t282;
-        const gic_real t284 = m[132] * t282 + (y[15] * t283 - t264);
-        const gic_real t285 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t286 = t266 - y[15] * t285 - m[132] * t285;
-        const gic_real t287 = y[16] * t285 - y[17] * t283;
-        const gic_real t288 = y[14] + (t9 * t284 + (t18 * t286 + t23 * t287));
-        const gic_real t289 = y[13] + (t13 * t284 + (t20 * t286 + t24 * t287));
-        const gic_real t290 = y[12] + (t5 * t284 + (t17 * t286 + t22 * t287));
+        const gic_real t284 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t282 + (y[HMMWV_STATE_OMEGA_X] * t283 - t264);
+        const gic_real t285 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(-0.246867347245056);
+        const gic_real t286 = t266 - y[HMMWV_STATE_OMEGA_X] * t285 - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t285;
+        const gic_real t287 = y[HMMWV_STATE_OMEGA_Y] * t285 - y[HMMWV_STATE_OMEGA_Z] * t283;
+        const gic_real t288 = y[HMMWV_STATE_V_Z] + (t9 * t284 + (t18 * t286 + t23 * t287));
+        const gic_real t289 = y[HMMWV_STATE_V_Y] + (t13 * t284 + (t20 * t286 + t24 * t287));
+        const gic_real t290 = y[HMMWV_STATE_V_X] + (t5 * t284 + (t17 * t286 + t22 * t287));
         const gic_real t291 = R(23.965) * (t288 * t288 + (t289 * t289 + t290 * t290));
-        const gic_real t292 = y[17] * (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(7.58122)));
-        const gic_real t293 = m[230] * R(4.7728205);
-        const gic_real t294 = m[229] * R(7.58122);
-        const gic_real t295 = m[233] * t293 + m[232] * t294;
-        const gic_real t296 = y[17] * t295 + y[16] * (m[230] * t293 + m[229] * t294);
-        const gic_real t297 = m[234] + y[15];
-        const gic_real t298 = y[17] * (t292 + y[16] * t295) + (y[16] * t296 + t297 * (R(4.8947505) * t297));
-        const gic_real t299 = t59 + m[229] * R(0.08910630000000008);
-        const gic_real t300 = m[223] + t299;
-        const gic_real t301 = m[239] + m[234] * t299 + (y[15] * t300 - t115);
-        const gic_real t302 = t56 + m[232] * R(0.08910630000000008);
-        const gic_real t303 = m[224] + t302;
-        const gic_real t304 = m[238] - m[234] * t302 + (t117 - y[15] * t303);
-        const gic_real t305 = y[16] * t303 - y[17] * t300;
-        const gic_real t306 = y[14] + (t9 * t301 + (t18 * t304 + t23 * t305));
-        const gic_real t307 = y[13] + (t13 * t301 + (t20 * t304 + t24 * t305));
-        const gic_real t308 = y[12] + (t5 * t301 + (t17 * t304 + t22 * t305));
+        const gic_real t292 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(7.58122)));
+        const gic_real t293 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t294 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t295 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * t293 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            t294;
+        const gic_real t296 = y[HMMWV_STATE_OMEGA_Z] * t295 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * t293 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * t294);
+        const gic_real t297 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t298 = y[HMMWV_STATE_OMEGA_Z] * (t292 + y[HMMWV_STATE_OMEGA_Y] * t295) +
+            (y[HMMWV_STATE_OMEGA_Y] * t296 + t297 * (R(4.8947505) * t297));
+        const gic_real t299 = t59 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.08910630000000008);
+        const gic_real t300 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t299;
+        const gic_real t301 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t299 + (y[HMMWV_STATE_OMEGA_X] * t300 - t115);
+        const gic_real t302 = t56 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.08910630000000008);
+        const gic_real t303 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t302;
+        const gic_real t304 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t302 + (t117 - y[HMMWV_STATE_OMEGA_X] * t303);
+        const gic_real t305 = y[HMMWV_STATE_OMEGA_Y] * t303 - y[HMMWV_STATE_OMEGA_Z] * t300;
+        const gic_real t306 = y[HMMWV_STATE_V_Z] + (t9 * t301 + (t18 * t304 + t23 * t305));
+        const gic_real t307 = y[HMMWV_STATE_V_Y] + (t13 * t301 + (t20 * t304 + t24 * t305));
+        const gic_real t308 = y[HMMWV_STATE_V_X] + (t5 * t301 + (t17 * t304 + t22 * t305));
         const gic_real t309 = R(90.555) * (t306 * t306 + (t307 * t307 + t308 * t308));
         const gic_real t310 = t274 + R(0.5) * (t281 + t291) + R(0.5) * (t298 + t309);
-        const gic_real t311 = y[17] * (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(7.58122)));
-        const gic_real t312 = m[260] * R(4.7728205);
-        const gic_real t313 = m[259] * R(7.58122);
-        const gic_real t314 = m[263] * t312 + m[262] * t313;
-        const gic_real t315 = y[17] * t314 + y[16] * (m[260] * t312 + m[259] * t313);
-        const gic_real t316 = m[264] + y[15];
-        const gic_real t317 = y[17] * (t311 + y[16] * t314) + (y[16] * t315 + t316 * (R(4.8947505) * t316));
-        const gic_real t318 = t71 + m[259] * R(-0.08910630000000008);
-        const gic_real t319 = m[253] + t318;
-        const gic_real t320 = m[269] + m[264] * t318 + (y[15] * t319 - t115);
-        const gic_real t321 = t68 + m[262] * R(-0.08910630000000008);
-        const gic_real t322 = m[254] + t321;
-        const gic_real t323 = m[268] - m[264] * t321 + (t117 - y[15] * t322);
-        const gic_real t324 = y[16] * t322 - y[17] * t319;
-        const gic_real t325 = y[14] + (t9 * t320 + (t18 * t323 + t23 * t324));
-        const gic_real t326 = y[13] + (t13 * t320 + (t20 * t323 + t24 * t324));
-        const gic_real t327 = y[12] + (t5 * t320 + (t17 * t323 + t22 * t324));
+        const gic_real t311 = y[HMMWV_STATE_OMEGA_Z] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(7.58122)));
+        const gic_real t312 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t313 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t314 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * t312 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            t313;
+        const gic_real t315 = y[HMMWV_STATE_OMEGA_Z] * t314 + y[HMMWV_STATE_OMEGA_Y] *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * t312 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * t313);
+        const gic_real t316 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
+        const gic_real t317 = y[HMMWV_STATE_OMEGA_Z] * (t311 + y[HMMWV_STATE_OMEGA_Y] * t314) +
+            (y[HMMWV_STATE_OMEGA_Y] * t315 + t316 * (R(4.8947505) * t316));
+        const gic_real t318 = t71 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.08910630000000008);
+        const gic_real t319 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t318;
+        const gic_real t320 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t318 + (y[HMMWV_STATE_OMEGA_X] * t319 - t115);
+        const gic_real t321 = t68 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.08910630000000008);
+        const gic_real t322 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t321;
+        const gic_real t323 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t321 + (t117 - y[HMMWV_STATE_OMEGA_X] * t322);
+        const gic_real t324 = y[HMMWV_STATE_OMEGA_Y] * t322 - y[HMMWV_STATE_OMEGA_Z] * t319;
+        const gic_real t325 = y[HMMWV_STATE_V_Z] + (t9 * t320 + (t18 * t323 + t23 * t324));
+        const gic_real t326 = y[HMMWV_STATE_V_Y] + (t13 * t320 + (t20 * t323 + t24 * t324));
+        const gic_real t327 = y[HMMWV_STATE_V_X] + (t5 * t320 + (t17 * t323 + t22 * t324));
         const gic_real t328 = R(90.555) * (t325 * t325 + (t326 * t326 + t327 * t327));
         const gic_real t329 = t77 * t78 * R(0.5) + R(0.5) * (t80 * t81) + R(0.5) * (t83 * t84);
-        const gic_real t330 = t329 + R(0.5) * (t86 * t87) + R(0.5) * (x[4] * t89);
-        const gic_real t331 = t330 - (y[2] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) * R(-20468.7612);
-        const gic_real t332 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t18 + R(1.438648) * t23));
+        const gic_real t330 = t329 + R(0.5) * (t86 * t87) + R(0.5) * (x[HMMWV_X_RACK] * t89);
+        const gic_real t331 = t330 - (y[HMMWV_STATE_R_Z] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) *
+            R(-20468.7612);
+        const gic_real t332 = y[HMMWV_STATE_R_Z] + (R(0.05422899999999997) * t9 + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            t18 + R(1.438648) * t23));
         const gic_real t333 = R(1.688965) * t23;
-        const gic_real t334 = (y[2] + (t9 * t169 + (t18 * t165 + t333))) * R(-235.09665);
-        const gic_real t335 = R(-235.09665) * (y[2] + (t9 * t187 + (t333 + t18 * t185)));
-        const gic_real t336 = y[2] + (t9 * t217 + (t18 * t213 + t23 * t214));
+        const gic_real t334 = (y[HMMWV_STATE_R_Z] + (t9 * t169 + (t18 * t165 + t333))) * R(-235.09665);
+        const gic_real t335 = R(-235.09665) * (y[HMMWV_STATE_R_Z] + (t9 * t187 + (t333 + t18 * t185)));
+        const gic_real t336 = y[HMMWV_STATE_R_Z] + (t9 * t217 + (t18 * t213 + t23 * t214));
         const gic_real t337 = t331 - t332 * R(-88.99632) - t334 - t335 - t336 * R(-888.3445500000001);
-        const gic_real t338 = y[2] + (t9 * t248 + (t18 * t244 + t23 * t245));
+        const gic_real t338 = y[HMMWV_STATE_R_Z] + (t9 * t248 + (t18 * t244 + t23 * t245));
         const gic_real t339 = R(-1.688965) * t23;
-        const gic_real t340 = R(-235.09665) * (y[2] + (t9 * t267 + (t18 * t263 + t339)));
-        const gic_real t341 = R(-235.09665) * (y[2] + (t9 * t285 + (t339 + t18 * t283)));
-        const gic_real t342 = R(-888.3445500000001) * (y[2] + (t9 * t303 + (t66 + t18 * t300)));
-        const gic_real t343 = R(-888.3445500000001) * (y[2] + (t9 * t322 + (t66 + t18 * t319)));
-        const gic_real t344 = t337 - R(-888.3445500000001) * t338 - t340 - t341 - t342 - t343;
-        const gic_real t345 = xd[0] * t79 + xd[1] * t82 + xd[2] * t85 + xd[3] * t88;
-        const gic_real t346 = t97 * t102 - (t345 + xd[4] * t90) + t109 * t114;
-        const gic_real t347 = y[0];
-        const gic_real t348 = y[1];
-        const gic_real t349 = y[2];
-        const gic_real t350 = y[12];
-        const gic_real t351 = y[13];
-        const gic_real t352 = y[14];
-        const gic_real t353 = t5 * t14 + (t17 * t21 + t22 * t25);
-        const gic_real t354 = t13 * t14 + (t20 * t21 + t24 * t25);
-        const gic_real t355 = t9 * t14 + (t18 * t21 + t23 * t25);
-        const gic_real t356 = e[0];
-        const gic_real t357 = e[1];
-        const gic_real t358 = e[2];
-        const gic_real t359 = e[3];
-        const gic_real t360 = GIC_ATAN2(t18, t9);
-        const gic_real t361 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t362 = GIC_ATAN2(t24, t22);
-        const gic_real t363 = y[15];
-        const gic_real t364 = y[16];
-        const gic_real t365 = y[17];
-        const gic_real t366 = x[0];
-        const gic_real t367 = xd[0];
-        const gic_real t368 = rate[18];
-        const gic_real t369 = x[1];
-        const gic_real t370 = xd[1];
-        const gic_real t371 = rate[19];
-        const gic_real t372 = x[2];
-        const gic_real t373 = xd[2];
-        const gic_real t374 = rate[20];
-        const gic_real t375 = x[3];
-        const gic_real t376 = xd[3];
-        const gic_real t377 = rate[21];
-        const gic_real t378 = x[4];
-        const gic_real t379 = xd[4];
-        const gic_real t380 = rate[22];
-        const gic_real t381 = -(t78 + t79);
-        const gic_real t382 = -(t81 + t82);
-        const gic_real t383 = -(t84 + t85);
-        const gic_real t384 = -(t87 + t88);
-        const gic_real t385 = -(t89 + t90);
-        const gic_real t386 = road95[0];
-        const gic_real t387 = road107[0];
-        const gic_real t388 = road121[0];
-        const gic_real t389 = road133[0];
-        const gic_real t390 = t310 + R(0.5) * (t317 + t328);
-        const gic_real t391 = t346 + t123 * t128 + t135 * t140;
-        out[0] = t347;
-        out[1] = t348;
-        out[2] = t349;
-        out[3] = t350;
-        out[4] = t351;
-        out[5] = t352;
-        out[6] = t353;
-        out[7] = t354;
-        out[8] = t355;
-        out[9] = t356;
-        out[10] = t357;
-        out[11] = t358;
-        out[12] = t359;
-        out[13] = t360;
-        out[14] = t361;
-        out[15] = t362;
-        out[16] = t363;
-        out[17] = t364;
-        out[18] = t365;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t53;
-        out[23] = t54;
-        out[24] = t55;
-        out[25] = t63;
-        out[26] = t65;
-        out[27] = t67;
-        out[28] = t74;
-        out[29] = t75;
-        out[30] = t76;
-        out[31] = t366;
-        out[32] = t367;
-        out[33] = t368;
-        out[34] = t369;
-        out[35] = t370;
-        out[36] = t371;
-        out[37] = t372;
-        out[38] = t373;
-        out[39] = t374;
-        out[40] = t375;
-        out[41] = t376;
-        out[42] = t377;
-        out[43] = t378;
-        out[44] = t379;
-        out[45] = t380;
-        out[46] = t381;
-        out[47] = t382;
-        out[48] = t383;
-        out[49] = t384;
-        out[50] = t385;
-        out[51] = t102;
-        out[52] = t99;
-        out[53] = t98;
-        out[54] = t386;
-        out[55] = t114;
-        out[56] = t111;
-        out[57] = t110;
-        out[58] = t387;
-        out[59] = t128;
-        out[60] = t125;
-        out[61] = t124;
-        out[62] = t388;
-        out[63] = t140;
-        out[64] = t137;
-        out[65] = t136;
-        out[66] = t389;
-        out[67] = t390;
-        out[68] = t344;
-        out[69] = t391;
+        const gic_real t340 = R(-235.09665) * (y[HMMWV_STATE_R_Z] + (t9 * t267 + (t18 * t263 + t339)));
+        const gic_real t341 = R(-235.09665) * (y[HMMWV_STATE_R_Z] + (t9 * t285 + (t339 + t18 * t283)));
+        const gic_real t342 = R(-888.3445500000001) * (y[HMMWV_STATE_R_Z] + (t9 * t303 + (t66 + t18 * t300)));
+        const gic_real t343 = R(-888.3445500000001) * (y[HMMWV_STATE_R_Z] + (t9 * t322 + (t66 + t18 * t319)));
+        const gic_real output_energy_potential = t337 - R(-888.3445500000001) * t338 - t340 - t341 - t342 - t343;
+        const gic_real t345 = xd[HMMWV_X_SPRING_F_L] * t79 + xd[HMMWV_X_SPRING_F_R] * t82 + xd[HMMWV_X_SPRING_R_L] *
+            t85 + xd[HMMWV_X_SPRING_R_R] * t88;
+        const gic_real t346 = t97 * output_tire_f_l_fz - (t345 + xd[HMMWV_X_RACK] * t90) + t109 * output_tire_f_r_fz;
+        const gic_real output_chassis_x = y[HMMWV_STATE_R_X];
+        const gic_real output_chassis_y = y[HMMWV_STATE_R_Y];
+        const gic_real output_chassis_z = y[HMMWV_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[HMMWV_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[HMMWV_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[HMMWV_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t14 + (t17 * t21 + t22 * t25);
+        const gic_real output_chassis_acceleration_y = t13 * t14 + (t20 * t21 + t24 * t25);
+        const gic_real output_chassis_acceleration_z = t9 * t14 + (t18 * t21 + t23 * t25);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t18, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t24, t22);
+        const gic_real output_chassis_angular_velocity_x = y[HMMWV_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[HMMWV_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[HMMWV_STATE_OMEGA_Z];
+        const gic_real output_spring_f_l_value = x[HMMWV_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[HMMWV_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[HMMWV_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[HMMWV_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[HMMWV_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[HMMWV_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[HMMWV_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[HMMWV_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[HMMWV_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[HMMWV_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[HMMWV_X_RACK];
+        const gic_real output_rack_rate = xd[HMMWV_X_RACK];
+        const gic_real output_rack_acceleration = rate[HMMWV_STATE_RACK_RATE];
+        const gic_real force_spring_f_l = -(t78 + t79);
+        const gic_real force_spring_f_r = -(t81 + t82);
+        const gic_real force_spring_r_l = -(t84 + t85);
+        const gic_real force_spring_r_r = -(t87 + t88);
+        const gic_real force_rack = -(t89 + t90);
+        const gic_real output_tire_f_l_height = road95[0];
+        const gic_real output_tire_f_r_height = road107[0];
+        const gic_real output_tire_r_l_height = road121[0];
+        const gic_real output_tire_r_r_height = road133[0];
+        const gic_real output_energy_kinetic = t310 + R(0.5) * (t317 + t328);
+        const gic_real output_energy_power = t346 + t123 * output_tire_r_l_fz + t135 * output_tire_r_r_fz;
+        out[HMMWV_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[HMMWV_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[HMMWV_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[HMMWV_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[HMMWV_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[HMMWV_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[HMMWV_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[HMMWV_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[HMMWV_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[HMMWV_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[HMMWV_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[HMMWV_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[HMMWV_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[HMMWV_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[HMMWV_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[HMMWV_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[HMMWV_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[HMMWV_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[HMMWV_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[HMMWV_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[HMMWV_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[HMMWV_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[HMMWV_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[HMMWV_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[HMMWV_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[HMMWV_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[HMMWV_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[HMMWV_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[HMMWV_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[HMMWV_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[HMMWV_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[HMMWV_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[HMMWV_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[HMMWV_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[HMMWV_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[HMMWV_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[HMMWV_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[HMMWV_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[HMMWV_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[HMMWV_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[HMMWV_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[HMMWV_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[HMMWV_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[HMMWV_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[HMMWV_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[HMMWV_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[HMMWV_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[HMMWV_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[HMMWV_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[HMMWV_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[HMMWV_OUTPUT_FORCE_RACK] = force_rack;
+        out[HMMWV_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[HMMWV_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[HMMWV_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[HMMWV_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[HMMWV_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[HMMWV_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[HMMWV_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[HMMWV_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[HMMWV_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[HMMWV_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[HMMWV_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[HMMWV_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[HMMWV_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[HMMWV_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[HMMWV_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[HMMWV_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[HMMWV_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[HMMWV_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[HMMWV_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -2340,26 +2902,35 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[HMMWV_STATE_R_X] + (R(0.05422899999999997) * t5 + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[HMMWV_STATE_R_Y] + (R(0.05422899999999997) * t16 + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[HMMWV_STATE_R_Z] + (R(0.05422899999999997) * t21 + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY]));
+        const gic_real t31 = R(1.0) + (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ]));
+        const gic_real t32 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -2367,12 +2938,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] - m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -2383,11 +2954,16 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY]));
+        const gic_real t59 = R(1.0) + (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ]));
+        const gic_real t60 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -2395,12 +2971,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] - m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -2411,34 +2987,43 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t85 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[161] - (m[153] + m[157]));
-        const gic_real t91 = R(1.0) + (m[157] - (m[153] + m[161]));
-        const gic_real t92 = m[157] + m[161];
-        const gic_real t93 = R(1.0) + (m[153] - t92);
-        const gic_real t94 = R(1.0) + (m[153] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] *
+            R(0.09182100000000004) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.08910630000000008) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] *
+            R(0.09182100000000004) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.08910630000000008) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.08910630000000008) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] *
+            R(-0.004825999999999997)));
+        const gic_real t87 = y[HMMWV_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[HMMWV_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[HMMWV_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] -
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY]));
+        const gic_real t91 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] -
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ]));
+        const gic_real t92 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[156] - m[154];
+        const gic_real t98 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[155] - m[159];
+        const gic_real t100 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[160] - m[158];
+        const gic_real t102 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[158] + m[160];
-        const gic_real t108 = m[155] + m[159];
+        const gic_real t107 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY];
+        const gic_real t108 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[154] + m[156];
+        const gic_real t111 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -2448,34 +3033,43 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t122 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t128 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t129 = m[193] + m[197];
-        const gic_real t130 = R(1.0) + (m[189] - t129);
-        const gic_real t131 = R(1.0) + (m[189] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] *
+            R(0.09182100000000004) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.08910630000000008) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] *
+            R(0.09182100000000004) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.08910630000000008) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.08910630000000008) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] *
+            R(-0.004825999999999997)));
+        const gic_real t124 = y[HMMWV_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[HMMWV_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[HMMWV_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] -
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY]));
+        const gic_real t128 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] -
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ]));
+        const gic_real t129 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[192] - m[190];
+        const gic_real t135 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[191] - m[195];
+        const gic_real t137 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[196] - m[194];
+        const gic_real t139 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[194] + m[196];
-        const gic_real t145 = m[191] + m[195];
+        const gic_real t144 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY];
+        const gic_real t145 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[190] + m[192];
+        const gic_real t148 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -2485,14 +3079,19 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t159 = R(0.307086) + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
+        /* pose of lca_r_l */
+        const gic_real t158 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.246867347245056);
+        const gic_real t159 = R(0.307086) + (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.246867347245056));
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
-        const gic_real t165 = m[97] + m[101];
+        const gic_real t163 = R(1.0) + (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY]));
+        const gic_real t164 = R(1.0) + (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ]));
+        const gic_real t165 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ];
         const gic_real t166 = R(1.0) + (R(1.0) - t165);
         const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
@@ -2500,12 +3099,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t170 = t163 - t169;
         const gic_real t171 = t164 - t168;
         const gic_real t172 = t166 - t167;
-        const gic_real t173 = m[100] - m[98];
+        const gic_real t173 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] - m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ];
         const gic_real t174 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? R(0.0) : (t172 > GIC_R(0) ? t173 : t167)));
         const gic_real t175 = R(0.5) / GIC_SQRT(GIC_MAX(t163, t169));
         const gic_real t176 = t174 * t175;
         const gic_real t177 = e[0] * t176;
-        const gic_real t178 = m[98] + m[100];
+        const gic_real t178 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY];
         const gic_real t179 = (t172 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t180 = (t170 > GIC_R(0) ? t163 : (t171 > GIC_R(0) ? t178 : t179)) * t175;
         const gic_real t181 = (t170 > GIC_R(0) ? t178 : (t171 > GIC_R(0) ? t164 : t179)) * t175;
@@ -2516,11 +3115,16 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t186 = e[2] * t180 - e[3] * t181 + (e[1] * t176 + e[0] * t183);
         const gic_real t187 = e[3] * t183 - e[1] * t180 + (e[2] * t176 + e[0] * t181);
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
-        const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
-        const gic_real t193 = m[127] + m[131];
+        /* pose of lca_r_r */
+        const gic_real t189 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(-0.246867347245056);
+        const gic_real t190 = R(-0.307086) + (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(-0.246867347245056));
+        const gic_real t191 = R(1.0) + (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY]));
+        const gic_real t192 = R(1.0) + (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ]));
+        const gic_real t193 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ];
         const gic_real t194 = R(1.0) + (R(1.0) - t193);
         const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
@@ -2528,12 +3132,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t198 = t191 - t197;
         const gic_real t199 = t192 - t196;
         const gic_real t200 = t194 - t195;
-        const gic_real t201 = m[130] - m[128];
+        const gic_real t201 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] - m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ];
         const gic_real t202 = (t198 > GIC_R(0) ? R(0.0) : (t199 > GIC_R(0) ? R(0.0) : (t200 > GIC_R(0) ? t201 : t195)));
         const gic_real t203 = R(0.5) / GIC_SQRT(GIC_MAX(t191, t197));
         const gic_real t204 = t202 * t203;
         const gic_real t205 = e[0] * t204;
-        const gic_real t206 = m[128] + m[130];
+        const gic_real t206 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY];
         const gic_real t207 = (t200 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t208 = (t198 > GIC_R(0) ? t191 : (t199 > GIC_R(0) ? t206 : t207)) * t203;
         const gic_real t209 = (t198 > GIC_R(0) ? t206 : (t199 > GIC_R(0) ? t192 : t207)) * t203;
@@ -2544,14 +3148,19 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t214 = e[2] * t208 - e[3] * t209 + (e[1] * t204 + e[0] * t211);
         const gic_real t215 = e[3] * t211 - e[1] * t208 + (e[2] * t204 + e[0] * t209);
         const gic_real t216 = e[1] * t209 - e[2] * t211 + (e[3] * t204 + e[0] * t208);
-        const gic_real t217 = m[224] + (m[233] * R(0.09182100000000004) + m[232] * R(0.08910630000000008));
-        const gic_real t218 = m[223] + (m[230] * R(0.09182100000000004) + m[229] * R(0.08910630000000008));
+        /* pose of wheel_r_l */
+        const gic_real t217 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] *
+            R(0.09182100000000004) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.08910630000000008));
+        const gic_real t218 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] *
+            R(0.09182100000000004) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.08910630000000008));
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
-        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
-        const gic_real t224 = m[229] + m[233];
+        const gic_real t222 = R(1.0) + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY]));
+        const gic_real t223 = R(1.0) + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ]));
+        const gic_real t224 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ];
         const gic_real t225 = R(1.0) + (R(1.0) - t224);
         const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
@@ -2559,12 +3168,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t229 = t222 - t228;
         const gic_real t230 = t223 - t227;
         const gic_real t231 = t225 - t226;
-        const gic_real t232 = m[232] - m[230];
+        const gic_real t232 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ];
         const gic_real t233 = (t229 > GIC_R(0) ? R(0.0) : (t230 > GIC_R(0) ? R(0.0) : (t231 > GIC_R(0) ? t232 : t226)));
         const gic_real t234 = R(0.5) / GIC_SQRT(GIC_MAX(t222, t228));
         const gic_real t235 = t233 * t234;
         const gic_real t236 = e[0] * t235;
-        const gic_real t237 = m[230] + m[232];
+        const gic_real t237 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY];
         const gic_real t238 = (t231 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t239 = (t229 > GIC_R(0) ? t222 : (t230 > GIC_R(0) ? t237 : t238)) * t234;
         const gic_real t240 = (t229 > GIC_R(0) ? t237 : (t230 > GIC_R(0) ? t223 : t238)) * t234;
@@ -2575,11 +3184,16 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t245 = e[2] * t239 - e[3] * t240 + (e[1] * t235 + e[0] * t242);
         const gic_real t246 = e[3] * t242 - e[1] * t239 + (e[2] * t235 + e[0] * t240);
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
-        const gic_real t248 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
-        const gic_real t249 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
-        const gic_real t252 = m[259] + m[263];
+        /* pose of wheel_r_r */
+        const gic_real t248 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] *
+            R(0.09182100000000004) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.08910630000000008));
+        const gic_real t249 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] *
+            R(0.09182100000000004) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.08910630000000008));
+        const gic_real t250 = R(1.0) + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] - (R(1.0) +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY]));
+        const gic_real t251 = R(1.0) + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] - (R(1.0) +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ]));
+        const gic_real t252 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ];
         const gic_real t253 = R(1.0) + (R(1.0) - t252);
         const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
@@ -2587,12 +3201,12 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t257 = t250 - t256;
         const gic_real t258 = t251 - t255;
         const gic_real t259 = t253 - t254;
-        const gic_real t260 = m[262] - m[260];
+        const gic_real t260 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ];
         const gic_real t261 = (t257 > GIC_R(0) ? R(0.0) : (t258 > GIC_R(0) ? R(0.0) : (t259 > GIC_R(0) ? t260 : t254)));
         const gic_real t262 = R(0.5) / GIC_SQRT(GIC_MAX(t250, t256));
         const gic_real t263 = t261 * t262;
         const gic_real t264 = e[0] * t263;
-        const gic_real t265 = m[260] + m[262];
+        const gic_real t265 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY];
         const gic_real t266 = (t259 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t267 = (t257 > GIC_R(0) ? t250 : (t258 > GIC_R(0) ? t265 : t266)) * t262;
         const gic_real t268 = (t257 > GIC_R(0) ? t265 : (t258 > GIC_R(0) ? t251 : t266)) * t262;
@@ -2603,9 +3217,9 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t273 = e[2] * t267 - e[3] * t268 + (e[1] * t263 + e[0] * t270);
         const gic_real t274 = e[3] * t270 - e[1] * t267 + (e[2] * t263 + e[0] * t268);
         const gic_real t275 = e[1] * t268 - e[2] * t270 + (e[3] * t263 + e[0] * t267);
-        const gic_real t276 = y[0];
-        const gic_real t277 = y[1];
-        const gic_real t278 = y[2];
+        const gic_real t276 = y[HMMWV_STATE_R_X];
+        const gic_real t277 = y[HMMWV_STATE_R_Y];
+        const gic_real t278 = y[HMMWV_STATE_R_Z];
         const gic_real t279 = e[0];
         const gic_real t280 = e[1];
         const gic_real t281 = e[2];
@@ -2664,83 +3278,83 @@ static void hmmwv_place(const hmmwv *self, const gic_real *y, const gic_real *e,
         const gic_real t334 = (t272 > GIC_R(0) ? t273 : -t273);
         const gic_real t335 = (t272 > GIC_R(0) ? t274 : -t274);
         const gic_real t336 = (t272 > GIC_R(0) ? t275 : -t275);
-        pose[0] = t276;
-        pose[1] = t277;
-        pose[2] = t278;
-        pose[3] = t279;
-        pose[4] = t280;
-        pose[5] = t281;
-        pose[6] = t282;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t283;
-        pose[11] = t284;
-        pose[12] = t285;
-        pose[13] = t286;
-        pose[14] = t287;
-        pose[15] = t288;
-        pose[16] = t289;
-        pose[17] = t290;
-        pose[18] = t291;
-        pose[19] = t292;
-        pose[20] = t293;
-        pose[21] = t294;
-        pose[22] = t295;
-        pose[23] = t296;
-        pose[24] = t297;
-        pose[25] = t298;
-        pose[26] = t299;
-        pose[27] = t300;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t301;
-        pose[32] = t302;
-        pose[33] = t303;
-        pose[34] = t304;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t305;
-        pose[39] = t306;
-        pose[40] = t307;
-        pose[41] = t308;
-        pose[42] = t309;
-        pose[43] = t310;
-        pose[44] = t311;
-        pose[45] = t312;
-        pose[46] = t313;
-        pose[47] = t314;
-        pose[48] = t315;
-        pose[49] = t316;
-        pose[50] = t317;
-        pose[51] = t318;
-        pose[52] = t319;
-        pose[53] = t320;
-        pose[54] = t321;
-        pose[55] = t322;
-        pose[56] = t323;
-        pose[57] = t324;
-        pose[58] = t325;
-        pose[59] = t326;
-        pose[60] = t327;
-        pose[61] = t328;
-        pose[62] = t329;
-        pose[63] = t330;
-        pose[64] = t331;
-        pose[65] = t332;
-        pose[66] = t333;
-        pose[67] = t334;
-        pose[68] = t335;
-        pose[69] = t336;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_X] = t276;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_Y] = t277;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_Z] = t278;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_P0] = t279;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_P1] = t280;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_P2] = t281;
+        pose[HMMWV_POSE_CHASSIS + HMMWV_Q_P3] = t282;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_X] = t13;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_Y] = t20;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_Z] = t24;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_P0] = t283;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_P1] = t284;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_P2] = t285;
+        pose[HMMWV_POSE_RACK + HMMWV_Q_P3] = t286;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_X] = t287;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_Y] = t288;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_Z] = t289;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_P0] = t290;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_P1] = t291;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_P2] = t292;
+        pose[HMMWV_POSE_LCA_F_L + HMMWV_Q_P3] = t293;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_X] = t294;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_Y] = t295;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_Z] = t296;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_P0] = t297;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_P1] = t298;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_P2] = t299;
+        pose[HMMWV_POSE_LCA_F_R + HMMWV_Q_P3] = t300;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_X] = t87;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_Y] = t88;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_Z] = t89;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_P0] = t301;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_P1] = t302;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_P2] = t303;
+        pose[HMMWV_POSE_WHEEL_F_L + HMMWV_Q_P3] = t304;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_X] = t124;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_Y] = t125;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_Z] = t126;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_P0] = t305;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_P1] = t306;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_P2] = t307;
+        pose[HMMWV_POSE_WHEEL_F_R + HMMWV_Q_P3] = t308;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_X] = t309;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_Y] = t310;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_Z] = t311;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_P0] = t312;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_P1] = t313;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_P2] = t314;
+        pose[HMMWV_POSE_LCA_R_L + HMMWV_Q_P3] = t315;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_X] = t316;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_Y] = t317;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_Z] = t318;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_P0] = t319;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_P1] = t320;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_P2] = t321;
+        pose[HMMWV_POSE_LCA_R_R + HMMWV_Q_P3] = t322;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_X] = t323;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_Y] = t324;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_Z] = t325;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_P0] = t326;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_P1] = t327;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_P2] = t328;
+        pose[HMMWV_POSE_WHEEL_R_L + HMMWV_Q_P3] = t329;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_X] = t330;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_Y] = t331;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_Z] = t332;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_P0] = t333;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_P1] = t334;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_P2] = t335;
+        pose[HMMWV_POSE_WHEEL_R_R + HMMWV_Q_P3] = t336;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int hmmwv_residual(const hmmwv *self, gic_real largest[2])
 {
     hmmwv_links links;
@@ -2749,99 +3363,101 @@ static GIC_COLD GIC_APART int hmmwv_residual(const hmmwv *self, gic_real largest
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    hmmwv_residual_rack(hmmwv_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[HMMWV_X_RACK];
+    links.rate[0] = self->xd[HMMWV_X_RACK];
+    hmmwv_residual_rack(hmmwv_k_rack[0], &links, self->motion + HMMWV_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = HMMWV_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[HMMWV_X_SPRING_F_L];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_F_L];
+    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[0], &links, self->motion + HMMWV_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = HMMWV_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[HMMWV_X_SPRING_F_R];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_F_R];
+    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[1], &links, self->motion + HMMWV_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = HMMWV_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[2], &links, self->motion + 90, one);
+    links.x[0] = self->x[HMMWV_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_R_L];
+    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[2], &links, self->motion + HMMWV_MOTION_LCA_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = HMMWV_SUBSET_LCA_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[3], &links, self->motion + 120, one);
+    links.x[0] = self->x[HMMWV_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_R_R];
+    hmmwv_residual_lca_f_l(hmmwv_k_lca_f_l[3], &links, self->motion + HMMWV_MOTION_LCA_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = HMMWV_SUBSET_LCA_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    hmmwv_residual_wheel_f_l(hmmwv_k_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + HMMWV_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[HMMWV_X_RACK];
+    links.rate[0] = self->xd[HMMWV_X_RACK];
+    links.x[1] = self->x[HMMWV_X_SPRING_F_L];
+    links.rate[1] = self->xd[HMMWV_X_SPRING_F_L];
+    hmmwv_residual_wheel_f_l(hmmwv_k_wheel_f_l[0], &links, self->motion + HMMWV_MOTION_WHEEL_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = HMMWV_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    hmmwv_residual_wheel_f_l(hmmwv_k_wheel_f_l[1], &links, self->motion + 186, one);
+    links.known[0] = self->motion + HMMWV_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[HMMWV_X_RACK];
+    links.rate[0] = self->xd[HMMWV_X_RACK];
+    links.x[1] = self->x[HMMWV_X_SPRING_F_R];
+    links.rate[1] = self->xd[HMMWV_X_SPRING_F_R];
+    hmmwv_residual_wheel_f_l(hmmwv_k_wheel_f_l[1], &links, self->motion + HMMWV_MOTION_WHEEL_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = HMMWV_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 90;
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_residual_wheel_r_l(hmmwv_k_wheel_r_l[0], &links, self->motion + 222, one);
+    links.known[0] = self->motion + HMMWV_MOTION_LCA_R_L; /* lca_r_l */
+    links.x[0] = self->x[HMMWV_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_R_L];
+    hmmwv_residual_wheel_r_l(hmmwv_k_wheel_r_l[0], &links, self->motion + HMMWV_MOTION_WHEEL_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 8;
+        bad = HMMWV_SUBSET_WHEEL_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 120;
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_residual_wheel_r_l(hmmwv_k_wheel_r_l[1], &links, self->motion + 252, one);
+    links.known[0] = self->motion + HMMWV_MOTION_LCA_R_R; /* lca_r_r */
+    links.x[0] = self->x[HMMWV_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_X_SPRING_R_R];
+    hmmwv_residual_wheel_r_l(hmmwv_k_wheel_r_l[1], &links, self->motion + HMMWV_MOTION_WHEEL_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 9;
+        bad = HMMWV_SUBSET_WHEEL_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_dynamics. size: magnitudes
+ * of the terms that it is the sum of. */
 static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t8 = rate[HMMWV_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -2849,338 +3465,493 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
-        const gic_real t17 = y[16] * R(0.056);
-        const gic_real t18 = y[16] * R(0.21300000000000008);
-        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[HMMWV_STATE_V_Y] + t15 * rate[HMMWV_STATE_V_X]);
+        const gic_real t17 = y[HMMWV_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[HMMWV_STATE_OMEGA_X] * t17 + y[HMMWV_STATE_OMEGA_Z] * t18 + (rate[HMMWV_STATE_OMEGA_Z] *
+            R(0.056) - rate[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[HMMWV_STATE_OMEGA_Y] * t1 - y[HMMWV_STATE_OMEGA_Z] * t2 + rate[HMMWV_STATE_OMEGA_X] *
+            R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[HMMWV_STATE_V_Y] + t27 * rate[HMMWV_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] + (m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] +
+            (R(1.438648) * y[HMMWV_STATE_OMEGA_Z] - R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t31 = y[HMMWV_STATE_OMEGA_X] * t29 - y[HMMWV_STATE_OMEGA_Y] * t30 +
+            (m[HMMWV_MOTION_RACK + HMMWV_C_Y] * rate[HMMWV_STATE_OMEGA_X] - R(1.438648) * rate[HMMWV_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t36 = rate[22] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[17] * t37 + y[16] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[17] * t40 + y[16] * t42;
-        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[17];
-        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t34 = m[HMMWV_MOTION_RACK + HMMWV_C_Y] * y[HMMWV_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t35 = y[HMMWV_STATE_OMEGA_Z] * t30 - y[HMMWV_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[HMMWV_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV_STATE_OMEGA_X]);
+        const gic_real t36 = rate[HMMWV_STATE_RACK_RATE] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(0.8938)) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t38 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t39 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t40 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * t38 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * t39;
+        const gic_real t41 = y[HMMWV_STATE_OMEGA_Z] * t37 + y[HMMWV_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * t38 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * t39;
+        const gic_real t43 = y[HMMWV_STATE_OMEGA_Z] * t40 + y[HMMWV_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[HMMWV_STATE_OMEGA_Y] * t41 - y[HMMWV_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t46;
+        const gic_real t48 = m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] * t45 - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            t47;
+        const gic_real t49 = R(1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[HMMWV_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[16] * t46 - y[17] * t51;
-        const gic_real t53 = R(1.688965) * rate[16];
-        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t52 = y[HMMWV_STATE_OMEGA_Y] * t46 - y[HMMWV_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t54 = y[HMMWV_STATE_OMEGA_X] * t50 - y[HMMWV_STATE_OMEGA_Y] * t52 + (rate[HMMWV_STATE_OMEGA_X] *
+            t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[HMMWV_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[16];
-        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[17];
-        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t57 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[HMMWV_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t61 = y[HMMWV_STATE_OMEGA_Z] * t52 - y[HMMWV_STATE_OMEGA_X] * t59 + (t60 -
+            rate[HMMWV_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t57 + m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] *
+            t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[HMMWV_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[17] * t67 + y[16] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[17] * t70 + y[16] * t72;
-        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[HMMWV_STATE_OMEGA_X] + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] * t33 - t36 *
+            R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(0.8938)) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t68 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t69 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t70 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * t68 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * t69;
+        const gic_real t71 = y[HMMWV_STATE_OMEGA_Z] * t67 + y[HMMWV_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * t68 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * t69;
+        const gic_real t73 = y[HMMWV_STATE_OMEGA_Z] * t70 + y[HMMWV_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[HMMWV_STATE_OMEGA_Y] * t71 - y[HMMWV_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t76;
+        const gic_real t78 = m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] * t75 - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            t77;
+        const gic_real t79 = t49 - y[HMMWV_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[16] * t76 - y[17] * t80;
-        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t81 = y[HMMWV_STATE_OMEGA_Y] * t76 - y[HMMWV_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[HMMWV_STATE_OMEGA_X] * t79 - y[HMMWV_STATE_OMEGA_Y] * t81 + (rate[HMMWV_STATE_OMEGA_X] *
+            t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[HMMWV_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
-        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t85 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[HMMWV_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[HMMWV_STATE_OMEGA_Z] * t81 - y[HMMWV_STATE_OMEGA_X] * t86 + (t60 -
+            rate[HMMWV_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t85 + m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] *
+            t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[HMMWV_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[163] + y[16];
-        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t94 = m[164] + y[17];
-        const gic_real t95 = m[158] * R(4.7728205);
-        const gic_real t96 = m[157] * R(7.58122);
-        const gic_real t97 = m[156] * R(4.8947505);
-        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
-        const gic_real t99 = m[155] * R(4.7728205);
-        const gic_real t100 = m[154] * R(7.58122);
-        const gic_real t101 = m[153] * R(4.8947505);
-        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
-        const gic_real t103 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t92 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t93 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t94 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t95 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t97 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t98 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t95 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t96 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t97);
+        const gic_real t99 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t100 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(7.58122);
+        const gic_real t101 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t102 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t99 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t100 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t101);
+        const gic_real t103 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
-        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
-        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t105 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t95 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t96 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t97);
+        const gic_real t106 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t99 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t100 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t101);
         const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
-        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t109 = t108 + m[182] * rate[18];
-        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t111 = t110 + m[181] * rate[18];
-        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
-        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t108 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] + (rate[HMMWV_STATE_OMEGA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t109 = t108 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] + (rate[HMMWV_STATE_OMEGA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t111 = t110 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * t99 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] *
+            t100 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * t101);
+        const gic_real t113 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] + (rate[HMMWV_STATE_OMEGA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t114 = t113 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * rate[HMMWV_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[158] * R(0.09182100000000004);
-        const gic_real t117 = m[156] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
-        const gic_real t119 = m[155] * R(0.09182100000000004);
-        const gic_real t120 = m[153] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
-        const gic_real t122 = m[161] * R(0.09182100000000004);
-        const gic_real t123 = m[159] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
-        const gic_real t125 = m[164] * t121 - m[162] * t124;
-        const gic_real t126 = m[163] * t124 - m[164] * t118;
-        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
-        const gic_real t128 = m[173] + t127;
-        const gic_real t129 = m[166] + t125;
+        /* wheel tire_f_l */
+        const gic_real t116 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.08910630000000008));
+        const gic_real t119 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.08910630000000008));
+        const gic_real t122 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.08910630000000008));
+        const gic_real t125 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t121 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t124;
+        const gic_real t126 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t124 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t118;
+        const gic_real t127 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t125 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t126 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t118 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t121);
+        const gic_real t128 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] + t125;
         const gic_real t130 = R(1.653405) + t121;
-        const gic_real t131 = m[152] + t124;
-        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
-        const gic_real t133 = m[151] + t118;
-        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
-        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
-        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t131 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[HMMWV_STATE_OMEGA_Z] * t130 - y[HMMWV_STATE_OMEGA_X] * t131));
+        const gic_real t133 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[HMMWV_STATE_OMEGA_Y] * t131 - y[HMMWV_STATE_OMEGA_Z] * t133));
+        const gic_real t135 = y[HMMWV_STATE_OMEGA_X] * t132 - y[HMMWV_STATE_OMEGA_Y] * t134 +
+            (rate[HMMWV_STATE_OMEGA_X] * t133 - rate[HMMWV_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t118 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t121);
+        const gic_real t137 = t136 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t118 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[162] * t118 - m[163] * t121;
-        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
-        const gic_real t141 = m[172] + t140;
-        const gic_real t142 = m[167] + t139;
-        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
-        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
-        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t139 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t118 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t121;
+        const gic_real t140 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t126 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t139 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t121 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t124);
+        const gic_real t141 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[HMMWV_STATE_OMEGA_X] * t133 - y[HMMWV_STATE_OMEGA_Y] * t130));
+        const gic_real t144 = y[HMMWV_STATE_OMEGA_Z] * t134 - y[HMMWV_STATE_OMEGA_X] * t143 +
+            (rate[HMMWV_STATE_OMEGA_Z] * t130 - rate[HMMWV_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t121 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t124);
+        const gic_real t146 = t145 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t121 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
-        const gic_real t150 = m[199] + y[16];
-        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t152 = m[200] + y[17];
-        const gic_real t153 = m[194] * R(4.7728205);
-        const gic_real t154 = m[193] * R(7.58122);
-        const gic_real t155 = m[192] * R(4.8947505);
-        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
-        const gic_real t157 = m[191] * R(4.7728205);
-        const gic_real t158 = m[190] * R(7.58122);
-        const gic_real t159 = m[189] * R(4.8947505);
-        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
-        const gic_real t161 = m[198] + y[15];
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t138 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t147));
+        /* inertia of wheel_f_r */
+        const gic_real t150 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t151 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t152 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t153 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t155 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t156 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t153 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t154 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t155);
+        const gic_real t157 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(7.58122);
+        const gic_real t159 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t160 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t157 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t158 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t159);
+        const gic_real t161 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
-        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
-        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t163 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t153 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t154 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t155);
+        const gic_real t164 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t157 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t158 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t159);
         const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
-        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t167 = t166 + m[218] * rate[19];
-        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t169 = t168 + m[217] * rate[19];
-        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
-        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t166 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] + (rate[HMMWV_STATE_OMEGA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t167 = t166 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] + (rate[HMMWV_STATE_OMEGA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t169 = t168 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * t157 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] *
+            t158 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * t159);
+        const gic_real t171 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] + (rate[HMMWV_STATE_OMEGA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t172 = t171 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * rate[HMMWV_STATE_SPRING_F_R_RATE];
         const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[191] * R(0.09182100000000004);
-        const gic_real t178 = m[189] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
-        const gic_real t180 = m[197] * R(0.09182100000000004);
-        const gic_real t181 = m[195] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
-        const gic_real t183 = m[200] * t179 - m[198] * t182;
-        const gic_real t184 = m[199] * t182 - m[200] * t176;
-        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
-        const gic_real t186 = m[209] + t185;
-        const gic_real t187 = m[202] + t183;
+        /* wheel tire_f_r */
+        const gic_real t174 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.08910630000000008));
+        const gic_real t180 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.08910630000000008));
+        const gic_real t183 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t179 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t182;
+        const gic_real t184 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t182 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t176;
+        const gic_real t185 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t183 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t184 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t176 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t179);
+        const gic_real t186 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] + t183;
         const gic_real t188 = R(1.653405) + t179;
-        const gic_real t189 = m[188] + t182;
-        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
-        const gic_real t191 = m[187] + t176;
-        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
-        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
-        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t189 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[HMMWV_STATE_OMEGA_Z] * t188 - y[HMMWV_STATE_OMEGA_X] * t189));
+        const gic_real t191 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[HMMWV_STATE_OMEGA_Y] * t189 - y[HMMWV_STATE_OMEGA_Z] * t191));
+        const gic_real t193 = y[HMMWV_STATE_OMEGA_X] * t190 - y[HMMWV_STATE_OMEGA_Y] * t192 +
+            (rate[HMMWV_STATE_OMEGA_X] * t191 - rate[HMMWV_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t176 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t179);
+        const gic_real t195 = t194 + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t176 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[198] * t176 - m[199] * t179;
-        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
-        const gic_real t199 = m[208] + t198;
-        const gic_real t200 = m[203] + t197;
-        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
-        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
-        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t197 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t176 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t179;
+        const gic_real t198 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t184 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t197 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t179 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t182);
+        const gic_real t199 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[HMMWV_STATE_OMEGA_X] * t191 - y[HMMWV_STATE_OMEGA_Y] * t188));
+        const gic_real t202 = y[HMMWV_STATE_OMEGA_Z] * t192 - y[HMMWV_STATE_OMEGA_X] * t201 +
+            (rate[HMMWV_STATE_OMEGA_Z] * t188 - rate[HMMWV_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t179 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t182);
+        const gic_real t204 = t203 + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t179 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t208 = m[98] * R(0.8938);
-        const gic_real t209 = m[97] * R(0.4469);
-        const gic_real t210 = m[101] * t208 + m[100] * t209;
-        const gic_real t211 = y[17] * t207 + y[16] * t210;
-        const gic_real t212 = m[98] * t208 + m[97] * t209;
-        const gic_real t213 = y[17] * t210 + y[16] * t212;
-        const gic_real t214 = y[16] * t211 - y[17] * t213 + R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]);
-        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t217 = m[102] * t216;
-        const gic_real t218 = m[108] * t215 - m[102] * t217;
-        const gic_real t219 = R(-1.688965) * y[17];
-        const gic_real t220 = t219 - y[15] * t216 - t217 - t217;
+        /* inertia of lca_r_l */
+        const gic_real t207 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t208 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t209 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t210 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * t208 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * t209;
+        const gic_real t211 = y[HMMWV_STATE_OMEGA_Z] * t207 + y[HMMWV_STATE_OMEGA_Y] * t210;
+        const gic_real t212 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * t208 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * t209;
+        const gic_real t213 = y[HMMWV_STATE_OMEGA_Z] * t210 + y[HMMWV_STATE_OMEGA_Y] * t212;
+        const gic_real t214 = y[HMMWV_STATE_OMEGA_Y] * t211 - y[HMMWV_STATE_OMEGA_Z] * t213 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_L_RATE]);
+        const gic_real t215 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.246867347245056);
+        const gic_real t216 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.246867347245056);
+        const gic_real t217 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t216;
+        const gic_real t218 = m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] * t215 - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            t217;
+        const gic_real t219 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t220 = t219 - y[HMMWV_STATE_OMEGA_X] * t216 - t217 - t217;
         const gic_real t221 = R(0.307086) + t215;
-        const gic_real t222 = y[16] * t216 - y[17] * t221;
-        const gic_real t223 = R(-1.688965) * rate[16];
-        const gic_real t224 = y[15] * t220 - y[16] * t222 + (rate[15] * t221 - t223);
-        const gic_real t225 = t218 + (t28 + t224) + rate[20] * (m[114] * t215);
+        const gic_real t222 = y[HMMWV_STATE_OMEGA_Y] * t216 - y[HMMWV_STATE_OMEGA_Z] * t221;
+        const gic_real t223 = R(-1.688965) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t224 = y[HMMWV_STATE_OMEGA_X] * t220 - y[HMMWV_STATE_OMEGA_Y] * t222 +
+            (rate[HMMWV_STATE_OMEGA_X] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[HMMWV_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t215);
         const gic_real t226 = R(23.965) * t225;
-        const gic_real t227 = m[102] * t215;
-        const gic_real t228 = R(-1.688965) * y[16];
-        const gic_real t229 = t227 + (t227 + (y[15] * t221 - t228));
-        const gic_real t230 = R(-1.688965) * rate[17];
-        const gic_real t231 = y[17] * t222 - y[15] * t229 + (t230 - rate[15] * t216);
-        const gic_real t232 = m[102] * t227 + m[108] * t216;
-        const gic_real t233 = t16 + t231 - t232 - rate[20] * (m[114] * t216);
+        const gic_real t227 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t215;
+        const gic_real t228 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t229 = t227 + (t227 + (y[HMMWV_STATE_OMEGA_X] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t231 = y[HMMWV_STATE_OMEGA_Z] * t222 - y[HMMWV_STATE_OMEGA_X] * t229 + (t230 -
+            rate[HMMWV_STATE_OMEGA_X] * t216);
+        const gic_real t232 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t227 + m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] *
+            t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[HMMWV_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t216);
         const gic_real t234 = R(23.965) * t233;
         const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
-        const gic_real t236 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t235 + R(7.359315990000001) * t225);
-        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t238 = m[128] * R(0.8938);
-        const gic_real t239 = m[127] * R(0.4469);
-        const gic_real t240 = m[131] * t238 + m[130] * t239;
-        const gic_real t241 = y[17] * t237 + y[16] * t240;
-        const gic_real t242 = m[128] * t238 + m[127] * t239;
-        const gic_real t243 = y[17] * t240 + y[16] * t242;
-        const gic_real t244 = y[16] * t241 - y[17] * t243 + R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]);
-        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t247 = m[132] * t246;
-        const gic_real t248 = m[138] * t245 - m[132] * t247;
-        const gic_real t249 = t219 - y[15] * t246 - t247 - t247;
+        const gic_real t236 = t149 + (t206 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t196 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t205)) + (t235 + R(7.359315990000001) * t225);
+        /* inertia of lca_r_r */
+        const gic_real t237 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t238 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t239 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t240 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * t238 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * t239;
+        const gic_real t241 = y[HMMWV_STATE_OMEGA_Z] * t237 + y[HMMWV_STATE_OMEGA_Y] * t240;
+        const gic_real t242 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * t238 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * t239;
+        const gic_real t243 = y[HMMWV_STATE_OMEGA_Z] * t240 + y[HMMWV_STATE_OMEGA_Y] * t242;
+        const gic_real t244 = y[HMMWV_STATE_OMEGA_Y] * t241 - y[HMMWV_STATE_OMEGA_Z] * t243 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_R_RATE]);
+        const gic_real t245 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(-0.246867347245056);
+        const gic_real t246 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(-0.246867347245056);
+        const gic_real t247 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t246;
+        const gic_real t248 = m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] * t245 - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            t247;
+        const gic_real t249 = t219 - y[HMMWV_STATE_OMEGA_X] * t246 - t247 - t247;
         const gic_real t250 = R(-0.307086) + t245;
-        const gic_real t251 = y[16] * t246 - y[17] * t250;
-        const gic_real t252 = y[15] * t249 - y[16] * t251 + (rate[15] * t250 - t223);
-        const gic_real t253 = t248 + (t28 + t252) + rate[21] * (m[144] * t245);
+        const gic_real t251 = y[HMMWV_STATE_OMEGA_Y] * t246 - y[HMMWV_STATE_OMEGA_Z] * t250;
+        const gic_real t252 = y[HMMWV_STATE_OMEGA_X] * t249 - y[HMMWV_STATE_OMEGA_Y] * t251 +
+            (rate[HMMWV_STATE_OMEGA_X] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[HMMWV_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t245);
         const gic_real t254 = R(23.965) * t253;
-        const gic_real t255 = m[132] * t245;
-        const gic_real t256 = t255 + (t255 + (y[15] * t250 - t228));
-        const gic_real t257 = y[17] * t251 - y[15] * t256 + (t230 - rate[15] * t246);
-        const gic_real t258 = m[132] * t255 + m[138] * t246;
-        const gic_real t259 = t16 + t257 - t258 - rate[21] * (m[144] * t246);
+        const gic_real t255 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t245;
+        const gic_real t256 = t255 + (t255 + (y[HMMWV_STATE_OMEGA_X] * t250 - t228));
+        const gic_real t257 = y[HMMWV_STATE_OMEGA_Z] * t251 - y[HMMWV_STATE_OMEGA_X] * t256 + (t230 -
+            rate[HMMWV_STATE_OMEGA_X] * t246);
+        const gic_real t258 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t255 + m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] *
+            t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[HMMWV_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t246);
         const gic_real t260 = R(23.965) * t259;
         const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
-        const gic_real t262 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(7.58122));
-        const gic_real t263 = m[230] * R(4.7728205);
-        const gic_real t264 = m[229] * R(7.58122);
-        const gic_real t265 = m[233] * t263 + m[232] * t264;
-        const gic_real t266 = y[17] * t262 + y[16] * t265;
-        const gic_real t267 = m[230] * t263 + m[229] * t264;
-        const gic_real t268 = y[17] * t265 + y[16] * t267;
-        const gic_real t269 = y[16] * t266 - y[17] * t268 + R(4.8947505) * (m[240] + rate[15] + m[246] * rate[20]);
-        const gic_real t270 = m[230] * R(0.09182100000000004);
-        const gic_real t271 = t270 + m[229] * R(0.08910630000000008);
-        const gic_real t272 = m[233] * R(0.09182100000000004);
-        const gic_real t273 = t272 + m[232] * R(0.08910630000000008);
-        const gic_real t274 = m[234] * t273;
-        const gic_real t275 = m[245] + (m[240] * t271 - m[234] * t274);
-        const gic_real t276 = m[238] - t274;
-        const gic_real t277 = R(-1.653405) * y[17];
-        const gic_real t278 = m[224] + t273;
-        const gic_real t279 = t276 + (t276 + (t277 - y[15] * t278));
-        const gic_real t280 = m[223] + t271;
-        const gic_real t281 = y[16] * t278 - y[17] * t280;
-        const gic_real t282 = R(-1.653405) * rate[16];
-        const gic_real t283 = y[15] * t279 - y[16] * t281 + (rate[15] * t280 - t282);
-        const gic_real t284 = t275 + (t28 + t283) + rate[20] * (m[251] + m[246] * t271);
+        /* inertia of wheel_r_l */
+        const gic_real t262 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            R(7.58122));
+        const gic_real t263 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t264 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t265 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * t263 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            t264;
+        const gic_real t266 = y[HMMWV_STATE_OMEGA_Z] * t262 + y[HMMWV_STATE_OMEGA_Y] * t265;
+        const gic_real t267 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * t263 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] *
+            t264;
+        const gic_real t268 = y[HMMWV_STATE_OMEGA_Z] * t265 + y[HMMWV_STATE_OMEGA_Y] * t267;
+        const gic_real t269 = y[HMMWV_STATE_OMEGA_Y] * t266 - y[HMMWV_STATE_OMEGA_Z] * t268 + R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_L_RATE]);
+        /* wheel tire_r_l */
+        const gic_real t270 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t271 = t270 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.08910630000000008);
+        const gic_real t272 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.08910630000000008);
+        const gic_real t274 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t273;
+        const gic_real t275 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t271 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t274);
+        const gic_real t276 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - t274;
+        const gic_real t277 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t278 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t273;
+        const gic_real t279 = t276 + (t276 + (t277 - y[HMMWV_STATE_OMEGA_X] * t278));
+        const gic_real t280 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t271;
+        const gic_real t281 = y[HMMWV_STATE_OMEGA_Y] * t278 - y[HMMWV_STATE_OMEGA_Z] * t280;
+        const gic_real t282 = R(-1.653405) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t283 = y[HMMWV_STATE_OMEGA_X] * t279 - y[HMMWV_STATE_OMEGA_Y] * t281 +
+            (rate[HMMWV_STATE_OMEGA_X] * t280 - t282);
+        const gic_real t284 = t275 + (t28 + t283) + rate[HMMWV_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t271);
         const gic_real t285 = R(90.555) * t284;
-        const gic_real t286 = m[234] * t271;
-        const gic_real t287 = m[244] - (m[234] * t286 + m[240] * t273);
-        const gic_real t288 = m[239] + t286;
-        const gic_real t289 = R(-1.653405) * y[16];
-        const gic_real t290 = t288 + (t288 + (y[15] * t280 - t289));
-        const gic_real t291 = R(-1.653405) * rate[17];
-        const gic_real t292 = y[17] * t281 - y[15] * t290 + (t291 - rate[15] * t278);
-        const gic_real t293 = t287 + (t16 + t292) + rate[20] * (m[250] - m[246] * t273);
+        const gic_real t286 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t271;
+        const gic_real t287 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t286 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t273);
+        const gic_real t288 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + t286;
+        const gic_real t289 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t290 = t288 + (t288 + (y[HMMWV_STATE_OMEGA_X] * t280 - t289));
+        const gic_real t291 = R(-1.653405) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t292 = y[HMMWV_STATE_OMEGA_Z] * t281 - y[HMMWV_STATE_OMEGA_X] * t290 + (t291 -
+            rate[HMMWV_STATE_OMEGA_X] * t278);
+        const gic_real t293 = t287 + (t16 + t292) + rate[HMMWV_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t273);
         const gic_real t294 = R(90.555) * t293;
         const gic_real t295 = t269 + (t271 * t285 - t273 * t294);
-        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 + (m[223] * t285 - m[224] * t294));
-        const gic_real t297 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(7.58122));
-        const gic_real t298 = m[260] * R(4.7728205);
-        const gic_real t299 = m[259] * R(7.58122);
-        const gic_real t300 = m[263] * t298 + m[262] * t299;
-        const gic_real t301 = y[17] * t297 + y[16] * t300;
-        const gic_real t302 = m[260] * t298 + m[259] * t299;
-        const gic_real t303 = y[17] * t300 + y[16] * t302;
-        const gic_real t304 = y[16] * t301 - y[17] * t303 + R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]);
-        const gic_real t305 = m[260] * R(0.09182100000000004);
-        const gic_real t306 = t305 + m[259] * R(-0.08910630000000008);
-        const gic_real t307 = m[263] * R(0.09182100000000004);
-        const gic_real t308 = t307 + m[262] * R(-0.08910630000000008);
-        const gic_real t309 = m[264] * t308;
-        const gic_real t310 = m[275] + (m[270] * t306 - m[264] * t309);
-        const gic_real t311 = m[268] - t309;
-        const gic_real t312 = m[254] + t308;
-        const gic_real t313 = t311 + (t311 + (t277 - y[15] * t312));
-        const gic_real t314 = m[253] + t306;
-        const gic_real t315 = y[16] * t312 - y[17] * t314;
-        const gic_real t316 = y[15] * t313 - y[16] * t315 + (rate[15] * t314 - t282);
-        const gic_real t317 = t310 + (t28 + t316) + rate[21] * (m[281] + m[276] * t306);
+        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 +
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t285 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t294));
+        /* inertia of wheel_r_r */
+        const gic_real t297 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            R(7.58122));
+        const gic_real t298 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t299 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t300 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * t298 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            t299;
+        const gic_real t301 = y[HMMWV_STATE_OMEGA_Z] * t297 + y[HMMWV_STATE_OMEGA_Y] * t300;
+        const gic_real t302 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * t298 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] *
+            t299;
+        const gic_real t303 = y[HMMWV_STATE_OMEGA_Z] * t300 + y[HMMWV_STATE_OMEGA_Y] * t302;
+        const gic_real t304 = y[HMMWV_STATE_OMEGA_Y] * t301 - y[HMMWV_STATE_OMEGA_Z] * t303 + R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_R_RATE]);
+        /* wheel tire_r_r */
+        const gic_real t305 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t306 = t305 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.08910630000000008);
+        const gic_real t307 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t308 = t307 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.08910630000000008);
+        const gic_real t309 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t308;
+        const gic_real t310 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t306 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t309);
+        const gic_real t311 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - t309;
+        const gic_real t312 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t308;
+        const gic_real t313 = t311 + (t311 + (t277 - y[HMMWV_STATE_OMEGA_X] * t312));
+        const gic_real t314 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t306;
+        const gic_real t315 = y[HMMWV_STATE_OMEGA_Y] * t312 - y[HMMWV_STATE_OMEGA_Z] * t314;
+        const gic_real t316 = y[HMMWV_STATE_OMEGA_X] * t313 - y[HMMWV_STATE_OMEGA_Y] * t315 +
+            (rate[HMMWV_STATE_OMEGA_X] * t314 - t282);
+        const gic_real t317 = t310 + (t28 + t316) + rate[HMMWV_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t306);
         const gic_real t318 = R(90.555) * t317;
-        const gic_real t319 = m[264] * t306;
-        const gic_real t320 = m[274] - (m[264] * t319 + m[270] * t308);
-        const gic_real t321 = m[269] + t319;
-        const gic_real t322 = t321 + (t321 + (y[15] * t314 - t289));
-        const gic_real t323 = y[17] * t315 - y[15] * t322 + (t291 - rate[15] * t312);
-        const gic_real t324 = t320 + (t16 + t323) + rate[21] * (m[280] - m[276] * t308);
+        const gic_real t319 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t306;
+        const gic_real t320 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t319 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t308);
+        const gic_real t321 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + t319;
+        const gic_real t322 = t321 + (t321 + (y[HMMWV_STATE_OMEGA_X] * t314 - t289));
+        const gic_real t323 = y[HMMWV_STATE_OMEGA_Z] * t315 - y[HMMWV_STATE_OMEGA_X] * t322 + (t291 -
+            rate[HMMWV_STATE_OMEGA_X] * t312);
+        const gic_real t324 = t320 + (t16 + t323) + rate[HMMWV_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t308);
         const gic_real t325 = R(90.555) * t324;
         const gic_real t326 = t304 + (t306 * t318 - t308 * t325);
-        const gic_real t327 = t305 + m[259] * R(-0.12319000000000002);
-        const gic_real t328 = m[253] + t327;
-        const gic_real t329 = m[269] + m[264] * t327 + (y[15] * t328 - t289);
-        const gic_real t330 = t307 + m[262] * R(-0.12319000000000002);
-        const gic_real t331 = m[254] + t330;
-        const gic_real t332 = m[268] - m[264] * t330 + (t277 - y[15] * t331);
+        const gic_real t327 = t305 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.12319000000000002);
+        const gic_real t328 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t327;
+        const gic_real t329 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t327 + (y[HMMWV_STATE_OMEGA_X] * t328 - t289);
+        const gic_real t330 = t307 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.12319000000000002);
+        const gic_real t331 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t330;
+        const gic_real t332 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t330 + (t277 - y[HMMWV_STATE_OMEGA_X] * t331);
         const gic_real t333 = t13 + t14;
-        const gic_real t334 = y[16] * t331 - y[17] * t328;
-        const gic_real t335 = y[13] + (t24 * t329 + (t12 * t332 + t333 * t334));
+        const gic_real t334 = y[HMMWV_STATE_OMEGA_Y] * t331 - y[HMMWV_STATE_OMEGA_Z] * t328;
+        const gic_real t335 = y[HMMWV_STATE_V_Y] + (t24 * t329 + (t12 * t332 + t333 * t334));
         const gic_real t336 = R(1.0) - (t22 + t11);
         const gic_real t337 = R(-1.653405) * t336;
         const gic_real t338 = R(-1.653405) * t333;
         gic_real road339[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t27 * t331 + (t337 + t15 * t328)), y[1] + (t24 * t331 + (t338 + t12 * t328)), road339))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t27 * t331 + (t337 + t15 * t328)), y[HMMWV_STATE_R_Y] +
+            (t24 * t331 + (t338 + t12 * t328)), road339))
             return GIC_ERROR_ROAD;
-        const gic_real t340 = y[12] + (t27 * t329 + (t15 * t332 + t336 * t334));
+        const gic_real t340 = y[HMMWV_STATE_V_X] + (t27 * t329 + (t15 * t332 + t336 * t334));
         const gic_real t341 = t25 - t26;
-        const gic_real t342 = y[14] + (t23 * t329 + (t7 * t332 + t341 * t334));
+        const gic_real t342 = y[HMMWV_STATE_V_Z] + (t23 * t329 + (t7 * t332 + t341 * t334));
         const gic_real t343 = t335 * road339[2] + t340 * road339[1] - t342;
         const gic_real t344 = R(-1.653405) * t341;
-        const gic_real t345 = y[2] + (t23 * t331 + (t344 + t7 * t328));
+        const gic_real t345 = y[HMMWV_STATE_R_Z] + (t23 * t331 + (t344 + t7 * t328));
         const gic_real t346 = R(0.4699) + road339[0] - t345;
         const gic_real t347 = GIC_MIN(GIC_MAX(R(100.0) * t346, R(0.0)), R(1.0));
         const gic_real t348 = t343 * (R(500.0) * ((R(3.0) - (t347 + t347)) * (t347 * t347)));
@@ -3188,21 +3959,24 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t350 = t23 * t349;
         const gic_real t351 = t7 * t349;
         const gic_real t352 = t327 * t350 - t330 * t351;
-        const gic_real t353 = t270 + m[229] * R(0.12319000000000002);
-        const gic_real t354 = m[223] + t353;
-        const gic_real t355 = m[239] + m[234] * t353 + (y[15] * t354 - t289);
-        const gic_real t356 = t272 + m[232] * R(0.12319000000000002);
-        const gic_real t357 = m[224] + t356;
-        const gic_real t358 = m[238] - m[234] * t356 + (t277 - y[15] * t357);
-        const gic_real t359 = y[16] * t357 - y[17] * t354;
-        const gic_real t360 = y[13] + (t24 * t355 + (t12 * t358 + t333 * t359));
+        const gic_real t353 = t270 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.12319000000000002);
+        const gic_real t354 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t353;
+        const gic_real t355 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t353 + (y[HMMWV_STATE_OMEGA_X] * t354 - t289);
+        const gic_real t356 = t272 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.12319000000000002);
+        const gic_real t357 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t356;
+        const gic_real t358 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t356 + (t277 - y[HMMWV_STATE_OMEGA_X] * t357);
+        const gic_real t359 = y[HMMWV_STATE_OMEGA_Y] * t357 - y[HMMWV_STATE_OMEGA_Z] * t354;
+        const gic_real t360 = y[HMMWV_STATE_V_Y] + (t24 * t355 + (t12 * t358 + t333 * t359));
         gic_real road361[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t27 * t357 + (t15 * t354 + t337)), y[1] + (t24 * t357 + (t12 * t354 + t338)), road361))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t27 * t357 + (t15 * t354 + t337)), y[HMMWV_STATE_R_Y] +
+            (t24 * t357 + (t12 * t354 + t338)), road361))
             return GIC_ERROR_ROAD;
-        const gic_real t362 = y[12] + (t27 * t355 + (t15 * t358 + t336 * t359));
-        const gic_real t363 = y[14] + (t23 * t355 + (t7 * t358 + t341 * t359));
+        const gic_real t362 = y[HMMWV_STATE_V_X] + (t27 * t355 + (t15 * t358 + t336 * t359));
+        const gic_real t363 = y[HMMWV_STATE_V_Z] + (t23 * t355 + (t7 * t358 + t341 * t359));
         const gic_real t364 = t360 * road361[2] + t362 * road361[1] - t363;
-        const gic_real t365 = y[2] + (t23 * t357 + (t7 * t354 + t344));
+        const gic_real t365 = y[HMMWV_STATE_R_Z] + (t23 * t357 + (t7 * t354 + t344));
         const gic_real t366 = R(0.4699) + road361[0] - t365;
         const gic_real t367 = GIC_MIN(GIC_MAX(R(100.0) * t366, R(0.0)), R(1.0));
         const gic_real t368 = t364 * (R(500.0) * ((R(3.0) - (t367 + t367)) * (t367 * t367)));
@@ -3210,25 +3984,31 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t370 = t23 * t369;
         const gic_real t371 = t7 * t369;
         const gic_real t372 = t353 * t370 - t356 * t371;
-        const gic_real t373 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t374 = t177 + (m[190] * R(-0.12319000000000002) + t178);
-        const gic_real t375 = m[187] + t373;
+        const gic_real t373 = t174 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t374 = t177 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.12319000000000002) + t178);
+        const gic_real t375 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t373;
         const gic_real t376 = R(1.653405) + t374;
-        const gic_real t377 = m[203] + (m[198] * t373 - m[199] * t374) + (y[15] * t375 - y[16] * t376);
-        const gic_real t378 = t180 + (m[196] * R(-0.12319000000000002) + t181);
-        const gic_real t379 = m[188] + t378;
-        const gic_real t380 = m[202] + (m[200] * t374 - m[198] * t378) + (y[17] * t376 - y[15] * t379);
-        const gic_real t381 = m[199] * t378 - m[200] * t373 + (y[16] * t379 - y[17] * t375);
-        const gic_real t382 = y[13] + (t24 * t377 + (t12 * t380 + t333 * t381));
-        const gic_real t383 = y[0] + (t27 * t379 + (t15 * t375 + t336 * t376));
-        const gic_real t384 = y[1] + (t24 * t379 + (t12 * t375 + t333 * t376));
+        const gic_real t377 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t373 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t374) +
+            (y[HMMWV_STATE_OMEGA_X] * t375 - y[HMMWV_STATE_OMEGA_Y] * t376);
+        const gic_real t378 = t180 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.12319000000000002) + t181);
+        const gic_real t379 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t378;
+        const gic_real t380 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t374 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t378) +
+            (y[HMMWV_STATE_OMEGA_Z] * t376 - y[HMMWV_STATE_OMEGA_X] * t379);
+        const gic_real t381 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t378 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t373 + (y[HMMWV_STATE_OMEGA_Y] * t379 - y[HMMWV_STATE_OMEGA_Z] *
+            t375);
+        const gic_real t382 = y[HMMWV_STATE_V_Y] + (t24 * t377 + (t12 * t380 + t333 * t381));
+        const gic_real t383 = y[HMMWV_STATE_R_X] + (t27 * t379 + (t15 * t375 + t336 * t376));
+        const gic_real t384 = y[HMMWV_STATE_R_Y] + (t24 * t379 + (t12 * t375 + t333 * t376));
         gic_real road385[3];
         if (!hmmwv_road_height(self, time, t383, t384, road385))
             return GIC_ERROR_ROAD;
-        const gic_real t386 = y[12] + (t27 * t377 + (t15 * t380 + t336 * t381));
-        const gic_real t387 = y[14] + (t23 * t377 + (t7 * t380 + t341 * t381));
+        const gic_real t386 = y[HMMWV_STATE_V_X] + (t27 * t377 + (t15 * t380 + t336 * t381));
+        const gic_real t387 = y[HMMWV_STATE_V_Z] + (t23 * t377 + (t7 * t380 + t341 * t381));
         const gic_real t388 = t382 * road385[2] + t386 * road385[1] - t387;
-        const gic_real t389 = y[2] + (t23 * t379 + (t7 * t375 + t341 * t376));
+        const gic_real t389 = y[HMMWV_STATE_R_Z] + (t23 * t379 + (t7 * t375 + t341 * t376));
         const gic_real t390 = R(0.4699) + road385[0] - t389;
         const gic_real t391 = GIC_MIN(GIC_MAX(R(100.0) * t390, R(0.0)), R(1.0));
         const gic_real t392 = t388 * (R(500.0) * ((R(3.0) - (t391 + t391)) * (t391 * t391)));
@@ -3236,25 +4016,31 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t394 = t23 * t393;
         const gic_real t395 = t7 * t393;
         const gic_real t396 = t373 * t394 - t378 * t395;
-        const gic_real t397 = t116 + (m[157] * R(0.12319000000000002) + t117);
-        const gic_real t398 = t119 + (m[154] * R(0.12319000000000002) + t120);
-        const gic_real t399 = m[151] + t397;
+        const gic_real t397 = t116 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.12319000000000002) + t117);
+        const gic_real t398 = t119 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.12319000000000002) + t120);
+        const gic_real t399 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t397;
         const gic_real t400 = R(1.653405) + t398;
-        const gic_real t401 = m[167] + (m[162] * t397 - m[163] * t398) + (y[15] * t399 - y[16] * t400);
-        const gic_real t402 = t122 + (m[160] * R(0.12319000000000002) + t123);
-        const gic_real t403 = m[152] + t402;
-        const gic_real t404 = m[166] + (m[164] * t398 - m[162] * t402) + (y[17] * t400 - y[15] * t403);
-        const gic_real t405 = m[163] * t402 - m[164] * t397 + (y[16] * t403 - y[17] * t399);
-        const gic_real t406 = y[13] + (t24 * t401 + (t12 * t404 + t333 * t405));
-        const gic_real t407 = y[0] + (t27 * t403 + (t15 * t399 + t336 * t400));
-        const gic_real t408 = y[1] + (t24 * t403 + (t12 * t399 + t333 * t400));
+        const gic_real t401 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t397 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t398) +
+            (y[HMMWV_STATE_OMEGA_X] * t399 - y[HMMWV_STATE_OMEGA_Y] * t400);
+        const gic_real t402 = t122 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.12319000000000002) + t123);
+        const gic_real t403 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t402;
+        const gic_real t404 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t398 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t402) +
+            (y[HMMWV_STATE_OMEGA_Z] * t400 - y[HMMWV_STATE_OMEGA_X] * t403);
+        const gic_real t405 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t402 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t397 + (y[HMMWV_STATE_OMEGA_Y] * t403 - y[HMMWV_STATE_OMEGA_Z] *
+            t399);
+        const gic_real t406 = y[HMMWV_STATE_V_Y] + (t24 * t401 + (t12 * t404 + t333 * t405));
+        const gic_real t407 = y[HMMWV_STATE_R_X] + (t27 * t403 + (t15 * t399 + t336 * t400));
+        const gic_real t408 = y[HMMWV_STATE_R_Y] + (t24 * t403 + (t12 * t399 + t333 * t400));
         gic_real road409[3];
         if (!hmmwv_road_height(self, time, t407, t408, road409))
             return GIC_ERROR_ROAD;
-        const gic_real t410 = y[12] + (t27 * t401 + (t15 * t404 + t336 * t405));
-        const gic_real t411 = y[14] + (t23 * t401 + (t7 * t404 + t341 * t405));
+        const gic_real t410 = y[HMMWV_STATE_V_X] + (t27 * t401 + (t15 * t404 + t336 * t405));
+        const gic_real t411 = y[HMMWV_STATE_V_Z] + (t23 * t401 + (t7 * t404 + t341 * t405));
         const gic_real t412 = t406 * road409[2] + t410 * road409[1] - t411;
-        const gic_real t413 = y[2] + (t23 * t403 + (t7 * t399 + t341 * t400));
+        const gic_real t413 = y[HMMWV_STATE_R_Z] + (t23 * t403 + (t7 * t399 + t341 * t400));
         const gic_real t414 = road409[0] + R(0.4699) - t413;
         const gic_real t415 = GIC_MIN(GIC_MAX(t414 * R(100.0), R(0.0)), R(1.0));
         const gic_real t416 = t412 * ((R(3.0) - (t415 + t415)) * (t415 * t415) * R(500.0));
@@ -3262,46 +4048,59 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t418 = t23 * t417;
         const gic_real t419 = t7 * t417;
         const gic_real t420 = t397 * t418 - t402 * t419;
-        const gic_real t421 = t420 + (m[151] * t418 - m[152] * t419) + (m[187] * t394 - m[188] * t395);
-        const gic_real t422 = t372 + (t396 + t421 + (m[223] * t370 - m[224] * t371));
-        const gic_real t423 = t296 + (t326 + (m[253] * t318 - m[254] * t325)) - (t352 + (t422 + (m[253] * t350 - m[254] * t351)));
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t421 = t420 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t418 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t419) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t394 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t395);
+        const gic_real t422 = t372 + (t396 + t421 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t370 -
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t371));
+        const gic_real residual_0 = t296 + (t326 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t318 -
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t325)) - (t352 + (t422 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] *
+            t350 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t351)));
         const gic_real t424 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t341);
-        const gic_real t425 = t341 * t8 + (t333 * rate[13] + t336 * rate[12]);
+        const gic_real t425 = t341 * t8 + (t333 * rate[HMMWV_STATE_V_Y] + t336 * rate[HMMWV_STATE_V_X]);
         const gic_real t426 = t424 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t425));
-        const gic_real t427 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
-        const gic_real t428 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t427 = GIC_FABS(y[HMMWV_STATE_OMEGA_Z]) + GIC_FABS(y[HMMWV_STATE_OMEGA_Y]) +
+            GIC_FABS(y[HMMWV_STATE_OMEGA_X]);
+        const gic_real t428 = GIC_FABS(rate[HMMWV_STATE_OMEGA_Z]) + GIC_FABS(rate[HMMWV_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[HMMWV_STATE_OMEGA_X]);
         const gic_real t429 = t427 * t427 + t428;
         const gic_real t430 = t426 + t429 * R(0.2690000000000001);
         const gic_real t431 = t430 * R(561.2738800000002) + t429 * R(7604.379999999999);
-        const gic_real t432 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t433 = GIC_FABS(rate[22]);
-        const gic_real t434 = t426 + t429 * t432 + t427 * GIC_FABS(m[16]) + t433;
+        const gic_real t432 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[HMMWV_MOTION_RACK + HMMWV_C_Y]));
+        const gic_real t433 = GIC_FABS(rate[HMMWV_STATE_RACK_RATE]);
+        const gic_real t434 = t426 + t429 * t432 + t427 * GIC_FABS(m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y]) + t433;
         const gic_real t435 = R(9.072) * t434 + t429 * R(0.0005216895628628198);
-        const gic_real t436 = t431 + t430 * R(0.3983301514773894) + (R(3.0) * t429 + t434 * R(0.0005216895628628198) + t432 * t435);
+        const gic_real t436 = t431 + t430 * R(0.3983301514773894) + (R(3.0) * t429 + t434 * R(0.0005216895628628198) +
+            t432 * t435);
         const gic_real t437 = GIC_FABS(t46);
         const gic_real t438 = t437 + GIC_FABS(t45);
-        const gic_real t439 = t427 + GIC_FABS(m[42]);
+        const gic_real t439 = t427 + GIC_FABS(m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X]);
         const gic_real t440 = t428 + t439 * t439;
-        const gic_real t441 = t426 + t440 * (R(1.688965) + (t437 + GIC_FABS(t51))) + t427 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t442 = GIC_FABS(rate[18]);
-        const gic_real t443 = GIC_FABS(m[54]);
+        const gic_real t441 = t426 + t440 * (R(1.688965) + (t437 + GIC_FABS(t51))) + t427 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t442 = GIC_FABS(rate[HMMWV_STATE_SPRING_F_L_RATE]);
+        const gic_real t443 = GIC_FABS(m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0]);
         const gic_real t444 = t442 * t443;
         const gic_real t445 = t441 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t444 * t438;
         const gic_real t446 = R(23.965) * t445;
-        const gic_real t447 = t438 * t446 + (t440 + GIC_FABS(m[48]) + t444) * R(1.7876);
+        const gic_real t447 = t438 * t446 + (t440 + GIC_FABS(m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X]) + t444) *
+            R(1.7876);
         const gic_real t448 = t447 + t445 * R(0.0006545214587773269);
         const gic_real t449 = t446 + t447 * R(0.00036614536740732094);
         const gic_real t450 = GIC_FABS(t76);
         const gic_real t451 = t450 + GIC_FABS(t75);
-        const gic_real t452 = t427 + GIC_FABS(m[72]);
+        const gic_real t452 = t427 + GIC_FABS(m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X]);
         const gic_real t453 = t428 + t452 * t452;
-        const gic_real t454 = t426 + t453 * (R(1.688965) + (t450 + GIC_FABS(t80))) + t427 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t455 = GIC_FABS(rate[19]);
-        const gic_real t456 = GIC_FABS(m[84]);
+        const gic_real t454 = t426 + t453 * (R(1.688965) + (t450 + GIC_FABS(t80))) + t427 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t455 = GIC_FABS(rate[HMMWV_STATE_SPRING_F_R_RATE]);
+        const gic_real t456 = GIC_FABS(m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0]);
         const gic_real t457 = t455 * t456;
         const gic_real t458 = t454 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t457 * t451;
         const gic_real t459 = R(23.965) * t458;
-        const gic_real t460 = t451 * t459 + R(1.7876) * (t453 + GIC_FABS(m[78]) + t457);
+        const gic_real t460 = t451 * t459 + R(1.7876) * (t453 + GIC_FABS(m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X]) +
+            t457);
         const gic_real t461 = t460 + R(0.0006545214587773269) * t458;
         const gic_real t462 = t459 + R(0.00036614536740732094) * t460;
         const gic_real t463 = t436 + (t448 + t449 * R(1.996051)) + (t461 + R(1.996051) * t462);
@@ -3309,286 +4108,382 @@ static GIC_COLD GIC_APART int hmmwv_balance(const hmmwv *self, gic_real time, co
         const gic_real t465 = GIC_FABS(t416) + GIC_FABS(t464);
         const gic_real t466 = t465 * (GIC_FABS(t402) + GIC_FABS(t397) + GIC_FABS(t398));
         const gic_real t467 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t468 = t427 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t468 = t427 + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X]));
         const gic_real t469 = t428 + t468 * t468;
         const gic_real t470 = t469 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t471 = t427 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t472 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t472 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t139 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t125 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t124 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t118);
         const gic_real t473 = t426 + t470 + t471 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t472));
-        const gic_real t474 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t474 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0]);
         const gic_real t475 = t433 * t474;
-        const gic_real t476 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t476 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6]);
         const gic_real t477 = t442 * t476;
-        const gic_real t478 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t478 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10]);
         const gic_real t479 = t473 + t475 * t467 + t467 * t477 + t442 * t478;
         const gic_real t480 = R(90.555) * t479;
-        const gic_real t481 = t469 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t481 = t469 + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X]));
         const gic_real t482 = t466 + (t467 * t480 + (t481 + t475 + t477) * R(17.248790999999997));
         const gic_real t483 = t465 + t480;
         const gic_real t484 = t482 + t483 * R(4.364385583403788e-05);
         const gic_real t485 = t483 + t482 * R(0.00022912732637616755);
-        const gic_real t486 = t484 + t485 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t486 = t484 + t485 * (R(1.653405) + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y])));
         const gic_real t487 = R(283000.0) * (R(0.4699) + (GIC_FABS(t389) + GIC_FABS(road385[0])));
         const gic_real t488 = GIC_FABS(t392) + GIC_FABS(t487);
         const gic_real t489 = t488 * (GIC_FABS(t378) + GIC_FABS(t373) + GIC_FABS(t374));
         const gic_real t490 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t491 = t427 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t491 = t427 + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X]));
         const gic_real t492 = t428 + t491 * t491;
         const gic_real t493 = t492 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t494 = t427 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t495 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t495 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t197 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t183 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t182 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t176);
         const gic_real t496 = t426 + t493 + t494 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t495));
-        const gic_real t497 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t497 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0]);
         const gic_real t498 = t433 * t497;
-        const gic_real t499 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t499 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6]);
         const gic_real t500 = t455 * t499;
-        const gic_real t501 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t501 = GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10]);
         const gic_real t502 = t496 + t498 * t490 + t490 * t500 + t455 * t501;
         const gic_real t503 = R(90.555) * t502;
-        const gic_real t504 = t492 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t504 = t492 + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y]) + GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X]));
         const gic_real t505 = t489 + (t490 * t503 + R(17.248790999999997) * (t504 + t498 + t500));
         const gic_real t506 = t488 + t503;
         const gic_real t507 = t505 + R(4.364385583403788e-05) * t506;
         const gic_real t508 = t506 + R(0.00022912732637616755) * t505;
-        const gic_real t509 = t507 + t508 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t509 = t507 + t508 * (R(1.653405) + (GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y])));
         const gic_real t510 = GIC_FABS(t216);
         const gic_real t511 = t510 + GIC_FABS(t215);
-        const gic_real t512 = t427 + GIC_FABS(m[102]);
+        const gic_real t512 = t427 + GIC_FABS(m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X]);
         const gic_real t513 = t428 + t512 * t512;
-        const gic_real t514 = t426 + t513 * (R(1.688965) + (t510 + GIC_FABS(t221))) + t427 * (GIC_FABS(t227) + GIC_FABS(-t217));
-        const gic_real t515 = GIC_FABS(rate[20]);
-        const gic_real t516 = GIC_FABS(m[114]);
+        const gic_real t514 = t426 + t513 * (R(1.688965) + (t510 + GIC_FABS(t221))) + t427 * (GIC_FABS(t227) +
+            GIC_FABS(-t217));
+        const gic_real t515 = GIC_FABS(rate[HMMWV_STATE_SPRING_R_L_RATE]);
+        const gic_real t516 = GIC_FABS(m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0]);
         const gic_real t517 = t515 * t516;
         const gic_real t518 = t514 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t517 * t511;
         const gic_real t519 = R(23.965) * t518;
-        const gic_real t520 = t511 * t519 + R(1.7876) * (t513 + GIC_FABS(m[108]) + t517);
+        const gic_real t520 = t511 * t519 + R(1.7876) * (t513 + GIC_FABS(m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X]) +
+            t517);
         const gic_real t521 = t520 + R(0.0006545214587773269) * t518;
         const gic_real t522 = t519 + R(0.00036614536740732094) * t520;
         const gic_real t523 = GIC_FABS(t246);
         const gic_real t524 = t523 + GIC_FABS(t245);
-        const gic_real t525 = t427 + GIC_FABS(m[132]);
+        const gic_real t525 = t427 + GIC_FABS(m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X]);
         const gic_real t526 = t428 + t525 * t525;
-        const gic_real t527 = t426 + t526 * (R(1.688965) + (t523 + GIC_FABS(t250))) + t427 * (GIC_FABS(t255) + GIC_FABS(-t247));
-        const gic_real t528 = GIC_FABS(rate[21]);
-        const gic_real t529 = GIC_FABS(m[144]);
+        const gic_real t527 = t426 + t526 * (R(1.688965) + (t523 + GIC_FABS(t250))) + t427 * (GIC_FABS(t255) +
+            GIC_FABS(-t247));
+        const gic_real t528 = GIC_FABS(rate[HMMWV_STATE_SPRING_R_R_RATE]);
+        const gic_real t529 = GIC_FABS(m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0]);
         const gic_real t530 = t528 * t529;
         const gic_real t531 = t527 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t530 * t524;
         const gic_real t532 = R(23.965) * t531;
-        const gic_real t533 = t524 * t532 + R(1.7876) * (t526 + GIC_FABS(m[138]) + t530);
+        const gic_real t533 = t524 * t532 + R(1.7876) * (t526 + GIC_FABS(m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X]) +
+            t530);
         const gic_real t534 = t533 + R(0.0006545214587773269) * t531;
         const gic_real t535 = t532 + R(0.00036614536740732094) * t533;
         const gic_real t536 = t463 + t486 + t509 + (t521 + R(1.996051) * t522) + (t534 + R(1.996051) * t535);
         const gic_real t537 = R(283000.0) * (R(0.4699) + (GIC_FABS(t365) + GIC_FABS(road361[0])));
         const gic_real t538 = GIC_FABS(t368) + GIC_FABS(t537);
         const gic_real t539 = GIC_FABS(t273) + GIC_FABS(t271);
-        const gic_real t540 = t427 + GIC_FABS(m[234]);
+        const gic_real t540 = t427 + GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X]);
         const gic_real t541 = t428 + t540 * t540;
         const gic_real t542 = t426 + t541 * (R(1.653405) + (GIC_FABS(t278) + GIC_FABS(t280)));
         const gic_real t543 = t542 + t427 * (GIC_FABS(t288) + GIC_FABS(t276)) + (GIC_FABS(t275) + GIC_FABS(t287));
-        const gic_real t544 = GIC_FABS(m[246]);
+        const gic_real t544 = GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0]);
         const gic_real t545 = t515 * t544;
-        const gic_real t546 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t546 = GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4]);
         const gic_real t547 = R(90.555) * (t543 + t545 * t539 + t515 * t546);
-        const gic_real t548 = t539 * t547 + R(17.248790999999997) * (t541 + GIC_FABS(m[240]) + t545);
+        const gic_real t548 = t539 * t547 + R(17.248790999999997) * (t541 +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X]) + t545);
         const gic_real t549 = t538 * (GIC_FABS(t356) + GIC_FABS(t353)) + t548;
         const gic_real t550 = t538 + t547;
         const gic_real t551 = t549 + R(4.364385583403788e-05) * t550;
         const gic_real t552 = t550 + R(0.00022912732637616755) * t549;
-        const gic_real t553 = t551 + t552 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
+        const gic_real t553 = t551 + t552 * (R(1.653405) + (GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y])));
         const gic_real t554 = R(283000.0) * (R(0.4699) + (GIC_FABS(t345) + GIC_FABS(road339[0])));
         const gic_real t555 = GIC_FABS(t348) + GIC_FABS(t554);
         const gic_real t556 = GIC_FABS(t308) + GIC_FABS(t306);
-        const gic_real t557 = t427 + GIC_FABS(m[264]);
+        const gic_real t557 = t427 + GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X]);
         const gic_real t558 = t428 + t557 * t557;
         const gic_real t559 = t426 + t558 * (R(1.653405) + (GIC_FABS(t312) + GIC_FABS(t314)));
         const gic_real t560 = t559 + t427 * (GIC_FABS(t321) + GIC_FABS(t311)) + (GIC_FABS(t310) + GIC_FABS(t320));
-        const gic_real t561 = GIC_FABS(m[276]);
+        const gic_real t561 = GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0]);
         const gic_real t562 = t528 * t561;
-        const gic_real t563 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t563 = GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4]);
         const gic_real t564 = R(90.555) * (t560 + t562 * t556 + t528 * t563);
-        const gic_real t565 = t556 * t564 + R(17.248790999999997) * (t558 + GIC_FABS(m[270]) + t562);
+        const gic_real t565 = t556 * t564 + R(17.248790999999997) * (t558 +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X]) + t562);
         const gic_real t566 = t555 * (GIC_FABS(t330) + GIC_FABS(t327)) + t565;
         const gic_real t567 = t555 + t564;
         const gic_real t568 = t566 + R(4.364385583403788e-05) * t567;
         const gic_real t569 = t567 + R(0.00022912732637616755) * t566;
-        const gic_real t570 = t568 + t569 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t570 = t568 + t569 * (R(1.653405) + (GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z]) +
+            GIC_FABS(m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y])));
         const gic_real t571 = t536 + t553 + t570;
-        const gic_real t572 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t573 = t425 + (rate[16] * R(0.21300000000000008) - (y[17] * t572 + y[16] * t17));
-        const gic_real t574 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t572 = y[HMMWV_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t573 = t425 + (rate[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008) - (y[HMMWV_STATE_OMEGA_Z] *
+            t572 + y[HMMWV_STATE_OMEGA_Y] * t17));
+        const gic_real t574 = y[HMMWV_STATE_OMEGA_Y] * t34 - y[HMMWV_STATE_OMEGA_Z] * t29 + (R(0.05422899999999997) *
+            rate[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] * rate[HMMWV_STATE_OMEGA_Z]);
         const gic_real t575 = t425 + t574;
         const gic_real t576 = t575 * R(9.072);
-        const gic_real t577 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t577 = y[HMMWV_STATE_OMEGA_Y] * t59 - y[HMMWV_STATE_OMEGA_Z] * t50 + (rate[HMMWV_STATE_OMEGA_Y] *
+            t46 - rate[HMMWV_STATE_OMEGA_Z] * t51);
         const gic_real t578 = t425 + t577;
         const gic_real t579 = t578 * R(23.965);
-        const gic_real t580 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t580 = y[HMMWV_STATE_OMEGA_Y] * t86 - y[HMMWV_STATE_OMEGA_Z] * t79 + (rate[HMMWV_STATE_OMEGA_Y] *
+            t76 - rate[HMMWV_STATE_OMEGA_Z] * t80);
         const gic_real t581 = t425 + t580;
         const gic_real t582 = R(23.965) * t581;
-        const gic_real t583 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
-        const gic_real t584 = t472 + (t425 + t583) + rate[22] * (m[175] * t124 - m[176] * t118);
-        const gic_real t585 = (t584 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
-        const gic_real t586 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
-        const gic_real t587 = t495 + (t425 + t586) + rate[22] * (m[211] * t182 - m[212] * t176);
-        const gic_real t588 = R(90.555) * (t587 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t583 = y[HMMWV_STATE_OMEGA_Y] * t143 - y[HMMWV_STATE_OMEGA_Z] * t132 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t131 - rate[HMMWV_STATE_OMEGA_Z] * t133);
+        const gic_real t584 = t472 + (t425 + t583) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t124 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t118);
+        const gic_real t585 = (t584 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] *
+            t124 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t118)) * R(90.555);
+        const gic_real t586 = y[HMMWV_STATE_OMEGA_Y] * t201 - y[HMMWV_STATE_OMEGA_Z] * t190 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t189 - rate[HMMWV_STATE_OMEGA_Z] * t191);
+        const gic_real t587 = t495 + (t425 + t586) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t182 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t176);
+        const gic_real t588 = R(90.555) * (t587 + rate[HMMWV_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t182 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t176));
         const gic_real t589 = t573 * R(2086.52) + t576 + t579 + t582 + t585 + t588;
-        const gic_real t590 = y[16] * t229 - y[17] * t220 + (rate[16] * t216 - rate[17] * t221);
+        const gic_real t590 = y[HMMWV_STATE_OMEGA_Y] * t229 - y[HMMWV_STATE_OMEGA_Z] * t220 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t216 - rate[HMMWV_STATE_OMEGA_Z] * t221);
         const gic_real t591 = t425 + t590;
         const gic_real t592 = R(23.965) * t591;
-        const gic_real t593 = y[16] * t256 - y[17] * t249 + (rate[16] * t246 - rate[17] * t250);
+        const gic_real t593 = y[HMMWV_STATE_OMEGA_Y] * t256 - y[HMMWV_STATE_OMEGA_Z] * t249 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t246 - rate[HMMWV_STATE_OMEGA_Z] * t250);
         const gic_real t594 = t425 + t593;
         const gic_real t595 = R(23.965) * t594;
-        const gic_real t596 = y[16] * t290 - y[17] * t279 + (rate[16] * t278 - rate[17] * t280);
+        const gic_real t596 = y[HMMWV_STATE_OMEGA_Y] * t290 - y[HMMWV_STATE_OMEGA_Z] * t279 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t278 - rate[HMMWV_STATE_OMEGA_Z] * t280);
         const gic_real t597 = R(90.555) * (t425 + t596);
-        const gic_real t598 = y[16] * t322 - y[17] * t313 + (rate[16] * t312 - rate[17] * t314);
+        const gic_real t598 = y[HMMWV_STATE_OMEGA_Y] * t322 - y[HMMWV_STATE_OMEGA_Z] * t313 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t312 - rate[HMMWV_STATE_OMEGA_Z] * t314);
         const gic_real t599 = R(90.555) * (t425 + t598);
         const gic_real t600 = t341 * t349;
         const gic_real t601 = t341 * t369;
         const gic_real t602 = t341 * t417;
         const gic_real t603 = t341 * t393;
-        const gic_real t604 = t589 + t592 + t595 + t597 + t599 - (t600 + (t601 + (t602 + t603)));
+        const gic_real residual_3 = t589 + t592 + t595 + t597 + t599 - (t600 + (t601 + (t602 + t603)));
         const gic_real t605 = R(2086.52) * t430 + t431 * R(5.2381673650894547e-05) + t435 + t449 + t462;
         const gic_real t606 = t605 + t485 + t508 + t522 + t535 + t552 + t569;
-        const gic_real t607 = y[15] * R(1078.52);
-        const gic_real t608 = t28 + (y[15] * t572 - y[16] * t18 - rate[16] * R(0.056));
-        const gic_real t609 = y[17] * t607 - y[15] * t1 + rate[16] * R(2955.66) + (t573 * R(444.4287600000002) - t608 * R(116.84512));
-        const gic_real t610 = m[42] + y[15];
+        const gic_real t607 = y[HMMWV_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t608 = t28 + (y[HMMWV_STATE_OMEGA_X] * t572 - y[HMMWV_STATE_OMEGA_Y] * t18 -
+            rate[HMMWV_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t609 = y[HMMWV_STATE_OMEGA_Z] * t607 - y[HMMWV_STATE_OMEGA_X] * t1 + rate[HMMWV_STATE_OMEGA_Y] *
+            R(2955.66) + (t573 * R(444.4287600000002) - t608 * R(116.84512));
+        const gic_real t610 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t611 = R(0.4469) * t610;
-        const gic_real t612 = rate[17] - m[42] * y[16];
-        const gic_real t613 = rate[16] + m[42] * y[17];
-        const gic_real t614 = y[17] * t611 - t610 * t41 + (t40 * t612 + t42 * t613);
-        const gic_real t615 = t609 + (rate[16] + (t575 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t614 + t46 * t579 - t55 * R(40.476046225));
-        const gic_real t616 = m[72] + y[15];
+        const gic_real t612 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t613 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t614 = y[HMMWV_STATE_OMEGA_Z] * t611 - t610 * t41 + (t40 * t612 + t42 * t613);
+        const gic_real t615 = t609 + (rate[HMMWV_STATE_OMEGA_Y] + (t575 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t614 + t46 * t579 - t55 * R(40.476046225));
+        const gic_real t616 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t617 = R(0.4469) * t616;
-        const gic_real t618 = rate[17] - m[72] * y[16];
-        const gic_real t619 = rate[16] + m[72] * y[17];
-        const gic_real t620 = y[17] * t617 - t616 * t71 + (t70 * t618 + t72 * t619);
+        const gic_real t618 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t619 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t620 = y[HMMWV_STATE_OMEGA_Z] * t617 - t616 * t71 + (t70 * t618 + t72 * t619);
         const gic_real t621 = t102 * t94 + (t106 * t92 + t112 * t103);
         const gic_real t622 = t94 * t621 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t623 = t622 + (t124 * t585 - t121 * t138);
-        const gic_real t624 = t615 + (t620 + t76 * t582 - R(40.476046225) * t83) + (t623 + (m[152] * t585 - t137 * R(149.724089775)));
+        const gic_real t624 = t615 + (t620 + t76 * t582 - R(40.476046225) * t83) + (t623 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t585 - t137 * R(149.724089775)));
         const gic_real t625 = t160 * t152 + (t164 * t150 + t170 * t161);
         const gic_real t626 = t152 * t625 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t627 = t626 + (t182 * t588 - t179 * t196);
-        const gic_real t628 = m[102] + y[15];
+        const gic_real t628 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t629 = R(0.4469) * t628;
-        const gic_real t630 = rate[17] - m[102] * y[16];
-        const gic_real t631 = rate[16] + m[102] * y[17];
-        const gic_real t632 = y[17] * t629 - t628 * t211 + (t210 * t630 + t212 * t631);
-        const gic_real t633 = t624 + (t627 + (m[188] * t588 - R(149.724089775) * t195)) + (t632 + t216 * t592 - t225 * R(-40.476046225));
-        const gic_real t634 = m[132] + y[15];
+        const gic_real t630 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t631 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t632 = y[HMMWV_STATE_OMEGA_Z] * t629 - t628 * t211 + (t210 * t630 + t212 * t631);
+        const gic_real t633 = t624 + (t627 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t588 - R(149.724089775) * t195)) +
+            (t632 + t216 * t592 - t225 * R(-40.476046225));
+        const gic_real t634 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t635 = R(0.4469) * t634;
-        const gic_real t636 = rate[17] - m[132] * y[16];
-        const gic_real t637 = rate[16] + m[132] * y[17];
-        const gic_real t638 = y[17] * t635 - t634 * t241 + (t240 * t636 + t242 * t637);
-        const gic_real t639 = m[234] + y[15];
+        const gic_real t636 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t637 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t638 = y[HMMWV_STATE_OMEGA_Z] * t635 - t634 * t241 + (t240 * t636 + t242 * t637);
+        const gic_real t639 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t640 = R(4.8947505) * t639;
-        const gic_real t641 = rate[17] - m[234] * y[16];
-        const gic_real t642 = rate[16] + m[234] * y[17];
-        const gic_real t643 = y[17] * t640 - t639 * t266 + (t265 * t641 + t267 * t642);
-        const gic_real t644 = t643 + t273 * t597 + (m[224] * t597 - t284 * R(-149.724089775));
+        const gic_real t641 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t642 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t643 = y[HMMWV_STATE_OMEGA_Z] * t640 - t639 * t266 + (t265 * t641 + t267 * t642);
+        const gic_real t644 = t643 + t273 * t597 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t597 - t284 *
+            R(-149.724089775));
         const gic_real t645 = t633 + (t638 + t246 * t595 - R(-40.476046225) * t253) + t644;
-        const gic_real t646 = m[264] + y[15];
+        const gic_real t646 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t647 = R(4.8947505) * t646;
-        const gic_real t648 = rate[17] - m[264] * y[16];
-        const gic_real t649 = rate[16] + m[264] * y[17];
-        const gic_real t650 = y[17] * t647 - t646 * t301 + (t300 * t648 + t302 * t649);
-        const gic_real t651 = t650 + t308 * t599 + (m[254] * t599 - R(-149.724089775) * t317);
+        const gic_real t648 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t649 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t650 = y[HMMWV_STATE_OMEGA_Z] * t647 - t646 * t301 + (t300 * t648 + t302 * t649);
+        const gic_real t651 = t650 + t308 * t599 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t599 - R(-149.724089775) *
+            t317);
         const gic_real t652 = t378 * t603 - t374 * t394;
         const gic_real t653 = t402 * t602 - t398 * t418;
-        const gic_real t654 = t653 + (m[152] * t602 - R(1.653405) * t418) + (m[188] * t603 - R(1.653405) * t394);
-        const gic_real t655 = t356 * t601 + (t652 + t654 + (m[224] * t601 - R(-1.653405) * t370));
-        const gic_real t656 = t330 * t600 + (t655 + (m[254] * t600 - R(-1.653405) * t350));
+        const gic_real t654 = t653 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t602 - R(1.653405) * t418) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t603 - R(1.653405) * t394);
+        const gic_real t655 = t356 * t601 + (t652 + t654 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t601 -
+            R(-1.653405) * t370));
+        const gic_real t656 = t330 * t600 + (t655 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t600 - R(-1.653405) *
+            t350));
         const gic_real t657 = t36 * R(9.072);
         const gic_real t658 = t20 * R(2086.52) + t657 + t64 + t90 + t147 + t205;
-        const gic_real t659 = t658 + t234 + t260 + t294 + t325 - (t351 + (t371 + (t419 + t395)));
-        const gic_real t660 = y[15] * t2 - y[16] * t607 + rate[17] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t661 = t610 * t43 - y[16] * t611 + (t37 * t612 + t40 * t613);
+        const gic_real residual_4 = t658 + t234 + t260 + t294 + t325 - (t351 + (t371 + (t419 + t395)));
+        const gic_real t660 = y[HMMWV_STATE_OMEGA_X] * t2 - y[HMMWV_STATE_OMEGA_Y] * t607 + rate[HMMWV_STATE_OMEGA_Z] *
+            R(3570.2) + t20 * R(116.84512);
+        const gic_real t661 = t610 * t43 - y[HMMWV_STATE_OMEGA_Y] * t611 + (t37 * t612 + t40 * t613);
         const gic_real t662 = t661 - t45 * t579 + (t63 * R(40.476046225) - t578 * R(7.359315990000001));
-        const gic_real t663 = t660 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t576)) + t662;
-        const gic_real t664 = t616 * t73 - y[16] * t617 + (t67 * t618 + t70 * t619);
+        const gic_real t663 = t660 + (rate[HMMWV_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[HMMWV_MOTION_RACK + HMMWV_C_Y] * t576)) + t662;
+        const gic_real t664 = t616 * t73 - y[HMMWV_STATE_OMEGA_Y] * t617 + (t67 * t618 + t70 * t619);
         const gic_real t665 = t664 - t75 * t582 + (R(40.476046225) * t89 - t581 * R(-7.359315990000001));
         const gic_real t666 = t103 * t107 - t92 * t621 + (t93 * t109 + (t98 * t111 + t102 * t114));
         const gic_real t667 = t666 + (t121 * t147 - t118 * t585);
-        const gic_real t668 = t663 + t665 + (t667 + (t146 * R(149.724089775) - m[151] * t585));
+        const gic_real t668 = t663 + t665 + (t667 + (t146 * R(149.724089775) - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] *
+            t585));
         const gic_real t669 = t161 * t165 - t150 * t625 + (t151 * t167 + (t156 * t169 + t160 * t172));
         const gic_real t670 = t669 + (t179 * t205 - t176 * t588);
-        const gic_real t671 = t628 * t213 - y[16] * t629 + (t207 * t630 + t210 * t631);
+        const gic_real t671 = t628 * t213 - y[HMMWV_STATE_OMEGA_Y] * t629 + (t207 * t630 + t210 * t631);
         const gic_real t672 = t671 - t215 * t592 + (t233 * R(-40.476046225) - R(7.359315990000001) * t591);
-        const gic_real t673 = t668 + (t670 + (R(149.724089775) * t204 - m[187] * t588)) + t672;
-        const gic_real t674 = t634 * t243 - y[16] * t635 + (t237 * t636 + t240 * t637);
+        const gic_real t673 = t668 + (t670 + (R(149.724089775) * t204 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t588)) +
+            t672;
+        const gic_real t674 = t634 * t243 - y[HMMWV_STATE_OMEGA_Y] * t635 + (t237 * t636 + t240 * t637);
         const gic_real t675 = t674 - t245 * t595 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t594);
-        const gic_real t676 = t639 * t268 - y[16] * t640 + (t262 * t641 + t265 * t642);
-        const gic_real t677 = t676 - t271 * t597 + (t293 * R(-149.724089775) - m[223] * t597);
-        const gic_real t678 = t646 * t303 - y[16] * t647 + (t297 * t648 + t300 * t649);
-        const gic_real t679 = t678 - t306 * t599 + (R(-149.724089775) * t324 - m[253] * t599);
+        const gic_real t676 = t639 * t268 - y[HMMWV_STATE_OMEGA_Y] * t640 + (t262 * t641 + t265 * t642);
+        const gic_real t677 = t676 - t271 * t597 + (t293 * R(-149.724089775) - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] *
+            t597);
+        const gic_real t678 = t646 * t303 - y[HMMWV_STATE_OMEGA_Y] * t647 + (t297 * t648 + t300 * t649);
+        const gic_real t679 = t678 - t306 * t599 + (R(-149.724089775) * t324 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] *
+            t599);
         const gic_real t680 = t374 * t395 - t373 * t603;
         const gic_real t681 = t398 * t419 - t397 * t602;
-        const gic_real t682 = t681 + (R(1.653405) * t419 - m[151] * t602) + (R(1.653405) * t395 - m[187] * t603);
-        const gic_real t683 = t680 + t682 + (R(-1.653405) * t371 - m[223] * t601) - t353 * t601;
-        const gic_real t684 = t683 + (R(-1.653405) * t351 - m[253] * t600) - t327 * t600;
+        const gic_real t682 = t681 + (R(1.653405) * t419 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t602) +
+            (R(1.653405) * t395 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t603);
+        const gic_real t683 = t680 + t682 + (R(-1.653405) * t371 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t601) -
+            t353 * t601;
+        const gic_real t684 = t683 + (R(-1.653405) * t351 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t600) - t327 * t600;
         const gic_real t685 = t608 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
-        const gic_real t686 = t685 + t226 + t254 + t285 + t318 - (t350 + (t370 + (t418 + t394)));
-        const gic_real t687 = m[185] * t138 + m[184] * t147 + (m[182] * t667 + (m[181] * t623 + m[180] * t148));
-        const gic_real t688 = m[185] * t418 + m[184] * t419 + (m[182] * t681 + (m[181] * t653 + m[180] * t420));
-        const gic_real t689 = (x[0] - R(0.31903)) * R(167070.9);
-        const gic_real t690 = xd[0] * R(17490.8);
-        const gic_real t691 = GIC_FABS(t690) + GIC_FABS(t689) + R(167070.9) * (R(0.31903) + GIC_FABS(x[0]));
+        const gic_real residual_5 = t685 + t226 + t254 + t285 + t318 - (t350 + (t370 + (t418 + t394)));
+        const gic_real t687 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] * t138 +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] * t147 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t667 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t623 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t148));
+        const gic_real t688 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] * t418 +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] * t419 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t681 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t653 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t420));
+        /* force spring_f_l */
+        const gic_real t689 = (x[HMMWV_X_SPRING_F_L] - R(0.31903)) * R(167070.9);
+        const gic_real t690 = xd[HMMWV_X_SPRING_F_L] * R(17490.8);
+        const gic_real t691 = GIC_FABS(t690) + GIC_FABS(t689) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_X_SPRING_F_L]));
         const gic_real t692 = t691 + t443 * t448 + t476 * t484 + t478 * t485;
-        const gic_real t693 = m[221] * t196 + m[220] * t205 + (m[218] * t670 + (m[217] * t627 + m[216] * t206));
-        const gic_real t694 = m[221] * t394 + m[220] * t395 + (m[218] * t680 + (m[217] * t652 + m[216] * t396));
-        const gic_real t695 = R(167070.9) * (x[1] - R(0.31903));
-        const gic_real t696 = xd[1] * R(17490.8);
-        const gic_real t697 = GIC_FABS(t696) + GIC_FABS(t695) + R(167070.9) * (R(0.31903) + GIC_FABS(x[1]));
+        const gic_real t693 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] * t196 +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] * t205 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t670 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t627 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t206));
+        const gic_real t694 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] * t394 +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] * t395 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t680 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t652 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t396));
+        /* force spring_f_r */
+        const gic_real t695 = R(167070.9) * (x[HMMWV_X_SPRING_F_R] - R(0.31903));
+        const gic_real t696 = xd[HMMWV_X_SPRING_F_R] * R(17490.8);
+        const gic_real t697 = GIC_FABS(t696) + GIC_FABS(t695) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_X_SPRING_F_R]));
         const gic_real t698 = t697 + t456 * t461 + t499 * t507 + t501 * t508;
-        const gic_real t699 = m[114] * t235 + (m[251] * t285 + m[250] * t294 + m[246] * t295);
-        const gic_real t700 = (x[2] - R(0.33727)) * R(369167.2);
-        const gic_real t701 = xd[2] * R(24780.4);
-        const gic_real t702 = m[251] * t370 + m[250] * t371 + m[246] * t372 - (t700 + t701);
-        const gic_real t703 = GIC_FABS(t701) + GIC_FABS(t700) + R(369167.2) * (R(0.33727) + GIC_FABS(x[2]));
+        const gic_real t699 = m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t235 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] *
+            t285 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] * t294 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t295);
+        /* force spring_r_l */
+        const gic_real t700 = (x[HMMWV_X_SPRING_R_L] - R(0.33727)) * R(369167.2);
+        const gic_real t701 = xd[HMMWV_X_SPRING_R_L] * R(24780.4);
+        const gic_real t702 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] * t370 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] *
+            t371 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t372 - (t700 + t701);
+        const gic_real t703 = GIC_FABS(t701) + GIC_FABS(t700) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_X_SPRING_R_L]));
         const gic_real t704 = t703 + t516 * t521 + t544 * t551 + t546 * t552;
-        const gic_real t705 = m[144] * t261 + (m[281] * t318 + m[280] * t325 + m[276] * t326);
-        const gic_real t706 = R(369167.2) * (x[3] - R(0.33727));
-        const gic_real t707 = xd[3] * R(24780.4);
-        const gic_real t708 = m[281] * t350 + m[280] * t351 + m[276] * t352 - (t706 + t707);
-        const gic_real t709 = GIC_FABS(t707) + GIC_FABS(t706) + R(369167.2) * (R(0.33727) + GIC_FABS(x[3]));
+        const gic_real t705 = m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t261 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] *
+            t318 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] * t325 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t326);
+        /* force spring_r_r */
+        const gic_real t706 = R(369167.2) * (x[HMMWV_X_SPRING_R_R] - R(0.33727));
+        const gic_real t707 = xd[HMMWV_X_SPRING_R_R] * R(24780.4);
+        const gic_real t708 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] * t350 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] *
+            t351 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t352 - (t706 + t707);
+        const gic_real t709 = GIC_FABS(t707) + GIC_FABS(t706) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_X_SPRING_R_R]));
         const gic_real t710 = t709 + t529 * t534 + t561 * t568 + t563 * t569;
-        const gic_real t711 = t657 + (m[176] * t667 + (m[175] * t623 + m[174] * t148));
-        const gic_real t712 = t711 + (m[212] * t670 + (m[211] * t627 + m[210] * t206));
-        const gic_real t713 = x[4] * R(100000.0);
-        const gic_real t714 = xd[4] * R(12000.0);
-        const gic_real t715 = m[176] * t681 + (m[175] * t653 + m[174] * t420) - (t713 + t714);
-        const gic_real t716 = t715 + (m[212] * t680 + (m[211] * t652 + m[210] * t396));
-        const gic_real t717 = GIC_FABS(t714) + GIC_FABS(t713) + R(100000.0) * GIC_FABS(x[4]);
-        const gic_real t718 = t645 + t651 - t656;
-        const gic_real t719 = t673 + t675 + t677 + t679 - t684;
-        const gic_real t720 = m[54] * t65 + t687 - (t688 - (t689 + t690));
-        const gic_real t721 = m[84] * t91 + t693 - (t694 - (t695 + t696));
-        const gic_real t722 = t699 - t702;
-        const gic_real t723 = t705 - t708;
-        const gic_real t724 = t712 - t716;
+        const gic_real t711 = t657 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t667 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t623 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t148));
+        const gic_real t712 = t711 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t670 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t627 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t206));
+        /* force rack */
+        const gic_real t713 = x[HMMWV_X_RACK] * R(100000.0);
+        const gic_real t714 = xd[HMMWV_X_RACK] * R(12000.0);
+        const gic_real t715 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t681 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t653 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t420) - (t713 +
+            t714);
+        const gic_real t716 = t715 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t680 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t652 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t396));
+        const gic_real t717 = GIC_FABS(t714) + GIC_FABS(t713) + R(100000.0) * GIC_FABS(x[HMMWV_X_RACK]);
+        const gic_real residual_1 = t645 + t651 - t656;
+        const gic_real residual_2 = t673 + t675 + t677 + t679 - t684;
+        const gic_real residual_6 = m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t65 + t687 - (t688 - (t689 + t690));
+        const gic_real residual_7 = m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t91 + t693 - (t694 - (t695 + t696));
+        const gic_real residual_8 = t699 - t702;
+        const gic_real residual_9 = t705 - t708;
+        const gic_real residual_10 = t712 - t716;
         const gic_real t725 = t717 + t435 + t474 * t484 + t497 * t507;
-        tau[0] = t423;
-        size[0] = t571;
-        tau[3] = t604;
-        size[3] = t606;
-        tau[1] = t718;
-        size[1] = t571;
-        tau[4] = t659;
-        size[4] = t606;
-        tau[2] = t719;
-        size[2] = t571;
-        tau[5] = t686;
-        size[5] = t606;
-        tau[6] = t720;
-        size[6] = t692;
-        tau[7] = t721;
-        size[7] = t698;
-        tau[8] = t722;
-        size[8] = t704;
-        tau[9] = t723;
-        size[9] = t710;
-        tau[10] = t724;
-        size[10] = t725;
+        tau[HMMWV_UNKNOWN_ALPHA_X] = residual_0;
+        size[HMMWV_UNKNOWN_ALPHA_X] = t571;
+        tau[HMMWV_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[HMMWV_UNKNOWN_ACCELERATION_X] = t606;
+        tau[HMMWV_UNKNOWN_ALPHA_Y] = residual_1;
+        size[HMMWV_UNKNOWN_ALPHA_Y] = t571;
+        tau[HMMWV_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[HMMWV_UNKNOWN_ACCELERATION_Y] = t606;
+        tau[HMMWV_UNKNOWN_ALPHA_Z] = residual_2;
+        size[HMMWV_UNKNOWN_ALPHA_Z] = t571;
+        tau[HMMWV_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[HMMWV_UNKNOWN_ACCELERATION_Z] = t606;
+        tau[HMMWV_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[HMMWV_UNKNOWN_OF_SPRING_F_L] = t692;
+        tau[HMMWV_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[HMMWV_UNKNOWN_OF_SPRING_F_R] = t698;
+        tau[HMMWV_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[HMMWV_UNKNOWN_OF_SPRING_R_L] = t704;
+        tau[HMMWV_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[HMMWV_UNKNOWN_OF_SPRING_R_R] = t710;
+        tau[HMMWV_UNKNOWN_OF_RACK] = residual_10;
+        size[HMMWV_UNKNOWN_OF_RACK] = t725;
     }
     return GIC_OK;
 }
@@ -3653,7 +4548,7 @@ static int hmmwv_evaluate(hmmwv *self, gic_real time, const gic_real *y, gic_rea
     if (status == GIC_OK)
         status = hmmwv_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_TWIST, HMMWV_STATES - HMMWV_TWIST))
+    if (status == GIC_OK && HMMWV_STATES > HMMWV_TWIST && !GIC_FINITE(rate + HMMWV_TWIST, HMMWV_STATES - HMMWV_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv_check(self, time, y, e, rate);
@@ -3673,8 +4568,9 @@ int hmmwv_rhs(hmmwv *self, gic_real time, const gic_real *state, gic_real *rate)
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int hmmwv_march(hmmwv *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -3685,7 +4581,7 @@ static int hmmwv_march(hmmwv *self, gic_real time)
         return status;
     memcpy(before, state, HMMWV_STATES * sizeof *state);
     for (i = 0; i < HMMWV_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = hmmwv_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, HMMWV_STATES * sizeof *state);
@@ -3943,7 +4839,8 @@ static const char *const hmmwv_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -4070,7 +4967,7 @@ void hmmwv_restore(hmmwv *self, const hmmwv *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_dynamics. */
 static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_real *y, const gic_real *e,
@@ -4080,300 +4977,461 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
-        const gic_real t3 = y[16] * R(0.056);
-        const gic_real t4 = y[16] * R(0.21300000000000008);
-        const gic_real t5 = y[15] * t3 + y[17] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[16] * t1 - y[17] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t9 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t10 = y[15] * t8 - y[16] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[HMMWV_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[HMMWV_STATE_OMEGA_X] * t3 + y[HMMWV_STATE_OMEGA_Z] * t4 + (acc[HMMWV_UNKNOWN_ALPHA_Z] *
+            R(0.056) - acc[HMMWV_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[HMMWV_STATE_OMEGA_Y] * t1 - y[HMMWV_STATE_OMEGA_Z] * t2 + acc[HMMWV_UNKNOWN_ALPHA_X] *
+            R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] + (m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] +
+            (R(1.438648) * y[HMMWV_STATE_OMEGA_Z] - R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t10 = y[HMMWV_STATE_OMEGA_X] * t8 - y[HMMWV_STATE_OMEGA_Y] * t9 +
+            (m[HMMWV_MOTION_RACK + HMMWV_C_Y] * acc[HMMWV_UNKNOWN_ALPHA_X] - R(1.438648) * acc[HMMWV_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t14 = y[17] * t9 - y[15] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = acc[10] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[17] * t16 + y[16] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[17];
-        const gic_real t28 = t27 - y[15] * t25 - t26 - t26;
+        const gic_real t13 = m[HMMWV_MOTION_RACK + HMMWV_C_Y] * y[HMMWV_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t14 = y[HMMWV_STATE_OMEGA_Z] * t9 - y[HMMWV_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[HMMWV_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[HMMWV_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = acc[HMMWV_UNKNOWN_OF_RACK] + (acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(0.8938)) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t17 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t18 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t19 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * t17 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * t18;
+        const gic_real t20 = y[HMMWV_STATE_OMEGA_Z] * t16 + y[HMMWV_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * t17 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * t18;
+        const gic_real t22 = y[HMMWV_STATE_OMEGA_Z] * t19 + y[HMMWV_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[HMMWV_STATE_OMEGA_Y] * t20 - y[HMMWV_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[HMMWV_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[16] * t25 - y[17] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[15] * t28 - y[16] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[HMMWV_STATE_OMEGA_Y] * t25 - y[HMMWV_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[HMMWV_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[HMMWV_STATE_OMEGA_X] * t28 - y[HMMWV_STATE_OMEGA_Y] * t30 + (acc[HMMWV_UNKNOWN_ALPHA_X] *
+            t29 - t31);
+        const gic_real t33 = m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] * t24 - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            t26 + (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t32) + acc[HMMWV_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[16];
-        const gic_real t37 = t35 + (t35 + (y[15] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[17] * t30 - y[15] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[HMMWV_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[HMMWV_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[HMMWV_STATE_OMEGA_Z] * t30 - y[HMMWV_STATE_OMEGA_X] * t37 + (t38 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t39 - (m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t35 +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] * t25) - acc[HMMWV_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[17] * t44 + y[16] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[15] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[HMMWV_UNKNOWN_ALPHA_X] + (m[HMMWV_MOTION_RACK + HMMWV_C_Y] * t12 - t15 *
+            R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(0.8938)) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t45 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t46 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t47 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * t45 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * t46;
+        const gic_real t48 = y[HMMWV_STATE_OMEGA_Z] * t44 + y[HMMWV_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * t45 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * t46;
+        const gic_real t50 = y[HMMWV_STATE_OMEGA_Z] * t47 + y[HMMWV_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[HMMWV_STATE_OMEGA_Y] * t48 - y[HMMWV_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[HMMWV_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[16] * t53 - y[17] * t56;
-        const gic_real t58 = y[15] * t55 - y[16] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[HMMWV_STATE_OMEGA_Y] * t53 - y[HMMWV_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[HMMWV_STATE_OMEGA_X] * t55 - y[HMMWV_STATE_OMEGA_Y] * t57 + (acc[HMMWV_UNKNOWN_ALPHA_X] *
+            t56 - t31);
+        const gic_real t59 = m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] * t52 - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            t54 + (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t58) + acc[HMMWV_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[15] * t56 - t36));
-        const gic_real t63 = y[17] * t57 - y[15] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[HMMWV_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[HMMWV_STATE_OMEGA_Z] * t57 - y[HMMWV_STATE_OMEGA_X] * t62 + (t38 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t63 - (m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t61 +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] * t53) - acc[HMMWV_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[163] + y[16];
-        const gic_real t68 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t69 = m[164] + y[17];
-        const gic_real t70 = m[158] * R(4.7728205);
-        const gic_real t71 = m[157] * R(7.58122);
-        const gic_real t72 = m[156] * R(4.8947505);
-        const gic_real t73 = m[161] * t70 + (m[160] * t71 + m[159] * t72);
-        const gic_real t74 = m[155] * R(4.7728205);
-        const gic_real t75 = m[154] * R(7.58122);
-        const gic_real t76 = m[153] * R(4.8947505);
-        const gic_real t77 = m[161] * t74 + (m[160] * t75 + m[159] * t76);
-        const gic_real t78 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t67 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t68 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t69 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t70 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t72 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t73 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t70 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t71 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t72);
+        const gic_real t74 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t75 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(7.58122);
+        const gic_real t76 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t77 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t74 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t75 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t76);
+        const gic_real t78 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t79 = t68 * t69 + (t73 * t67 + t77 * t78);
-        const gic_real t80 = m[158] * t70 + (m[157] * t71 + m[156] * t72);
-        const gic_real t81 = m[158] * t74 + (m[157] * t75 + m[156] * t76);
+        const gic_real t80 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t70 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t71 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t72);
+        const gic_real t81 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t74 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t75 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t76);
         const gic_real t82 = t73 * t69 + (t80 * t67 + t81 * t78);
-        const gic_real t83 = m[170] + (acc[2] + (m[163] * y[15] - m[162] * y[16])) + m[176] * acc[10];
-        const gic_real t84 = t83 + m[182] * acc[6];
-        const gic_real t85 = m[169] + (acc[1] + (m[162] * y[17] - m[164] * y[15])) + m[175] * acc[10];
-        const gic_real t86 = t85 + m[181] * acc[6];
-        const gic_real t87 = m[155] * t74 + (m[154] * t75 + m[153] * t76);
-        const gic_real t88 = m[168] + (acc[0] + (m[164] * y[16] - m[163] * y[17])) + m[174] * acc[10];
-        const gic_real t89 = t88 + m[180] * acc[6];
+        const gic_real t83 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] + (acc[HMMWV_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t84 = t83 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * acc[HMMWV_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] + (acc[HMMWV_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t86 = t85 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * acc[HMMWV_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * t74 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] *
+            t75 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * t76);
+        const gic_real t88 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] + (acc[HMMWV_UNKNOWN_ALPHA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t89 = t88 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * acc[HMMWV_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t69 * t82 + (t77 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[158] * R(0.09182100000000004);
-        const gic_real t92 = m[156] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[157] * R(0.08910630000000008));
-        const gic_real t94 = m[155] * R(0.09182100000000004);
-        const gic_real t95 = m[153] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[154] * R(0.08910630000000008));
-        const gic_real t97 = m[161] * R(0.09182100000000004);
-        const gic_real t98 = m[159] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[160] * R(0.08910630000000008));
-        const gic_real t100 = m[164] * t96 - m[162] * t99;
-        const gic_real t101 = m[163] * t99 - m[164] * t93;
-        const gic_real t102 = m[162] * t100 - m[163] * t101 + (m[168] * t93 - m[169] * t96);
-        const gic_real t103 = m[166] + t100;
+        /* wheel tire_f_l */
+        const gic_real t91 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.08910630000000008));
+        const gic_real t94 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.08910630000000008));
+        const gic_real t97 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.08910630000000008));
+        const gic_real t100 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t96 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t99;
+        const gic_real t101 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t99 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t93;
+        const gic_real t102 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t100 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t101 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t93 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t96);
+        const gic_real t103 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] + t100;
         const gic_real t104 = R(1.653405) + t96;
-        const gic_real t105 = m[152] + t99;
-        const gic_real t106 = t103 + (t103 + (y[17] * t104 - y[15] * t105));
-        const gic_real t107 = m[151] + t93;
-        const gic_real t108 = t101 + (t101 + (y[16] * t105 - y[17] * t107));
-        const gic_real t109 = y[15] * t106 - y[16] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[173] + t102 + (acc[5] + t109) + acc[10] * (m[174] * t93 - m[175] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[185] + (m[180] * t93 - m[181] * t96));
+        const gic_real t105 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[HMMWV_STATE_OMEGA_Z] * t104 - y[HMMWV_STATE_OMEGA_X] * t105));
+        const gic_real t107 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[HMMWV_STATE_OMEGA_Y] * t105 - y[HMMWV_STATE_OMEGA_Z] * t107));
+        const gic_real t109 = y[HMMWV_STATE_OMEGA_X] * t106 - y[HMMWV_STATE_OMEGA_Y] * t108 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t107 - acc[HMMWV_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Z] + t102 +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t109) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t93 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t96);
+        const gic_real t111 = t110 + acc[HMMWV_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t93 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[162] * t93 - m[163] * t96;
-        const gic_real t114 = m[164] * t101 - m[162] * t113 + (m[170] * t96 - m[168] * t99);
-        const gic_real t115 = m[167] + t113;
-        const gic_real t116 = t115 + (t115 + (y[15] * t107 - y[16] * t104));
-        const gic_real t117 = y[17] * t108 - y[15] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[172] + t114 + (acc[4] + t117) + acc[10] * (m[176] * t96 - m[174] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[184] + (m[182] * t96 - m[180] * t99));
+        const gic_real t113 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t93 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t96;
+        const gic_real t114 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t101 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t113 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t96 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t99);
+        const gic_real t115 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[HMMWV_STATE_OMEGA_X] * t107 - y[HMMWV_STATE_OMEGA_Y] * t104));
+        const gic_real t117 = y[HMMWV_STATE_OMEGA_Z] * t108 - y[HMMWV_STATE_OMEGA_X] * t116 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Z] * t104 - acc[HMMWV_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Y] + t114 +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t117) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t96 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t99);
+        const gic_real t119 = t118 + acc[HMMWV_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t96 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[151] * t112 - m[152] * t120));
-        const gic_real t123 = m[199] + y[16];
-        const gic_real t124 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t125 = m[200] + y[17];
-        const gic_real t126 = m[194] * R(4.7728205);
-        const gic_real t127 = m[193] * R(7.58122);
-        const gic_real t128 = m[192] * R(4.8947505);
-        const gic_real t129 = m[197] * t126 + (m[196] * t127 + m[195] * t128);
-        const gic_real t130 = m[191] * R(4.7728205);
-        const gic_real t131 = m[190] * R(7.58122);
-        const gic_real t132 = m[189] * R(4.8947505);
-        const gic_real t133 = m[197] * t130 + (m[196] * t131 + m[195] * t132);
-        const gic_real t134 = m[198] + y[15];
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t112 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t120));
+        /* inertia of wheel_f_r */
+        const gic_real t123 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t124 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t125 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t126 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t128 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t129 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t126 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t127 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t128);
+        const gic_real t130 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t131 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(7.58122);
+        const gic_real t132 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t133 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t130 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t131 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t132);
+        const gic_real t134 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t135 = t124 * t125 + (t129 * t123 + t133 * t134);
-        const gic_real t136 = m[194] * t126 + (m[193] * t127 + m[192] * t128);
-        const gic_real t137 = m[194] * t130 + (m[193] * t131 + m[192] * t132);
+        const gic_real t136 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t126 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t127 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t128);
+        const gic_real t137 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t130 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t131 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t132);
         const gic_real t138 = t129 * t125 + (t136 * t123 + t137 * t134);
-        const gic_real t139 = m[206] + (acc[2] + (m[199] * y[15] - m[198] * y[16])) + m[212] * acc[10];
-        const gic_real t140 = t139 + m[218] * acc[7];
-        const gic_real t141 = m[205] + (acc[1] + (m[198] * y[17] - m[200] * y[15])) + m[211] * acc[10];
-        const gic_real t142 = t141 + m[217] * acc[7];
-        const gic_real t143 = m[191] * t130 + (m[190] * t131 + m[189] * t132);
-        const gic_real t144 = m[204] + (acc[0] + (m[200] * y[16] - m[199] * y[17])) + m[210] * acc[10];
-        const gic_real t145 = t144 + m[216] * acc[7];
+        const gic_real t139 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] + (acc[HMMWV_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t140 = t139 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * acc[HMMWV_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t141 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] + (acc[HMMWV_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t142 = t141 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * acc[HMMWV_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t143 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * t130 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] *
+            t131 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * t132);
+        const gic_real t144 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] + (acc[HMMWV_UNKNOWN_ALPHA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_RACK];
+        const gic_real t145 = t144 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * acc[HMMWV_UNKNOWN_OF_SPRING_F_R];
         const gic_real t146 = t123 * t135 - t125 * t138 + (t133 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[194] * R(0.09182100000000004);
-        const gic_real t148 = m[192] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[193] * R(-0.08910630000000008));
-        const gic_real t150 = m[191] * R(0.09182100000000004);
-        const gic_real t151 = m[189] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[190] * R(-0.08910630000000008));
-        const gic_real t153 = m[197] * R(0.09182100000000004);
-        const gic_real t154 = m[195] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[196] * R(-0.08910630000000008));
-        const gic_real t156 = m[200] * t152 - m[198] * t155;
-        const gic_real t157 = m[199] * t155 - m[200] * t149;
-        const gic_real t158 = m[198] * t156 - m[199] * t157 + (m[204] * t149 - m[205] * t152);
-        const gic_real t159 = m[202] + t156;
+        /* wheel tire_f_r */
+        const gic_real t147 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.08910630000000008));
+        const gic_real t150 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.08910630000000008));
+        const gic_real t153 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.08910630000000008));
+        const gic_real t156 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t152 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t155;
+        const gic_real t157 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t155 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t149;
+        const gic_real t158 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t156 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t157 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t149 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t152);
+        const gic_real t159 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] + t156;
         const gic_real t160 = R(1.653405) + t152;
-        const gic_real t161 = m[188] + t155;
-        const gic_real t162 = t159 + (t159 + (y[17] * t160 - y[15] * t161));
-        const gic_real t163 = m[187] + t149;
-        const gic_real t164 = t157 + (t157 + (y[16] * t161 - y[17] * t163));
-        const gic_real t165 = y[15] * t162 - y[16] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[209] + t158 + (acc[5] + t165) + acc[10] * (m[210] * t149 - m[211] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[221] + (m[216] * t149 - m[217] * t152));
+        const gic_real t161 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[HMMWV_STATE_OMEGA_Z] * t160 - y[HMMWV_STATE_OMEGA_X] * t161));
+        const gic_real t163 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[HMMWV_STATE_OMEGA_Y] * t161 - y[HMMWV_STATE_OMEGA_Z] * t163));
+        const gic_real t165 = y[HMMWV_STATE_OMEGA_X] * t162 - y[HMMWV_STATE_OMEGA_Y] * t164 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t163 - acc[HMMWV_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Z] + t158 +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t165) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t149 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t152);
+        const gic_real t167 = t166 + acc[HMMWV_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t149 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[198] * t149 - m[199] * t152;
-        const gic_real t170 = m[200] * t157 - m[198] * t169 + (m[206] * t152 - m[204] * t155);
-        const gic_real t171 = m[203] + t169;
-        const gic_real t172 = t171 + (t171 + (y[15] * t163 - y[16] * t160));
-        const gic_real t173 = y[17] * t164 - y[15] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[208] + t170 + (acc[4] + t173) + acc[10] * (m[212] * t152 - m[210] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[220] + (m[218] * t152 - m[216] * t155));
+        const gic_real t169 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t149 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t152;
+        const gic_real t170 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t157 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t169 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t152 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t155);
+        const gic_real t171 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[HMMWV_STATE_OMEGA_X] * t163 - y[HMMWV_STATE_OMEGA_Y] * t160));
+        const gic_real t173 = y[HMMWV_STATE_OMEGA_Z] * t164 - y[HMMWV_STATE_OMEGA_X] * t172 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Z] * t160 - acc[HMMWV_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Y] + t170 +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t173) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t152 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t155);
+        const gic_real t175 = t174 + acc[HMMWV_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t152 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t179 = m[98] * R(0.8938);
-        const gic_real t180 = m[97] * R(0.4469);
-        const gic_real t181 = m[101] * t179 + m[100] * t180;
-        const gic_real t182 = y[17] * t178 + y[16] * t181;
-        const gic_real t183 = m[98] * t179 + m[97] * t180;
-        const gic_real t184 = y[17] * t181 + y[16] * t183;
-        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
-        const gic_real t186 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t187 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t188 = m[102] * t187;
-        const gic_real t189 = R(-1.688965) * y[17];
-        const gic_real t190 = t189 - y[15] * t187 - t188 - t188;
+        /* inertia of lca_r_l */
+        const gic_real t178 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t179 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t180 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t181 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * t179 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * t180;
+        const gic_real t182 = y[HMMWV_STATE_OMEGA_Z] * t178 + y[HMMWV_STATE_OMEGA_Y] * t181;
+        const gic_real t183 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * t179 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * t180;
+        const gic_real t184 = y[HMMWV_STATE_OMEGA_Z] * t181 + y[HMMWV_STATE_OMEGA_Y] * t183;
+        const gic_real t185 = y[HMMWV_STATE_OMEGA_Y] * t182 - y[HMMWV_STATE_OMEGA_Z] * t184 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_R_L]);
+        const gic_real t186 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.246867347245056);
+        const gic_real t187 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.246867347245056);
+        const gic_real t188 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t187;
+        const gic_real t189 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t190 = t189 - y[HMMWV_STATE_OMEGA_X] * t187 - t188 - t188;
         const gic_real t191 = R(0.307086) + t186;
-        const gic_real t192 = y[16] * t187 - y[17] * t191;
-        const gic_real t193 = R(-1.688965) * acc[1];
-        const gic_real t194 = y[15] * t190 - y[16] * t192 + (acc[0] * t191 - t193);
-        const gic_real t195 = m[108] * t186 - m[102] * t188 + (acc[5] + t194) + acc[8] * (m[114] * t186);
+        const gic_real t192 = y[HMMWV_STATE_OMEGA_Y] * t187 - y[HMMWV_STATE_OMEGA_Z] * t191;
+        const gic_real t193 = R(-1.688965) * acc[HMMWV_UNKNOWN_ALPHA_Y];
+        const gic_real t194 = y[HMMWV_STATE_OMEGA_X] * t190 - y[HMMWV_STATE_OMEGA_Y] * t192 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t191 - t193);
+        const gic_real t195 = m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] * t186 - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            t188 + (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t194) + acc[HMMWV_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t186);
         const gic_real t196 = R(23.965) * t195;
-        const gic_real t197 = m[102] * t186;
-        const gic_real t198 = R(-1.688965) * y[16];
-        const gic_real t199 = t197 + (t197 + (y[15] * t191 - t198));
-        const gic_real t200 = R(-1.688965) * acc[2];
-        const gic_real t201 = y[17] * t192 - y[15] * t199 + (t200 - acc[0] * t187);
-        const gic_real t202 = acc[4] + t201 - (m[102] * t197 + m[108] * t187) - acc[8] * (m[114] * t187);
+        const gic_real t197 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t186;
+        const gic_real t198 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t199 = t197 + (t197 + (y[HMMWV_STATE_OMEGA_X] * t191 - t198));
+        const gic_real t200 = R(-1.688965) * acc[HMMWV_UNKNOWN_ALPHA_Z];
+        const gic_real t201 = y[HMMWV_STATE_OMEGA_Z] * t192 - y[HMMWV_STATE_OMEGA_X] * t199 + (t200 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t187);
+        const gic_real t202 = acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t201 - (m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            t197 + m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] * t187) - acc[HMMWV_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t187);
         const gic_real t203 = R(23.965) * t202;
         const gic_real t204 = t185 + (t186 * t196 - t187 * t203);
-        const gic_real t205 = t122 + (t177 + (m[187] * t168 - m[188] * t176)) + (t204 + R(7.359315990000001) * t195);
-        const gic_real t206 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t207 = m[128] * R(0.8938);
-        const gic_real t208 = m[127] * R(0.4469);
-        const gic_real t209 = m[131] * t207 + m[130] * t208;
-        const gic_real t210 = y[17] * t206 + y[16] * t209;
-        const gic_real t211 = m[128] * t207 + m[127] * t208;
-        const gic_real t212 = y[17] * t209 + y[16] * t211;
-        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
-        const gic_real t214 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t215 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t216 = m[132] * t215;
-        const gic_real t217 = t189 - y[15] * t215 - t216 - t216;
+        const gic_real t205 = t122 + (t177 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t168 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t176)) + (t204 + R(7.359315990000001) * t195);
+        /* inertia of lca_r_r */
+        const gic_real t206 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(0.4469));
+        const gic_real t207 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t208 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t209 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * t207 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * t208;
+        const gic_real t210 = y[HMMWV_STATE_OMEGA_Z] * t206 + y[HMMWV_STATE_OMEGA_Y] * t209;
+        const gic_real t211 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * t207 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * t208;
+        const gic_real t212 = y[HMMWV_STATE_OMEGA_Z] * t209 + y[HMMWV_STATE_OMEGA_Y] * t211;
+        const gic_real t213 = y[HMMWV_STATE_OMEGA_Y] * t210 - y[HMMWV_STATE_OMEGA_Z] * t212 + R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_R_R]);
+        const gic_real t214 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(-0.246867347245056);
+        const gic_real t215 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(-0.246867347245056);
+        const gic_real t216 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t215;
+        const gic_real t217 = t189 - y[HMMWV_STATE_OMEGA_X] * t215 - t216 - t216;
         const gic_real t218 = R(-0.307086) + t214;
-        const gic_real t219 = y[16] * t215 - y[17] * t218;
-        const gic_real t220 = y[15] * t217 - y[16] * t219 + (acc[0] * t218 - t193);
-        const gic_real t221 = m[138] * t214 - m[132] * t216 + (acc[5] + t220) + acc[9] * (m[144] * t214);
+        const gic_real t219 = y[HMMWV_STATE_OMEGA_Y] * t215 - y[HMMWV_STATE_OMEGA_Z] * t218;
+        const gic_real t220 = y[HMMWV_STATE_OMEGA_X] * t217 - y[HMMWV_STATE_OMEGA_Y] * t219 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t218 - t193);
+        const gic_real t221 = m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] * t214 - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            t216 + (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t220) + acc[HMMWV_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t214);
         const gic_real t222 = R(23.965) * t221;
-        const gic_real t223 = m[132] * t214;
-        const gic_real t224 = t223 + (t223 + (y[15] * t218 - t198));
-        const gic_real t225 = y[17] * t219 - y[15] * t224 + (t200 - acc[0] * t215);
-        const gic_real t226 = acc[4] + t225 - (m[132] * t223 + m[138] * t215) - acc[9] * (m[144] * t215);
+        const gic_real t223 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t214;
+        const gic_real t224 = t223 + (t223 + (y[HMMWV_STATE_OMEGA_X] * t218 - t198));
+        const gic_real t225 = y[HMMWV_STATE_OMEGA_Z] * t219 - y[HMMWV_STATE_OMEGA_X] * t224 + (t200 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t215);
+        const gic_real t226 = acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t225 - (m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            t223 + m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] * t215) - acc[HMMWV_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t215);
         const gic_real t227 = R(23.965) * t226;
         const gic_real t228 = t213 + (t214 * t222 - t215 * t227);
-        const gic_real t229 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(7.58122));
-        const gic_real t230 = m[230] * R(4.7728205);
-        const gic_real t231 = m[229] * R(7.58122);
-        const gic_real t232 = m[233] * t230 + m[232] * t231;
-        const gic_real t233 = y[17] * t229 + y[16] * t232;
-        const gic_real t234 = m[230] * t230 + m[229] * t231;
-        const gic_real t235 = y[17] * t232 + y[16] * t234;
-        const gic_real t236 = y[16] * t233 - y[17] * t235 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
-        const gic_real t237 = m[230] * R(0.09182100000000004);
-        const gic_real t238 = t237 + m[229] * R(0.08910630000000008);
-        const gic_real t239 = m[233] * R(0.09182100000000004);
-        const gic_real t240 = t239 + m[232] * R(0.08910630000000008);
-        const gic_real t241 = m[234] * t240;
-        const gic_real t242 = m[238] - t241;
-        const gic_real t243 = R(-1.653405) * y[17];
-        const gic_real t244 = m[224] + t240;
-        const gic_real t245 = t242 + (t242 + (t243 - y[15] * t244));
-        const gic_real t246 = m[223] + t238;
-        const gic_real t247 = y[16] * t244 - y[17] * t246;
-        const gic_real t248 = R(-1.653405) * acc[1];
-        const gic_real t249 = y[15] * t245 - y[16] * t247 + (acc[0] * t246 - t248);
-        const gic_real t250 = m[245] + (m[240] * t238 - m[234] * t241) + (acc[5] + t249);
-        const gic_real t251 = t250 + acc[8] * (m[251] + m[246] * t238);
+        /* inertia of wheel_r_l */
+        const gic_real t229 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            R(7.58122));
+        const gic_real t230 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t231 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t232 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * t230 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            t231;
+        const gic_real t233 = y[HMMWV_STATE_OMEGA_Z] * t229 + y[HMMWV_STATE_OMEGA_Y] * t232;
+        const gic_real t234 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * t230 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] *
+            t231;
+        const gic_real t235 = y[HMMWV_STATE_OMEGA_Z] * t232 + y[HMMWV_STATE_OMEGA_Y] * t234;
+        const gic_real t236 = y[HMMWV_STATE_OMEGA_Y] * t233 - y[HMMWV_STATE_OMEGA_Z] * t235 + R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_R_L]);
+        /* wheel tire_r_l */
+        const gic_real t237 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t238 = t237 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.08910630000000008);
+        const gic_real t239 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t240 = t239 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.08910630000000008);
+        const gic_real t241 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t240;
+        const gic_real t242 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - t241;
+        const gic_real t243 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t244 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t240;
+        const gic_real t245 = t242 + (t242 + (t243 - y[HMMWV_STATE_OMEGA_X] * t244));
+        const gic_real t246 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t238;
+        const gic_real t247 = y[HMMWV_STATE_OMEGA_Y] * t244 - y[HMMWV_STATE_OMEGA_Z] * t246;
+        const gic_real t248 = R(-1.653405) * acc[HMMWV_UNKNOWN_ALPHA_Y];
+        const gic_real t249 = y[HMMWV_STATE_OMEGA_X] * t245 - y[HMMWV_STATE_OMEGA_Y] * t247 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t246 - t248);
+        const gic_real t250 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t238 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t241) +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t249);
+        const gic_real t251 = t250 + acc[HMMWV_UNKNOWN_OF_SPRING_R_L] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t238);
         const gic_real t252 = R(90.555) * t251;
-        const gic_real t253 = m[234] * t238;
-        const gic_real t254 = m[239] + t253;
-        const gic_real t255 = R(-1.653405) * y[16];
-        const gic_real t256 = t254 + (t254 + (y[15] * t246 - t255));
-        const gic_real t257 = R(-1.653405) * acc[2];
-        const gic_real t258 = y[17] * t247 - y[15] * t256 + (t257 - acc[0] * t244);
-        const gic_real t259 = m[244] - (m[234] * t253 + m[240] * t240) + (acc[4] + t258);
-        const gic_real t260 = t259 + acc[8] * (m[250] - m[246] * t240);
+        const gic_real t253 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t238;
+        const gic_real t254 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + t253;
+        const gic_real t255 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t256 = t254 + (t254 + (y[HMMWV_STATE_OMEGA_X] * t246 - t255));
+        const gic_real t257 = R(-1.653405) * acc[HMMWV_UNKNOWN_ALPHA_Z];
+        const gic_real t258 = y[HMMWV_STATE_OMEGA_Z] * t247 - y[HMMWV_STATE_OMEGA_X] * t256 + (t257 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t244);
+        const gic_real t259 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t253 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t240) +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t258);
+        const gic_real t260 = t259 + acc[HMMWV_UNKNOWN_OF_SPRING_R_L] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] -
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t240);
         const gic_real t261 = R(90.555) * t260;
         const gic_real t262 = t236 + (t238 * t252 - t240 * t261);
-        const gic_real t263 = t205 + (t228 + R(-7.359315990000001) * t221) + (t262 + (m[223] * t252 - m[224] * t261));
-        const gic_real t264 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(7.58122));
-        const gic_real t265 = m[260] * R(4.7728205);
-        const gic_real t266 = m[259] * R(7.58122);
-        const gic_real t267 = m[263] * t265 + m[262] * t266;
-        const gic_real t268 = y[17] * t264 + y[16] * t267;
-        const gic_real t269 = m[260] * t265 + m[259] * t266;
-        const gic_real t270 = y[17] * t267 + y[16] * t269;
-        const gic_real t271 = y[16] * t268 - y[17] * t270 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
-        const gic_real t272 = m[260] * R(0.09182100000000004);
-        const gic_real t273 = t272 + m[259] * R(-0.08910630000000008);
-        const gic_real t274 = m[263] * R(0.09182100000000004);
-        const gic_real t275 = t274 + m[262] * R(-0.08910630000000008);
-        const gic_real t276 = m[264] * t275;
-        const gic_real t277 = m[268] - t276;
-        const gic_real t278 = m[254] + t275;
-        const gic_real t279 = t277 + (t277 + (t243 - y[15] * t278));
-        const gic_real t280 = m[253] + t273;
-        const gic_real t281 = y[16] * t278 - y[17] * t280;
-        const gic_real t282 = y[15] * t279 - y[16] * t281 + (acc[0] * t280 - t248);
-        const gic_real t283 = m[275] + (m[270] * t273 - m[264] * t276) + (acc[5] + t282);
-        const gic_real t284 = t283 + acc[9] * (m[281] + m[276] * t273);
+        const gic_real t263 = t205 + (t228 + R(-7.359315990000001) * t221) + (t262 +
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t252 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t261));
+        /* inertia of wheel_r_r */
+        const gic_real t264 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            R(7.58122));
+        const gic_real t265 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t266 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t267 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * t265 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            t266;
+        const gic_real t268 = y[HMMWV_STATE_OMEGA_Z] * t264 + y[HMMWV_STATE_OMEGA_Y] * t267;
+        const gic_real t269 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * t265 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] *
+            t266;
+        const gic_real t270 = y[HMMWV_STATE_OMEGA_Z] * t267 + y[HMMWV_STATE_OMEGA_Y] * t269;
+        const gic_real t271 = y[HMMWV_STATE_OMEGA_Y] * t268 - y[HMMWV_STATE_OMEGA_Z] * t270 + R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] + acc[HMMWV_UNKNOWN_ALPHA_X] +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * acc[HMMWV_UNKNOWN_OF_SPRING_R_R]);
+        /* wheel tire_r_r */
+        const gic_real t272 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.08910630000000008);
+        const gic_real t274 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t275 = t274 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.08910630000000008);
+        const gic_real t276 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t275;
+        const gic_real t277 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - t276;
+        const gic_real t278 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t275;
+        const gic_real t279 = t277 + (t277 + (t243 - y[HMMWV_STATE_OMEGA_X] * t278));
+        const gic_real t280 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t273;
+        const gic_real t281 = y[HMMWV_STATE_OMEGA_Y] * t278 - y[HMMWV_STATE_OMEGA_Z] * t280;
+        const gic_real t282 = y[HMMWV_STATE_OMEGA_X] * t279 - y[HMMWV_STATE_OMEGA_Y] * t281 +
+            (acc[HMMWV_UNKNOWN_ALPHA_X] * t280 - t248);
+        const gic_real t283 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t273 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t276) +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Z] + t282);
+        const gic_real t284 = t283 + acc[HMMWV_UNKNOWN_OF_SPRING_R_R] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t273);
         const gic_real t285 = R(90.555) * t284;
-        const gic_real t286 = m[264] * t273;
-        const gic_real t287 = m[269] + t286;
-        const gic_real t288 = t287 + (t287 + (y[15] * t280 - t255));
-        const gic_real t289 = y[17] * t281 - y[15] * t288 + (t257 - acc[0] * t278);
-        const gic_real t290 = m[274] - (m[264] * t286 + m[270] * t275) + (acc[4] + t289);
-        const gic_real t291 = t290 + acc[9] * (m[280] - m[276] * t275);
+        const gic_real t286 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t273;
+        const gic_real t287 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + t286;
+        const gic_real t288 = t287 + (t287 + (y[HMMWV_STATE_OMEGA_X] * t280 - t255));
+        const gic_real t289 = y[HMMWV_STATE_OMEGA_Z] * t281 - y[HMMWV_STATE_OMEGA_X] * t288 + (t257 -
+            acc[HMMWV_UNKNOWN_ALPHA_X] * t278);
+        const gic_real t290 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t286 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t275) +
+            (acc[HMMWV_UNKNOWN_ACCELERATION_Y] + t289);
+        const gic_real t291 = t290 + acc[HMMWV_UNKNOWN_OF_SPRING_R_R] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] -
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t275);
         const gic_real t292 = R(90.555) * t291;
         const gic_real t293 = t271 + (t273 * t285 - t275 * t292);
-        const gic_real t294 = t272 + m[259] * R(-0.12319000000000002);
+        const gic_real t294 = t272 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.12319000000000002);
         const gic_real t295 = e[1] + e[1];
         const gic_real t296 = e[1] * t295;
         const gic_real t297 = e[2] + e[2];
@@ -4382,19 +5440,21 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t300 = e[3] * t297;
         const gic_real t301 = e[0] * t295;
         const gic_real t302 = t300 - t301;
-        const gic_real t303 = m[253] + t294;
-        const gic_real t304 = m[269] + m[264] * t294 + (y[15] * t303 - t255);
+        const gic_real t303 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t294;
+        const gic_real t304 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t294 + (y[HMMWV_STATE_OMEGA_X] * t303 - t255);
         const gic_real t305 = e[3] + e[3];
         const gic_real t306 = e[3] * t305;
         const gic_real t307 = R(1.0) - (t296 + t306);
-        const gic_real t308 = t274 + m[262] * R(-0.12319000000000002);
-        const gic_real t309 = m[254] + t308;
-        const gic_real t310 = m[268] - m[264] * t308 + (t243 - y[15] * t309);
+        const gic_real t308 = t274 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.12319000000000002);
+        const gic_real t309 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t308;
+        const gic_real t310 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t308 + (t243 - y[HMMWV_STATE_OMEGA_X] * t309);
         const gic_real t311 = e[2] * t295;
         const gic_real t312 = e[0] * t305;
         const gic_real t313 = t311 + t312;
-        const gic_real t314 = y[16] * t309 - y[17] * t303;
-        const gic_real t315 = y[13] + (t302 * t304 + (t307 * t310 + t313 * t314));
+        const gic_real t314 = y[HMMWV_STATE_OMEGA_Y] * t309 - y[HMMWV_STATE_OMEGA_Z] * t303;
+        const gic_real t315 = y[HMMWV_STATE_V_Y] + (t302 * t304 + (t307 * t310 + t313 * t314));
         const gic_real t316 = e[1] * t305;
         const gic_real t317 = e[0] * t297;
         const gic_real t318 = t316 + t317;
@@ -4403,61 +5463,71 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t321 = t311 - t312;
         const gic_real t322 = R(-1.653405) * t313;
         gic_real road323[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t318 * t309 + (t320 + t321 * t303)), y[1] + (t302 * t309 + (t322 + t307 * t303)), road323))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t318 * t309 + (t320 + t321 * t303)),
+            y[HMMWV_STATE_R_Y] + (t302 * t309 + (t322 + t307 * t303)), road323))
             return GIC_ERROR_ROAD;
-        const gic_real t324 = y[12] + (t318 * t304 + (t321 * t310 + t319 * t314));
+        const gic_real t324 = y[HMMWV_STATE_V_X] + (t318 * t304 + (t321 * t310 + t319 * t314));
         const gic_real t325 = t300 + t301;
         const gic_real t326 = t316 - t317;
-        const gic_real t327 = y[14] + (t299 * t304 + (t325 * t310 + t326 * t314));
+        const gic_real t327 = y[HMMWV_STATE_V_Z] + (t299 * t304 + (t325 * t310 + t326 * t314));
         const gic_real t328 = t315 * road323[2] + t324 * road323[1] - t327;
         const gic_real t329 = R(-1.653405) * t326;
-        const gic_real t330 = R(0.4699) + road323[0] - (y[2] + (t299 * t309 + (t329 + t325 * t303)));
+        const gic_real t330 = R(0.4699) + road323[0] - (y[HMMWV_STATE_R_Z] + (t299 * t309 + (t329 + t325 * t303)));
         const gic_real t331 = GIC_MIN(GIC_MAX(R(100.0) * t330, R(0.0)), R(1.0));
         const gic_real t332 = t328 * (R(500.0) * ((R(3.0) - (t331 + t331)) * (t331 * t331)));
         const gic_real t333 = GIC_MAX(t332 + R(283000.0) * t330, R(0.0));
         const gic_real t334 = t299 * t333;
         const gic_real t335 = t325 * t333;
         const gic_real t336 = t294 * t334 - t308 * t335;
-        const gic_real t337 = t237 + m[229] * R(0.12319000000000002);
-        const gic_real t338 = m[223] + t337;
-        const gic_real t339 = m[239] + m[234] * t337 + (y[15] * t338 - t255);
-        const gic_real t340 = t239 + m[232] * R(0.12319000000000002);
-        const gic_real t341 = m[224] + t340;
-        const gic_real t342 = m[238] - m[234] * t340 + (t243 - y[15] * t341);
-        const gic_real t343 = y[16] * t341 - y[17] * t338;
-        const gic_real t344 = y[13] + (t302 * t339 + (t307 * t342 + t313 * t343));
+        const gic_real t337 = t237 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.12319000000000002);
+        const gic_real t338 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t337;
+        const gic_real t339 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t337 + (y[HMMWV_STATE_OMEGA_X] * t338 - t255);
+        const gic_real t340 = t239 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.12319000000000002);
+        const gic_real t341 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t340;
+        const gic_real t342 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t340 + (t243 - y[HMMWV_STATE_OMEGA_X] * t341);
+        const gic_real t343 = y[HMMWV_STATE_OMEGA_Y] * t341 - y[HMMWV_STATE_OMEGA_Z] * t338;
+        const gic_real t344 = y[HMMWV_STATE_V_Y] + (t302 * t339 + (t307 * t342 + t313 * t343));
         gic_real road345[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t318 * t341 + (t321 * t338 + t320)), y[1] + (t302 * t341 + (t307 * t338 + t322)), road345))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t318 * t341 + (t321 * t338 + t320)),
+            y[HMMWV_STATE_R_Y] + (t302 * t341 + (t307 * t338 + t322)), road345))
             return GIC_ERROR_ROAD;
-        const gic_real t346 = y[12] + (t318 * t339 + (t321 * t342 + t319 * t343));
-        const gic_real t347 = y[14] + (t299 * t339 + (t325 * t342 + t326 * t343));
+        const gic_real t346 = y[HMMWV_STATE_V_X] + (t318 * t339 + (t321 * t342 + t319 * t343));
+        const gic_real t347 = y[HMMWV_STATE_V_Z] + (t299 * t339 + (t325 * t342 + t326 * t343));
         const gic_real t348 = t344 * road345[2] + t346 * road345[1] - t347;
-        const gic_real t349 = R(0.4699) + road345[0] - (y[2] + (t299 * t341 + (t325 * t338 + t329)));
+        const gic_real t349 = R(0.4699) + road345[0] - (y[HMMWV_STATE_R_Z] + (t299 * t341 + (t325 * t338 + t329)));
         const gic_real t350 = GIC_MIN(GIC_MAX(R(100.0) * t349, R(0.0)), R(1.0));
         const gic_real t351 = t348 * (R(500.0) * ((R(3.0) - (t350 + t350)) * (t350 * t350)));
         const gic_real t352 = GIC_MAX(t351 + R(283000.0) * t349, R(0.0));
         const gic_real t353 = t299 * t352;
         const gic_real t354 = t325 * t352;
         const gic_real t355 = t337 * t353 - t340 * t354;
-        const gic_real t356 = t147 + (m[193] * R(-0.12319000000000002) + t148);
-        const gic_real t357 = t150 + (m[190] * R(-0.12319000000000002) + t151);
-        const gic_real t358 = m[187] + t356;
+        const gic_real t356 = t147 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.12319000000000002) + t148);
+        const gic_real t357 = t150 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.12319000000000002) + t151);
+        const gic_real t358 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t356;
         const gic_real t359 = R(1.653405) + t357;
-        const gic_real t360 = m[203] + (m[198] * t356 - m[199] * t357) + (y[15] * t358 - y[16] * t359);
-        const gic_real t361 = t153 + (m[196] * R(-0.12319000000000002) + t154);
-        const gic_real t362 = m[188] + t361;
-        const gic_real t363 = m[202] + (m[200] * t357 - m[198] * t361) + (y[17] * t359 - y[15] * t362);
-        const gic_real t364 = m[199] * t361 - m[200] * t356 + (y[16] * t362 - y[17] * t358);
-        const gic_real t365 = y[13] + (t302 * t360 + (t307 * t363 + t313 * t364));
-        const gic_real t366 = y[0] + (t318 * t362 + (t321 * t358 + t319 * t359));
-        const gic_real t367 = y[1] + (t302 * t362 + (t307 * t358 + t313 * t359));
+        const gic_real t360 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t356 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t357) +
+            (y[HMMWV_STATE_OMEGA_X] * t358 - y[HMMWV_STATE_OMEGA_Y] * t359);
+        const gic_real t361 = t153 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.12319000000000002) + t154);
+        const gic_real t362 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t361;
+        const gic_real t363 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t357 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t361) +
+            (y[HMMWV_STATE_OMEGA_Z] * t359 - y[HMMWV_STATE_OMEGA_X] * t362);
+        const gic_real t364 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t361 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t356 + (y[HMMWV_STATE_OMEGA_Y] * t362 - y[HMMWV_STATE_OMEGA_Z] *
+            t358);
+        const gic_real t365 = y[HMMWV_STATE_V_Y] + (t302 * t360 + (t307 * t363 + t313 * t364));
+        const gic_real t366 = y[HMMWV_STATE_R_X] + (t318 * t362 + (t321 * t358 + t319 * t359));
+        const gic_real t367 = y[HMMWV_STATE_R_Y] + (t302 * t362 + (t307 * t358 + t313 * t359));
         gic_real road368[3];
         if (!hmmwv_road_height(self, time, t366, t367, road368))
             return GIC_ERROR_ROAD;
-        const gic_real t369 = y[12] + (t318 * t360 + (t321 * t363 + t319 * t364));
-        const gic_real t370 = y[14] + (t299 * t360 + (t325 * t363 + t326 * t364));
+        const gic_real t369 = y[HMMWV_STATE_V_X] + (t318 * t360 + (t321 * t363 + t319 * t364));
+        const gic_real t370 = y[HMMWV_STATE_V_Z] + (t299 * t360 + (t325 * t363 + t326 * t364));
         const gic_real t371 = t365 * road368[2] + t369 * road368[1] - t370;
-        const gic_real t372 = y[2] + (t299 * t362 + (t325 * t358 + t326 * t359));
+        const gic_real t372 = y[HMMWV_STATE_R_Z] + (t299 * t362 + (t325 * t358 + t326 * t359));
         const gic_real t373 = R(0.4699) + road368[0] - t372;
         const gic_real t374 = GIC_MIN(GIC_MAX(R(100.0) * t373, R(0.0)), R(1.0));
         const gic_real t375 = t371 * (R(500.0) * ((R(3.0) - (t374 + t374)) * (t374 * t374)));
@@ -4465,25 +5535,31 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t377 = t299 * t376;
         const gic_real t378 = t325 * t376;
         const gic_real t379 = t356 * t377 - t361 * t378;
-        const gic_real t380 = t91 + (m[157] * R(0.12319000000000002) + t92);
-        const gic_real t381 = t94 + (m[154] * R(0.12319000000000002) + t95);
-        const gic_real t382 = m[151] + t380;
+        const gic_real t380 = t91 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.12319000000000002) + t92);
+        const gic_real t381 = t94 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.12319000000000002) + t95);
+        const gic_real t382 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t380;
         const gic_real t383 = R(1.653405) + t381;
-        const gic_real t384 = m[167] + (m[162] * t380 - m[163] * t381) + (y[15] * t382 - y[16] * t383);
-        const gic_real t385 = t97 + (m[160] * R(0.12319000000000002) + t98);
-        const gic_real t386 = m[152] + t385;
-        const gic_real t387 = m[166] + (m[164] * t381 - m[162] * t385) + (y[17] * t383 - y[15] * t386);
-        const gic_real t388 = m[163] * t385 - m[164] * t380 + (y[16] * t386 - y[17] * t382);
-        const gic_real t389 = y[13] + (t302 * t384 + (t307 * t387 + t313 * t388));
-        const gic_real t390 = y[0] + (t318 * t386 + (t321 * t382 + t319 * t383));
-        const gic_real t391 = y[1] + (t302 * t386 + (t307 * t382 + t313 * t383));
+        const gic_real t384 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t380 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t381) +
+            (y[HMMWV_STATE_OMEGA_X] * t382 - y[HMMWV_STATE_OMEGA_Y] * t383);
+        const gic_real t385 = t97 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.12319000000000002) + t98);
+        const gic_real t386 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t385;
+        const gic_real t387 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t381 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t385) +
+            (y[HMMWV_STATE_OMEGA_Z] * t383 - y[HMMWV_STATE_OMEGA_X] * t386);
+        const gic_real t388 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t385 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t380 + (y[HMMWV_STATE_OMEGA_Y] * t386 - y[HMMWV_STATE_OMEGA_Z] *
+            t382);
+        const gic_real t389 = y[HMMWV_STATE_V_Y] + (t302 * t384 + (t307 * t387 + t313 * t388));
+        const gic_real t390 = y[HMMWV_STATE_R_X] + (t318 * t386 + (t321 * t382 + t319 * t383));
+        const gic_real t391 = y[HMMWV_STATE_R_Y] + (t302 * t386 + (t307 * t382 + t313 * t383));
         gic_real road392[3];
         if (!hmmwv_road_height(self, time, t390, t391, road392))
             return GIC_ERROR_ROAD;
-        const gic_real t393 = y[12] + (t318 * t384 + (t321 * t387 + t319 * t388));
-        const gic_real t394 = y[14] + (t299 * t384 + (t325 * t387 + t326 * t388));
+        const gic_real t393 = y[HMMWV_STATE_V_X] + (t318 * t384 + (t321 * t387 + t319 * t388));
+        const gic_real t394 = y[HMMWV_STATE_V_Z] + (t299 * t384 + (t325 * t387 + t326 * t388));
         const gic_real t395 = t389 * road392[2] + t393 * road392[1] - t394;
-        const gic_real t396 = y[2] + (t299 * t386 + (t325 * t382 + t326 * t383));
+        const gic_real t396 = y[HMMWV_STATE_R_Z] + (t299 * t386 + (t325 * t382 + t326 * t383));
         const gic_real t397 = road392[0] + R(0.4699) - t396;
         const gic_real t398 = GIC_MIN(GIC_MAX(t397 * R(100.0), R(0.0)), R(1.0));
         const gic_real t399 = t395 * ((R(3.0) - (t398 + t398)) * (t398 * t398) * R(500.0));
@@ -4491,154 +5567,229 @@ static GIC_COLD int hmmwv_inverse(const hmmwv *self, gic_real time, const gic_re
         const gic_real t401 = t299 * t400;
         const gic_real t402 = t325 * t400;
         const gic_real t403 = t380 * t401 - t385 * t402;
-        const gic_real t404 = t403 + (m[151] * t401 - m[152] * t402) + (m[187] * t377 - m[188] * t378);
-        const gic_real t405 = t355 + (t379 + t404 + (m[223] * t353 - m[224] * t354));
-        const gic_real t406 = t263 + (t293 + (m[253] * t285 - m[254] * t292)) - (t336 + (t405 + (m[253] * t334 - m[254] * t335)));
-        const gic_real t407 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t408 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t407 + y[16] * t3));
-        const gic_real t409 = y[16] * t13 - y[17] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t410 = acc[3] + t409;
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t404 = t403 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t401 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t402) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t377 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t378);
+        const gic_real t405 = t355 + (t379 + t404 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t353 -
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t354));
+        const gic_real residual_0 = t263 + (t293 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t285 -
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t292)) - (t336 + (t405 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] *
+            t334 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t335)));
+        const gic_real t407 = y[HMMWV_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t408 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + (acc[HMMWV_UNKNOWN_ALPHA_Y] * R(0.21300000000000008) -
+            (y[HMMWV_STATE_OMEGA_Z] * t407 + y[HMMWV_STATE_OMEGA_Y] * t3));
+        const gic_real t409 = y[HMMWV_STATE_OMEGA_Y] * t13 - y[HMMWV_STATE_OMEGA_Z] * t8 + (R(0.05422899999999997) *
+            acc[HMMWV_UNKNOWN_ALPHA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] * acc[HMMWV_UNKNOWN_ALPHA_Z]);
+        const gic_real t410 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + t409;
         const gic_real t411 = t410 * R(9.072);
-        const gic_real t412 = y[16] * t37 - y[17] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t413 = acc[3] + t412;
+        const gic_real t412 = y[HMMWV_STATE_OMEGA_Y] * t37 - y[HMMWV_STATE_OMEGA_Z] * t28 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t25 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t413 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + t412;
         const gic_real t414 = t413 * R(23.965);
-        const gic_real t415 = y[16] * t62 - y[17] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t416 = acc[3] + t415;
+        const gic_real t415 = y[HMMWV_STATE_OMEGA_Y] * t62 - y[HMMWV_STATE_OMEGA_Z] * t55 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t53 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t416 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + t415;
         const gic_real t417 = R(23.965) * t416;
-        const gic_real t418 = m[163] * t113 - m[164] * t100 + (m[169] * t99 - m[170] * t93);
-        const gic_real t419 = y[16] * t116 - y[17] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t420 = t418 + (acc[3] + t419) + acc[10] * (m[175] * t99 - m[176] * t93);
-        const gic_real t421 = (t420 + acc[6] * (m[181] * t99 - m[182] * t93)) * R(90.555);
-        const gic_real t422 = m[199] * t169 - m[200] * t156 + (m[205] * t155 - m[206] * t149);
-        const gic_real t423 = y[16] * t172 - y[17] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t424 = t422 + (acc[3] + t423) + acc[10] * (m[211] * t155 - m[212] * t149);
-        const gic_real t425 = R(90.555) * (t424 + acc[7] * (m[217] * t155 - m[218] * t149));
+        const gic_real t418 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t113 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t100 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t99 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t93);
+        const gic_real t419 = y[HMMWV_STATE_OMEGA_Y] * t116 - y[HMMWV_STATE_OMEGA_Z] * t106 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t105 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t420 = t418 + (acc[HMMWV_UNKNOWN_ACCELERATION_X] + t419) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t99 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t93);
+        const gic_real t421 = (t420 + acc[HMMWV_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] *
+            t99 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t93)) * R(90.555);
+        const gic_real t422 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t169 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t156 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t155 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t149);
+        const gic_real t423 = y[HMMWV_STATE_OMEGA_Y] * t172 - y[HMMWV_STATE_OMEGA_Z] * t162 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t161 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t424 = t422 + (acc[HMMWV_UNKNOWN_ACCELERATION_X] + t423) + acc[HMMWV_UNKNOWN_OF_RACK] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t155 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t149);
+        const gic_real t425 = R(90.555) * (t424 + acc[HMMWV_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t155 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t149));
         const gic_real t426 = t408 * R(2086.52) + t411 + t414 + t417 + t421 + t425;
-        const gic_real t427 = y[16] * t199 - y[17] * t190 + (acc[1] * t187 - acc[2] * t191);
-        const gic_real t428 = acc[3] + t427;
+        const gic_real t427 = y[HMMWV_STATE_OMEGA_Y] * t199 - y[HMMWV_STATE_OMEGA_Z] * t190 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t187 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t191);
+        const gic_real t428 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + t427;
         const gic_real t429 = R(23.965) * t428;
-        const gic_real t430 = y[16] * t224 - y[17] * t217 + (acc[1] * t215 - acc[2] * t218);
-        const gic_real t431 = acc[3] + t430;
+        const gic_real t430 = y[HMMWV_STATE_OMEGA_Y] * t224 - y[HMMWV_STATE_OMEGA_Z] * t217 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t215 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t218);
+        const gic_real t431 = acc[HMMWV_UNKNOWN_ACCELERATION_X] + t430;
         const gic_real t432 = R(23.965) * t431;
-        const gic_real t433 = y[16] * t256 - y[17] * t245 + (acc[1] * t244 - acc[2] * t246);
-        const gic_real t434 = R(90.555) * (acc[3] + t433);
-        const gic_real t435 = y[16] * t288 - y[17] * t279 + (acc[1] * t278 - acc[2] * t280);
-        const gic_real t436 = R(90.555) * (acc[3] + t435);
+        const gic_real t433 = y[HMMWV_STATE_OMEGA_Y] * t256 - y[HMMWV_STATE_OMEGA_Z] * t245 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t244 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t246);
+        const gic_real t434 = R(90.555) * (acc[HMMWV_UNKNOWN_ACCELERATION_X] + t433);
+        const gic_real t435 = y[HMMWV_STATE_OMEGA_Y] * t288 - y[HMMWV_STATE_OMEGA_Z] * t279 +
+            (acc[HMMWV_UNKNOWN_ALPHA_Y] * t278 - acc[HMMWV_UNKNOWN_ALPHA_Z] * t280);
+        const gic_real t436 = R(90.555) * (acc[HMMWV_UNKNOWN_ACCELERATION_X] + t435);
         const gic_real t437 = t326 * t333;
         const gic_real t438 = t326 * t352;
         const gic_real t439 = t326 * t400;
         const gic_real t440 = t326 * t376;
-        const gic_real t441 = t426 + t429 + t432 + t434 + t436 - (t437 + (t438 + (t439 + t440)));
-        const gic_real t442 = y[15] * R(1078.52);
-        const gic_real t443 = acc[5] + (y[15] * t407 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t444 = y[17] * t442 - y[15] * t1 + acc[1] * R(2955.66) + (t408 * R(444.4287600000002) - t443 * R(116.84512));
-        const gic_real t445 = m[42] + y[15];
+        const gic_real residual_3 = t426 + t429 + t432 + t434 + t436 - (t437 + (t438 + (t439 + t440)));
+        const gic_real t442 = y[HMMWV_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t443 = acc[HMMWV_UNKNOWN_ACCELERATION_Z] + (y[HMMWV_STATE_OMEGA_X] * t407 -
+            y[HMMWV_STATE_OMEGA_Y] * t4 - acc[HMMWV_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t444 = y[HMMWV_STATE_OMEGA_Z] * t442 - y[HMMWV_STATE_OMEGA_X] * t1 + acc[HMMWV_UNKNOWN_ALPHA_Y] *
+            R(2955.66) + (t408 * R(444.4287600000002) - t443 * R(116.84512));
+        const gic_real t445 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t446 = R(0.4469) * t445;
-        const gic_real t447 = acc[2] - m[42] * y[16];
-        const gic_real t448 = acc[1] + m[42] * y[17];
-        const gic_real t449 = y[17] * t446 - t445 * t20 + (t19 * t447 + t21 * t448);
-        const gic_real t450 = t444 + (acc[1] + (t410 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t449 + t25 * t414 - t33 * R(40.476046225));
-        const gic_real t451 = m[72] + y[15];
+        const gic_real t447 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t448 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t449 = y[HMMWV_STATE_OMEGA_Z] * t446 - t445 * t20 + (t19 * t447 + t21 * t448);
+        const gic_real t450 = t444 + (acc[HMMWV_UNKNOWN_ALPHA_Y] + (t410 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t449 + t25 * t414 - t33 * R(40.476046225));
+        const gic_real t451 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t452 = R(0.4469) * t451;
-        const gic_real t453 = acc[2] - m[72] * y[16];
-        const gic_real t454 = acc[1] + m[72] * y[17];
-        const gic_real t455 = y[17] * t452 - t451 * t48 + (t47 * t453 + t49 * t454);
+        const gic_real t453 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t454 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t455 = y[HMMWV_STATE_OMEGA_Z] * t452 - t451 * t48 + (t47 * t453 + t49 * t454);
         const gic_real t456 = t77 * t69 + (t81 * t67 + t87 * t78);
         const gic_real t457 = t69 * t456 - t78 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t458 = t457 + (t99 * t421 - t96 * t112);
-        const gic_real t459 = t450 + (t455 + t53 * t417 - R(40.476046225) * t59) + (t458 + (m[152] * t421 - t111 * R(149.724089775)));
+        const gic_real t459 = t450 + (t455 + t53 * t417 - R(40.476046225) * t59) + (t458 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t421 - t111 * R(149.724089775)));
         const gic_real t460 = t133 * t125 + (t137 * t123 + t143 * t134);
         const gic_real t461 = t125 * t460 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t462 = t461 + (t155 * t425 - t152 * t168);
-        const gic_real t463 = m[102] + y[15];
+        const gic_real t463 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t464 = R(0.4469) * t463;
-        const gic_real t465 = acc[2] - m[102] * y[16];
-        const gic_real t466 = acc[1] + m[102] * y[17];
-        const gic_real t467 = y[17] * t464 - t463 * t182 + (t181 * t465 + t183 * t466);
-        const gic_real t468 = t459 + (t462 + (m[188] * t425 - R(149.724089775) * t167)) + (t467 + t187 * t429 - t195 * R(-40.476046225));
-        const gic_real t469 = m[132] + y[15];
+        const gic_real t465 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t466 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t467 = y[HMMWV_STATE_OMEGA_Z] * t464 - t463 * t182 + (t181 * t465 + t183 * t466);
+        const gic_real t468 = t459 + (t462 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t425 - R(149.724089775) * t167)) +
+            (t467 + t187 * t429 - t195 * R(-40.476046225));
+        const gic_real t469 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t470 = R(0.4469) * t469;
-        const gic_real t471 = acc[2] - m[132] * y[16];
-        const gic_real t472 = acc[1] + m[132] * y[17];
-        const gic_real t473 = y[17] * t470 - t469 * t210 + (t209 * t471 + t211 * t472);
-        const gic_real t474 = m[234] + y[15];
+        const gic_real t471 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t472 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t473 = y[HMMWV_STATE_OMEGA_Z] * t470 - t469 * t210 + (t209 * t471 + t211 * t472);
+        const gic_real t474 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t475 = R(4.8947505) * t474;
-        const gic_real t476 = acc[2] - m[234] * y[16];
-        const gic_real t477 = acc[1] + m[234] * y[17];
-        const gic_real t478 = y[17] * t475 - t474 * t233 + (t232 * t476 + t234 * t477);
-        const gic_real t479 = t478 + t240 * t434 + (m[224] * t434 - t251 * R(-149.724089775));
+        const gic_real t476 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t477 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t478 = y[HMMWV_STATE_OMEGA_Z] * t475 - t474 * t233 + (t232 * t476 + t234 * t477);
+        const gic_real t479 = t478 + t240 * t434 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t434 - t251 *
+            R(-149.724089775));
         const gic_real t480 = t468 + (t473 + t215 * t432 - R(-40.476046225) * t221) + t479;
-        const gic_real t481 = m[264] + y[15];
+        const gic_real t481 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X];
         const gic_real t482 = R(4.8947505) * t481;
-        const gic_real t483 = acc[2] - m[264] * y[16];
-        const gic_real t484 = acc[1] + m[264] * y[17];
-        const gic_real t485 = y[17] * t482 - t481 * t268 + (t267 * t483 + t269 * t484);
-        const gic_real t486 = t485 + t275 * t436 + (m[254] * t436 - R(-149.724089775) * t284);
+        const gic_real t483 = acc[HMMWV_UNKNOWN_ALPHA_Z] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t484 = acc[HMMWV_UNKNOWN_ALPHA_Y] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t485 = y[HMMWV_STATE_OMEGA_Z] * t482 - t481 * t268 + (t267 * t483 + t269 * t484);
+        const gic_real t486 = t485 + t275 * t436 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t436 - R(-149.724089775) *
+            t284);
         const gic_real t487 = t361 * t440 - t357 * t377;
         const gic_real t488 = t385 * t439 - t381 * t401;
-        const gic_real t489 = t488 + (m[152] * t439 - R(1.653405) * t401) + (m[188] * t440 - R(1.653405) * t377);
-        const gic_real t490 = t340 * t438 + (t487 + t489 + (m[224] * t438 - R(-1.653405) * t353));
-        const gic_real t491 = t308 * t437 + (t490 + (m[254] * t437 - R(-1.653405) * t334));
+        const gic_real t489 = t488 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] * t439 - R(1.653405) * t401) +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] * t440 - R(1.653405) * t377);
+        const gic_real t490 = t340 * t438 + (t487 + t489 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] * t438 -
+            R(-1.653405) * t353));
+        const gic_real t491 = t308 * t437 + (t490 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] * t437 - R(-1.653405) *
+            t334));
         const gic_real t492 = t15 * R(9.072);
         const gic_real t493 = t6 * R(2086.52) + t492 + t41 + t65 + t120 + t176;
-        const gic_real t494 = t493 + t203 + t227 + t261 + t292 - (t335 + (t354 + (t402 + t378)));
-        const gic_real t495 = y[15] * t2 - y[16] * t442 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t496 = t445 * t22 - y[16] * t446 + (t16 * t447 + t19 * t448);
+        const gic_real residual_4 = t493 + t203 + t227 + t261 + t292 - (t335 + (t354 + (t402 + t378)));
+        const gic_real t495 = y[HMMWV_STATE_OMEGA_X] * t2 - y[HMMWV_STATE_OMEGA_Y] * t442 + acc[HMMWV_UNKNOWN_ALPHA_Z] *
+            R(3570.2) + t6 * R(116.84512);
+        const gic_real t496 = t445 * t22 - y[HMMWV_STATE_OMEGA_Y] * t446 + (t16 * t447 + t19 * t448);
         const gic_real t497 = t496 - t24 * t414 + (t40 * R(40.476046225) - t413 * R(7.359315990000001));
-        const gic_real t498 = t495 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t411)) + t497;
-        const gic_real t499 = t451 * t50 - y[16] * t452 + (t44 * t453 + t47 * t454);
+        const gic_real t498 = t495 + (acc[HMMWV_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[HMMWV_MOTION_RACK + HMMWV_C_Y] * t411)) + t497;
+        const gic_real t499 = t451 * t50 - y[HMMWV_STATE_OMEGA_Y] * t452 + (t44 * t453 + t47 * t454);
         const gic_real t500 = t499 - t52 * t417 + (R(40.476046225) * t64 - t416 * R(-7.359315990000001));
         const gic_real t501 = t78 * t82 - t67 * t456 + (t68 * t84 + (t73 * t86 + t77 * t89));
         const gic_real t502 = t501 + (t96 * t120 - t93 * t421);
-        const gic_real t503 = t498 + t500 + (t502 + (t119 * R(149.724089775) - m[151] * t421));
+        const gic_real t503 = t498 + t500 + (t502 + (t119 * R(149.724089775) - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] *
+            t421));
         const gic_real t504 = t134 * t138 - t123 * t460 + (t124 * t140 + (t129 * t142 + t133 * t145));
         const gic_real t505 = t504 + (t152 * t176 - t149 * t425);
-        const gic_real t506 = t463 * t184 - y[16] * t464 + (t178 * t465 + t181 * t466);
+        const gic_real t506 = t463 * t184 - y[HMMWV_STATE_OMEGA_Y] * t464 + (t178 * t465 + t181 * t466);
         const gic_real t507 = t506 - t186 * t429 + (t202 * R(-40.476046225) - R(7.359315990000001) * t428);
-        const gic_real t508 = t503 + (t505 + (R(149.724089775) * t175 - m[187] * t425)) + t507;
-        const gic_real t509 = t469 * t212 - y[16] * t470 + (t206 * t471 + t209 * t472);
+        const gic_real t508 = t503 + (t505 + (R(149.724089775) * t175 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t425)) +
+            t507;
+        const gic_real t509 = t469 * t212 - y[HMMWV_STATE_OMEGA_Y] * t470 + (t206 * t471 + t209 * t472);
         const gic_real t510 = t509 - t214 * t432 + (R(-40.476046225) * t226 - R(-7.359315990000001) * t431);
-        const gic_real t511 = t474 * t235 - y[16] * t475 + (t229 * t476 + t232 * t477);
-        const gic_real t512 = t511 - t238 * t434 + (t260 * R(-149.724089775) - m[223] * t434);
-        const gic_real t513 = t481 * t270 - y[16] * t482 + (t264 * t483 + t267 * t484);
-        const gic_real t514 = t513 - t273 * t436 + (R(-149.724089775) * t291 - m[253] * t436);
+        const gic_real t511 = t474 * t235 - y[HMMWV_STATE_OMEGA_Y] * t475 + (t229 * t476 + t232 * t477);
+        const gic_real t512 = t511 - t238 * t434 + (t260 * R(-149.724089775) - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] *
+            t434);
+        const gic_real t513 = t481 * t270 - y[HMMWV_STATE_OMEGA_Y] * t482 + (t264 * t483 + t267 * t484);
+        const gic_real t514 = t513 - t273 * t436 + (R(-149.724089775) * t291 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] *
+            t436);
         const gic_real t515 = t357 * t378 - t356 * t440;
         const gic_real t516 = t381 * t402 - t380 * t439;
-        const gic_real t517 = t516 + (R(1.653405) * t402 - m[151] * t439) + (R(1.653405) * t378 - m[187] * t440);
-        const gic_real t518 = t515 + t517 + (R(-1.653405) * t354 - m[223] * t438) - t337 * t438;
-        const gic_real t519 = t518 + (R(-1.653405) * t335 - m[253] * t437) - t294 * t437;
+        const gic_real t517 = t516 + (R(1.653405) * t402 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] * t439) +
+            (R(1.653405) * t378 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] * t440);
+        const gic_real t518 = t515 + t517 + (R(-1.653405) * t354 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] * t438) -
+            t337 * t438;
+        const gic_real t519 = t518 + (R(-1.653405) * t335 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] * t437) - t294 * t437;
         const gic_real t520 = t443 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
-        const gic_real t521 = t520 + t196 + t222 + t252 + t285 - (t334 + (t353 + (t401 + t377)));
-        const gic_real t522 = m[185] * t112 + m[184] * t120 + (m[182] * t502 + (m[181] * t458 + m[180] * t121));
-        const gic_real t523 = m[185] * t401 + m[184] * t402 + (m[182] * t516 + (m[181] * t488 + m[180] * t403));
-        const gic_real t524 = m[54] * t42 + t522 - (t523 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t525 = m[221] * t168 + m[220] * t176 + (m[218] * t505 + (m[217] * t462 + m[216] * t177));
-        const gic_real t526 = m[221] * t377 + m[220] * t378 + (m[218] * t515 + (m[217] * t487 + m[216] * t379));
-        const gic_real t527 = m[84] * t66 + t525 - (t526 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)));
-        const gic_real t528 = m[114] * t204 + (m[251] * t252 + m[250] * t261 + m[246] * t262);
-        const gic_real t529 = m[251] * t353 + m[250] * t354 + m[246] * t355 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4));
-        const gic_real t530 = m[144] * t228 + (m[281] * t285 + m[280] * t292 + m[276] * t293);
-        const gic_real t531 = m[281] * t334 + m[280] * t335 + m[276] * t336 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4));
-        const gic_real t532 = t492 + (m[176] * t502 + (m[175] * t458 + m[174] * t121));
-        const gic_real t533 = t532 + (m[212] * t505 + (m[211] * t462 + m[210] * t177));
-        const gic_real t534 = m[176] * t516 + (m[175] * t488 + m[174] * t403) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t535 = t534 + (m[212] * t515 + (m[211] * t487 + m[210] * t379));
-        const gic_real t536 = t480 + t486 - t491;
-        const gic_real t537 = t508 + t510 + t512 + t514 - t519;
-        const gic_real t538 = t528 - t529;
-        const gic_real t539 = t530 - t531;
-        const gic_real t540 = t533 - t535;
-        tau[0] = t406;
-        tau[3] = t441;
-        tau[1] = t536;
-        tau[4] = t494;
-        tau[2] = t537;
-        tau[5] = t521;
-        tau[6] = t524;
-        tau[7] = t527;
-        tau[8] = t538;
-        tau[9] = t539;
-        tau[10] = t540;
+        const gic_real residual_5 = t520 + t196 + t222 + t252 + t285 - (t334 + (t353 + (t401 + t377)));
+        const gic_real t522 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] * t112 +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] * t120 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t502 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t458 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t121));
+        const gic_real t523 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] * t401 +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] * t402 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t516 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t488 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t403));
+        const gic_real residual_6 = m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t42 + t522 - (t523 -
+            ((x[HMMWV_X_SPRING_F_L] - R(0.31903)) * R(167070.9) + xd[HMMWV_X_SPRING_F_L] * R(17490.8)));
+        const gic_real t525 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] * t168 +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] * t176 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t505 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t462 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t177));
+        const gic_real t526 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] * t377 +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] * t378 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t515 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t487 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t379));
+        const gic_real residual_7 = m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t66 + t525 - (t526 - (R(167070.9) *
+            (x[HMMWV_X_SPRING_F_R] - R(0.31903)) + xd[HMMWV_X_SPRING_F_R] * R(17490.8)));
+        const gic_real t528 = m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t204 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] *
+            t252 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] * t261 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t262);
+        const gic_real t529 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] * t353 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] *
+            t354 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t355 - ((x[HMMWV_X_SPRING_R_L] - R(0.33727)) *
+            R(369167.2) + xd[HMMWV_X_SPRING_R_L] * R(24780.4));
+        const gic_real t530 = m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t228 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] *
+            t285 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] * t292 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t293);
+        const gic_real t531 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] * t334 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] *
+            t335 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t336 - (R(369167.2) * (x[HMMWV_X_SPRING_R_R] -
+            R(0.33727)) + xd[HMMWV_X_SPRING_R_R] * R(24780.4));
+        const gic_real t532 = t492 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t502 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t458 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t121));
+        const gic_real t533 = t532 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t505 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t462 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t177));
+        const gic_real t534 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t516 +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t488 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t403) -
+            (x[HMMWV_X_RACK] * R(100000.0) + xd[HMMWV_X_RACK] * R(12000.0));
+        const gic_real t535 = t534 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t515 +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t487 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t379));
+        const gic_real residual_1 = t480 + t486 - t491;
+        const gic_real residual_2 = t508 + t510 + t512 + t514 - t519;
+        const gic_real residual_8 = t528 - t529;
+        const gic_real residual_9 = t530 - t531;
+        const gic_real residual_10 = t533 - t535;
+        tau[HMMWV_UNKNOWN_ALPHA_X] = residual_0;
+        tau[HMMWV_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[HMMWV_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[HMMWV_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[HMMWV_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[HMMWV_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[HMMWV_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[HMMWV_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[HMMWV_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[HMMWV_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        tau[HMMWV_UNKNOWN_OF_RACK] = residual_10;
     }
     return GIC_OK;
 }
@@ -4650,17 +5801,24 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31903)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31903)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.33727)) * R(369167.2)) + xd[3] * (R(369167.2) * (x[3] - R(0.33727)));
-        const gic_real t3 = t2 + xd[4] * (x[4] * R(100000.0));
+        /* force spring_f_r */
+        const gic_real t1 = xd[HMMWV_X_SPRING_F_L] * ((x[HMMWV_X_SPRING_F_L] - R(0.31903)) * R(167070.9)) +
+            xd[HMMWV_X_SPRING_F_R] * (R(167070.9) * (x[HMMWV_X_SPRING_F_R] - R(0.31903)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[HMMWV_X_SPRING_R_L] * ((x[HMMWV_X_SPRING_R_L] - R(0.33727)) * R(369167.2)) +
+            xd[HMMWV_X_SPRING_R_R] * (R(369167.2) * (x[HMMWV_X_SPRING_R_R] - R(0.33727)));
+        /* force rack */
+        const gic_real t3 = t2 + xd[HMMWV_X_RACK] * (x[HMMWV_X_RACK] * R(100000.0));
         const gic_real t4 = e[1] + e[1];
         const gic_real t5 = e[1] * t4;
         const gic_real t6 = e[2] + e[2];
         const gic_real t7 = e[2] * t6;
         const gic_real t8 = R(1.0) - (t5 + t7);
-        const gic_real t9 = rate[14] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t9 = rate[HMMWV_STATE_V_Z] - R(-9.81);
         const gic_real t10 = e[3] * t6;
         const gic_real t11 = e[0] * t4;
         const gic_real t12 = t10 - t11;
@@ -4668,426 +5826,639 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t14 = e[1] * t13;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = t8 * t9 + (t12 * rate[13] + t16 * rate[12]);
-        const gic_real t18 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[16] * R(0.21300000000000008);
-        const gic_real t20 = t17 + (y[15] * t18 - y[16] * t19 - rate[16] * R(0.056));
-        const gic_real t21 = y[14] * t8 + (y[13] * t12 + y[12] * t16);
-        const gic_real t22 = y[16] * R(0.056);
+        const gic_real t17 = t8 * t9 + (t12 * rate[HMMWV_STATE_V_Y] + t16 * rate[HMMWV_STATE_V_X]);
+        const gic_real t18 = y[HMMWV_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t19 = y[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t20 = t17 + (y[HMMWV_STATE_OMEGA_X] * t18 - y[HMMWV_STATE_OMEGA_Y] * t19 -
+            rate[HMMWV_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t21 = y[HMMWV_STATE_V_Z] * t8 + (y[HMMWV_STATE_V_Y] * t12 + y[HMMWV_STATE_V_X] * t16);
+        const gic_real t22 = y[HMMWV_STATE_OMEGA_Y] * R(0.056);
         const gic_real t23 = t10 + t11;
         const gic_real t24 = e[3] * t13;
         const gic_real t25 = R(1.0) - (t5 + t24);
         const gic_real t26 = e[2] * t4;
         const gic_real t27 = e[0] * t13;
         const gic_real t28 = t26 - t27;
-        const gic_real t29 = t23 * t9 + (t25 * rate[13] + t28 * rate[12]);
-        const gic_real t30 = y[15] * t22 + y[17] * t19 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
-        const gic_real t31 = y[14] * t23 + (y[13] * t25 + y[12] * t28);
+        const gic_real t29 = t23 * t9 + (t25 * rate[HMMWV_STATE_V_Y] + t28 * rate[HMMWV_STATE_V_X]);
+        const gic_real t30 = y[HMMWV_STATE_OMEGA_X] * t22 + y[HMMWV_STATE_OMEGA_Z] * t19 + (rate[HMMWV_STATE_OMEGA_Z] *
+            R(0.056) - rate[HMMWV_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t31 = y[HMMWV_STATE_V_Z] * t23 + (y[HMMWV_STATE_V_Y] * t25 + y[HMMWV_STATE_V_X] * t28);
         const gic_real t32 = t14 - t15;
         const gic_real t33 = t26 + t27;
         const gic_real t34 = R(1.0) - (t7 + t24);
-        const gic_real t35 = t32 * t9 + (t33 * rate[13] + t34 * rate[12]);
-        const gic_real t36 = t35 + (rate[16] * R(0.21300000000000008) - (y[17] * t18 + y[16] * t22));
-        const gic_real t37 = y[14] * t32 + (y[13] * t33 + y[12] * t34);
+        const gic_real t35 = t32 * t9 + (t33 * rate[HMMWV_STATE_V_Y] + t34 * rate[HMMWV_STATE_V_X]);
+        const gic_real t36 = t35 + (rate[HMMWV_STATE_OMEGA_Y] * R(0.21300000000000008) - (y[HMMWV_STATE_OMEGA_Z] * t18 +
+            y[HMMWV_STATE_OMEGA_Y] * t22));
+        const gic_real t37 = y[HMMWV_STATE_V_Z] * t32 + (y[HMMWV_STATE_V_Y] * t33 + y[HMMWV_STATE_V_X] * t34);
         const gic_real t38 = (t29 + t30) * (t18 + t31) + t36 * (t19 + t37);
         const gic_real t39 = (t20 * (t21 - t22) + t38) * R(2086.52);
-        const gic_real t40 = y[17] * (rate[17] * R(3570.2)) + (y[16] * (rate[16] * R(2955.66)) + y[15] * (rate[15] * R(1078.52)));
-        const gic_real t41 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t42 = m[16] + t41;
-        const gic_real t43 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t44 = y[15] * t42 - y[16] * t43 + (m[1] * rate[15] - R(1.438648) * rate[16]);
-        const gic_real t45 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t46 = y[17] * t43 - y[15] * t45 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t47 = y[16] * t45 - y[17] * t42 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
-        const gic_real t48 = (rate[22] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
+        const gic_real t40 = y[HMMWV_STATE_OMEGA_Z] * (rate[HMMWV_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV_STATE_OMEGA_Y] * (rate[HMMWV_STATE_OMEGA_Y] * R(2955.66)) + y[HMMWV_STATE_OMEGA_X] *
+            (rate[HMMWV_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t41 = m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] + (R(1.438648) * y[HMMWV_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_X]);
+        const gic_real t42 = m[HMMWV_MOTION_RACK + HMMWV_VELOCITY_Y] + t41;
+        const gic_real t43 = R(0.05422899999999997) * y[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t44 = y[HMMWV_STATE_OMEGA_X] * t42 - y[HMMWV_STATE_OMEGA_Y] * t43 +
+            (m[HMMWV_MOTION_RACK + HMMWV_C_Y] * rate[HMMWV_STATE_OMEGA_X] - R(1.438648) * rate[HMMWV_STATE_OMEGA_Y]);
+        const gic_real t45 = m[HMMWV_MOTION_RACK + HMMWV_C_Y] * y[HMMWV_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t46 = y[HMMWV_STATE_OMEGA_Z] * t43 - y[HMMWV_STATE_OMEGA_X] * t45 + (R(1.438648) *
+            rate[HMMWV_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV_STATE_OMEGA_X]);
+        const gic_real t47 = y[HMMWV_STATE_OMEGA_Y] * t45 - y[HMMWV_STATE_OMEGA_Z] * t42 + (R(0.05422899999999997) *
+            rate[HMMWV_STATE_OMEGA_Y] - m[HMMWV_MOTION_RACK + HMMWV_C_Y] * rate[HMMWV_STATE_OMEGA_Z]);
+        const gic_real t48 = (rate[HMMWV_STATE_RACK_RATE] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
         const gic_real t49 = ((t17 + t44) * (t21 + t45) + t48) * R(9.072);
-        const gic_real t50 = y[17] * rate[17] + (y[16] * rate[16] + y[15] * rate[15]);
-        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = R(1.688965) * y[17];
-        const gic_real t55 = t54 - y[15] * t52 - t53;
+        const gic_real t50 = y[HMMWV_STATE_OMEGA_Z] * rate[HMMWV_STATE_OMEGA_Z] + (y[HMMWV_STATE_OMEGA_Y] *
+            rate[HMMWV_STATE_OMEGA_Y] + y[HMMWV_STATE_OMEGA_X] * rate[HMMWV_STATE_OMEGA_X]);
+        const gic_real t51 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.24689200985615367);
+        const gic_real t52 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t52;
+        const gic_real t54 = R(1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t55 = t54 - y[HMMWV_STATE_OMEGA_X] * t52 - t53;
         const gic_real t56 = t55 - t53;
         const gic_real t57 = R(0.307086) + t51;
-        const gic_real t58 = y[16] * t52 - y[17] * t57;
-        const gic_real t59 = R(1.688965) * rate[16];
-        const gic_real t60 = y[15] * t56 - y[16] * t58 + (rate[15] * t57 - t59);
-        const gic_real t61 = m[48] * t51 - m[42] * t53 + (t17 + t60) + rate[18] * (m[54] * t51);
-        const gic_real t62 = m[42] * t51;
-        const gic_real t63 = R(1.688965) * y[16];
-        const gic_real t64 = t62 + (y[15] * t57 - t63);
+        const gic_real t58 = y[HMMWV_STATE_OMEGA_Y] * t52 - y[HMMWV_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t60 = y[HMMWV_STATE_OMEGA_X] * t56 - y[HMMWV_STATE_OMEGA_Y] * t58 + (rate[HMMWV_STATE_OMEGA_X] *
+            t57 - t59);
+        const gic_real t61 = m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] * t51 - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            t53 + (t17 + t60) + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t51);
+        const gic_real t62 = m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t51;
+        const gic_real t63 = R(1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t64 = t62 + (y[HMMWV_STATE_OMEGA_X] * t57 - t63);
         const gic_real t65 = t62 + t64;
-        const gic_real t66 = R(1.688965) * rate[17];
-        const gic_real t67 = y[17] * t58 - y[15] * t65 + (t66 - rate[15] * t52);
-        const gic_real t68 = t29 + t67 - (m[42] * t62 + m[48] * t52) - rate[18] * (m[54] * t52);
-        const gic_real t69 = y[16] * t65 - y[17] * t56 + (rate[16] * t52 - rate[17] * t57);
+        const gic_real t66 = R(1.688965) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t67 = y[HMMWV_STATE_OMEGA_Z] * t58 - y[HMMWV_STATE_OMEGA_X] * t65 + (t66 -
+            rate[HMMWV_STATE_OMEGA_X] * t52);
+        const gic_real t68 = t29 + t67 - (m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] * t62 +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] * t52) - rate[HMMWV_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * t52);
+        const gic_real t69 = y[HMMWV_STATE_OMEGA_Y] * t65 - y[HMMWV_STATE_OMEGA_Z] * t56 + (rate[HMMWV_STATE_OMEGA_Y] *
+            t52 - rate[HMMWV_STATE_OMEGA_Z] * t57);
         const gic_real t70 = t68 * (t31 + t55) + (t35 + t69) * (t37 + t58);
         const gic_real t71 = (t61 * (t21 + t64) + t70) * R(23.965);
-        const gic_real t72 = rate[17] - m[42] * y[16];
-        const gic_real t73 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t72;
-        const gic_real t74 = m[38] * R(0.8938);
-        const gic_real t75 = m[37] * R(0.4469);
-        const gic_real t76 = m[41] * t74 + m[40] * t75;
-        const gic_real t77 = rate[16] + m[42] * y[17];
-        const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
-        const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
-        const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t83 = m[72] * t82;
-        const gic_real t84 = t54 - y[15] * t82 - t83;
+        const gic_real t72 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t73 = (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * R(0.4469))) *
+            t72;
+        const gic_real t74 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t75 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t76 = m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZZ] * t74 + m[HMMWV_MOTION_LCA_F_L + HMMWV_A_ZY] * t75;
+        const gic_real t77 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t78 = t76 * t72 + (m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YZ] * t74 +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_A_YY] * t75) * t77;
+        const gic_real t79 = (m[HMMWV_MOTION_LCA_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_F_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_F_L_RATE]));
+        const gic_real t80 = y[HMMWV_STATE_OMEGA_Z] * (t73 + t76 * t77) + (y[HMMWV_STATE_OMEGA_Y] * t78 + t79);
+        const gic_real t81 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(-0.24689200985615367);
+        const gic_real t82 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(-0.24689200985615367);
+        const gic_real t83 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t82;
+        const gic_real t84 = t54 - y[HMMWV_STATE_OMEGA_X] * t82 - t83;
         const gic_real t85 = t84 - t83;
         const gic_real t86 = R(-0.307086) + t81;
-        const gic_real t87 = y[16] * t82 - y[17] * t86;
-        const gic_real t88 = y[15] * t85 - y[16] * t87 + (rate[15] * t86 - t59);
-        const gic_real t89 = m[78] * t81 - m[72] * t83 + (t17 + t88) + rate[19] * (m[84] * t81);
-        const gic_real t90 = m[72] * t81;
-        const gic_real t91 = t90 + (y[15] * t86 - t63);
+        const gic_real t87 = y[HMMWV_STATE_OMEGA_Y] * t82 - y[HMMWV_STATE_OMEGA_Z] * t86;
+        const gic_real t88 = y[HMMWV_STATE_OMEGA_X] * t85 - y[HMMWV_STATE_OMEGA_Y] * t87 + (rate[HMMWV_STATE_OMEGA_X] *
+            t86 - t59);
+        const gic_real t89 = m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] * t81 - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            t83 + (t17 + t88) + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t81);
+        const gic_real t90 = m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t81;
+        const gic_real t91 = t90 + (y[HMMWV_STATE_OMEGA_X] * t86 - t63);
         const gic_real t92 = t90 + t91;
-        const gic_real t93 = y[17] * t87 - y[15] * t92 + (t66 - rate[15] * t82);
-        const gic_real t94 = t29 + t93 - (m[72] * t90 + m[78] * t82) - rate[19] * (m[84] * t82);
-        const gic_real t95 = y[16] * t92 - y[17] * t85 + (rate[16] * t82 - rate[17] * t86);
+        const gic_real t93 = y[HMMWV_STATE_OMEGA_Z] * t87 - y[HMMWV_STATE_OMEGA_X] * t92 + (t66 -
+            rate[HMMWV_STATE_OMEGA_X] * t82);
+        const gic_real t94 = t29 + t93 - (m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] * t90 +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] * t82) - rate[HMMWV_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * t82);
+        const gic_real t95 = y[HMMWV_STATE_OMEGA_Y] * t92 - y[HMMWV_STATE_OMEGA_Z] * t85 + (rate[HMMWV_STATE_OMEGA_Y] *
+            t82 - rate[HMMWV_STATE_OMEGA_Z] * t86);
         const gic_real t96 = t94 * (t31 + t84) + (t35 + t95) * (t37 + t87);
         const gic_real t97 = R(23.965) * (t89 * (t21 + t91) + t96);
-        const gic_real t98 = rate[17] - m[72] * y[16];
-        const gic_real t99 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t98;
-        const gic_real t100 = m[68] * R(0.8938);
-        const gic_real t101 = m[67] * R(0.4469);
-        const gic_real t102 = m[71] * t100 + m[70] * t101;
-        const gic_real t103 = rate[16] + m[72] * y[17];
-        const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
-        const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
+        const gic_real t98 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t99 = (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * R(0.4469))) *
+            t98;
+        const gic_real t100 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t101 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t102 = m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZZ] * t100 + m[HMMWV_MOTION_LCA_F_R + HMMWV_A_ZY] * t101;
+        const gic_real t103 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t104 = t102 * t98 + (m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YZ] * t100 +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_A_YY] * t101) * t103;
+        const gic_real t105 = (m[HMMWV_MOTION_LCA_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV_MOTION_LCA_F_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_F_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_F_R_RATE]));
+        const gic_real t106 = y[HMMWV_STATE_OMEGA_Z] * (t99 + t102 * t103) + (y[HMMWV_STATE_OMEGA_Y] * t104 + t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
-        const gic_real t108 = m[155] * R(0.09182100000000004);
-        const gic_real t109 = m[153] * R(-0.004825999999999997);
-        const gic_real t110 = t108 + (t109 + m[154] * R(0.08910630000000008));
-        const gic_real t111 = m[161] * R(0.09182100000000004);
-        const gic_real t112 = m[159] * R(-0.004825999999999997);
-        const gic_real t113 = t111 + (t112 + m[160] * R(0.08910630000000008));
-        const gic_real t114 = m[164] * t110 - m[162] * t113;
-        const gic_real t115 = m[158] * R(0.09182100000000004);
-        const gic_real t116 = m[156] * R(-0.004825999999999997);
-        const gic_real t117 = t115 + (t116 + m[157] * R(0.08910630000000008));
-        const gic_real t118 = m[163] * t113 - m[164] * t117;
-        const gic_real t119 = m[162] * t114 - m[163] * t118 + (m[168] * t117 - m[169] * t110);
-        const gic_real t120 = m[166] + t114;
+        /* wheel tire_f_l */
+        const gic_real t108 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t109 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t110 = t108 + (t109 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.08910630000000008));
+        const gic_real t111 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t112 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t113 = t111 + (t112 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.08910630000000008));
+        const gic_real t114 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t110 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t113;
+        const gic_real t115 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t116 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = t115 + (t116 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.08910630000000008));
+        const gic_real t118 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t113 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t117;
+        const gic_real t119 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t114 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t118 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t117 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t110);
+        const gic_real t120 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] + t114;
         const gic_real t121 = R(1.653405) + t110;
-        const gic_real t122 = m[152] + t113;
-        const gic_real t123 = t120 + (y[17] * t121 - y[15] * t122);
+        const gic_real t122 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t113;
+        const gic_real t123 = t120 + (y[HMMWV_STATE_OMEGA_Z] * t121 - y[HMMWV_STATE_OMEGA_X] * t122);
         const gic_real t124 = t120 + t123;
-        const gic_real t125 = m[151] + t117;
-        const gic_real t126 = t118 + (y[16] * t122 - y[17] * t125);
+        const gic_real t125 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t117;
+        const gic_real t126 = t118 + (y[HMMWV_STATE_OMEGA_Y] * t122 - y[HMMWV_STATE_OMEGA_Z] * t125);
         const gic_real t127 = t118 + t126;
-        const gic_real t128 = y[15] * t124 - y[16] * t127 + (rate[15] * t125 - rate[16] * t121);
-        const gic_real t129 = m[173] + t119 + (t17 + t128) + rate[22] * (m[174] * t117 - m[175] * t110);
-        const gic_real t130 = t129 + rate[18] * (m[185] + (m[180] * t117 - m[181] * t110));
-        const gic_real t131 = m[162] * t117 - m[163] * t110;
-        const gic_real t132 = m[167] + t131;
-        const gic_real t133 = t132 + (y[15] * t125 - y[16] * t121);
-        const gic_real t134 = m[164] * t118 - m[162] * t131 + (m[170] * t110 - m[168] * t113);
+        const gic_real t128 = y[HMMWV_STATE_OMEGA_X] * t124 - y[HMMWV_STATE_OMEGA_Y] * t127 +
+            (rate[HMMWV_STATE_OMEGA_X] * t125 - rate[HMMWV_STATE_OMEGA_Y] * t121);
+        const gic_real t129 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Z] + t119 + (t17 + t128) +
+            rate[HMMWV_STATE_RACK_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t117 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t110);
+        const gic_real t130 = t129 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t117 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * t110));
+        const gic_real t131 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t117 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t110;
+        const gic_real t132 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] + t131;
+        const gic_real t133 = t132 + (y[HMMWV_STATE_OMEGA_X] * t125 - y[HMMWV_STATE_OMEGA_Y] * t121);
+        const gic_real t134 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t118 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t131 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t110 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] * t113);
         const gic_real t135 = t132 + t133;
-        const gic_real t136 = y[17] * t127 - y[15] * t135 + (rate[17] * t121 - rate[15] * t122);
-        const gic_real t137 = m[172] + t134 + (t29 + t136) + rate[22] * (m[176] * t110 - m[174] * t113);
-        const gic_real t138 = t137 + rate[18] * (m[184] + (m[182] * t110 - m[180] * t113));
-        const gic_real t139 = m[163] * t131 - m[164] * t114 + (m[169] * t113 - m[170] * t117);
-        const gic_real t140 = y[16] * t135 - y[17] * t124 + (rate[16] * t122 - rate[17] * t125);
-        const gic_real t141 = t139 + (t35 + t140) + rate[22] * (m[175] * t113 - m[176] * t117);
-        const gic_real t142 = (t141 + rate[18] * (m[181] * t113 - m[182] * t117)) * (t37 + t126);
+        const gic_real t136 = y[HMMWV_STATE_OMEGA_Z] * t127 - y[HMMWV_STATE_OMEGA_X] * t135 +
+            (rate[HMMWV_STATE_OMEGA_Z] * t121 - rate[HMMWV_STATE_OMEGA_X] * t122);
+        const gic_real t137 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ACCELERATION_Y] + t134 + (t29 + t136) +
+            rate[HMMWV_STATE_RACK_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t110 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * t113);
+        const gic_real t138 = t137 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t110 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * t113));
+        const gic_real t139 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t131 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t114 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] * t113 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] * t117);
+        const gic_real t140 = y[HMMWV_STATE_OMEGA_Y] * t135 - y[HMMWV_STATE_OMEGA_Z] * t124 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t122 - rate[HMMWV_STATE_OMEGA_Z] * t125);
+        const gic_real t141 = t139 + (t35 + t140) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * t113 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * t117);
+        const gic_real t142 = (t141 + rate[HMMWV_STATE_SPRING_F_L_RATE] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] *
+            t113 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * t117)) * (t37 + t126);
         const gic_real t143 = t130 * (t21 + t133) + (t138 * (t31 + t123) + t142);
         const gic_real t144 = t143 * R(90.555);
-        const gic_real t145 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t146 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t147 = t146 + m[182] * rate[18];
-        const gic_real t148 = m[158] * R(4.7728205);
-        const gic_real t149 = m[157] * R(7.58122);
-        const gic_real t150 = m[156] * R(4.8947505);
-        const gic_real t151 = m[161] * t148 + (m[160] * t149 + m[159] * t150);
-        const gic_real t152 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t153 = t152 + m[181] * rate[18];
-        const gic_real t154 = m[155] * R(4.7728205);
-        const gic_real t155 = m[154] * R(7.58122);
-        const gic_real t156 = m[153] * R(4.8947505);
-        const gic_real t157 = m[161] * t154 + (m[160] * t155 + m[159] * t156);
-        const gic_real t158 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t159 = t158 + m[180] * rate[18];
-        const gic_real t160 = (m[164] + y[17]) * (t145 * t147 + (t151 * t153 + t157 * t159));
-        const gic_real t161 = (m[158] * t148 + (m[157] * t149 + m[156] * t150)) * t153;
-        const gic_real t162 = m[158] * t154 + (m[157] * t155 + m[156] * t156);
-        const gic_real t163 = (m[163] + y[16]) * (t151 * t147 + (t161 + t162 * t159));
-        const gic_real t164 = (m[155] * t154 + (m[154] * t155 + m[153] * t156)) * t159;
-        const gic_real t165 = (m[162] + y[15]) * (t157 * t147 + (t162 * t153 + t164));
+        const gic_real t145 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t146 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Z] + (rate[HMMWV_STATE_OMEGA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 2] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t147 = t146 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 8] * rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t148 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t149 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t150 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t151 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t148 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t149 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t150);
+        const gic_real t152 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_Y] + (rate[HMMWV_STATE_OMEGA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 1] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t153 = t152 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 7] * rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t154 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t155 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(7.58122);
+        const gic_real t156 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t157 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZZ] * t154 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] *
+            t155 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZX] * t156);
+        const gic_real t158 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_ALPHA_X] + (rate[HMMWV_STATE_OMEGA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 0] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t159 = t158 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_S + 6] * rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t160 = (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z]) * (t145 * t147 +
+            (t151 * t153 + t157 * t159));
+        const gic_real t161 = (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t148 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t149 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t150)) * t153;
+        const gic_real t162 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YZ] * t154 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] *
+            t155 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YX] * t156);
+        const gic_real t163 = (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y]) * (t151 * t147 +
+            (t161 + t162 * t159));
+        const gic_real t164 = (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XZ] * t154 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] *
+            t155 + m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XX] * t156)) * t159;
+        const gic_real t165 = (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (t157 * t147 +
+            (t162 * t153 + t164));
         const gic_real t166 = t160 + (t163 + t165);
-        const gic_real t167 = m[191] * R(0.09182100000000004);
-        const gic_real t168 = m[189] * R(-0.004825999999999997);
-        const gic_real t169 = t167 + (t168 + m[190] * R(-0.08910630000000008));
-        const gic_real t170 = m[197] * R(0.09182100000000004);
-        const gic_real t171 = m[195] * R(-0.004825999999999997);
-        const gic_real t172 = t170 + (t171 + m[196] * R(-0.08910630000000008));
-        const gic_real t173 = m[200] * t169 - m[198] * t172;
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[199] * t172 - m[200] * t176;
-        const gic_real t178 = m[198] * t173 - m[199] * t177 + (m[204] * t176 - m[205] * t169);
-        const gic_real t179 = m[202] + t173;
+        /* wheel tire_f_r */
+        const gic_real t167 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(0.09182100000000004);
+        const gic_real t168 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(-0.004825999999999997);
+        const gic_real t169 = t167 + (t168 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.08910630000000008));
+        const gic_real t170 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t171 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * R(-0.004825999999999997);
+        const gic_real t172 = t170 + (t171 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.08910630000000008));
+        const gic_real t173 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t169 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t172;
+        const gic_real t174 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t172 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t176;
+        const gic_real t178 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t173 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t177 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t176 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t169);
+        const gic_real t179 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] + t173;
         const gic_real t180 = R(1.653405) + t169;
-        const gic_real t181 = m[188] + t172;
-        const gic_real t182 = t179 + (y[17] * t180 - y[15] * t181);
+        const gic_real t181 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t172;
+        const gic_real t182 = t179 + (y[HMMWV_STATE_OMEGA_Z] * t180 - y[HMMWV_STATE_OMEGA_X] * t181);
         const gic_real t183 = t179 + t182;
-        const gic_real t184 = m[187] + t176;
-        const gic_real t185 = t177 + (y[16] * t181 - y[17] * t184);
+        const gic_real t184 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t176;
+        const gic_real t185 = t177 + (y[HMMWV_STATE_OMEGA_Y] * t181 - y[HMMWV_STATE_OMEGA_Z] * t184);
         const gic_real t186 = t177 + t185;
-        const gic_real t187 = y[15] * t183 - y[16] * t186 + (rate[15] * t184 - rate[16] * t180);
-        const gic_real t188 = m[209] + t178 + (t17 + t187) + rate[22] * (m[210] * t176 - m[211] * t169);
-        const gic_real t189 = t188 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t169));
-        const gic_real t190 = m[198] * t176 - m[199] * t169;
-        const gic_real t191 = m[203] + t190;
-        const gic_real t192 = t191 + (y[15] * t184 - y[16] * t180);
-        const gic_real t193 = m[200] * t177 - m[198] * t190 + (m[206] * t169 - m[204] * t172);
+        const gic_real t187 = y[HMMWV_STATE_OMEGA_X] * t183 - y[HMMWV_STATE_OMEGA_Y] * t186 +
+            (rate[HMMWV_STATE_OMEGA_X] * t184 - rate[HMMWV_STATE_OMEGA_Y] * t180);
+        const gic_real t188 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Z] + t178 + (t17 + t187) +
+            rate[HMMWV_STATE_RACK_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t176 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t169);
+        const gic_real t189 = t188 + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 11] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t176 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * t169));
+        const gic_real t190 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t176 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t169;
+        const gic_real t191 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] + t190;
+        const gic_real t192 = t191 + (y[HMMWV_STATE_OMEGA_X] * t184 - y[HMMWV_STATE_OMEGA_Y] * t180);
+        const gic_real t193 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t177 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t190 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t169 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] * t172);
         const gic_real t194 = t191 + t192;
-        const gic_real t195 = y[17] * t186 - y[15] * t194 + (rate[17] * t180 - rate[15] * t181);
-        const gic_real t196 = m[208] + t193 + (t29 + t195) + rate[22] * (m[212] * t169 - m[210] * t172);
-        const gic_real t197 = t196 + rate[19] * (m[220] + (m[218] * t169 - m[216] * t172));
-        const gic_real t198 = m[199] * t190 - m[200] * t173 + (m[205] * t172 - m[206] * t176);
-        const gic_real t199 = y[16] * t194 - y[17] * t183 + (rate[16] * t181 - rate[17] * t184);
-        const gic_real t200 = t198 + (t35 + t199) + rate[22] * (m[211] * t172 - m[212] * t176);
-        const gic_real t201 = (t200 + rate[19] * (m[217] * t172 - m[218] * t176)) * (t37 + t185);
+        const gic_real t195 = y[HMMWV_STATE_OMEGA_Z] * t186 - y[HMMWV_STATE_OMEGA_X] * t194 +
+            (rate[HMMWV_STATE_OMEGA_Z] * t180 - rate[HMMWV_STATE_OMEGA_X] * t181);
+        const gic_real t196 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ACCELERATION_Y] + t193 + (t29 + t195) +
+            rate[HMMWV_STATE_RACK_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t169 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * t172);
+        const gic_real t197 = t196 + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 10] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t169 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * t172));
+        const gic_real t198 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t190 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t173 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] * t172 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] * t176);
+        const gic_real t199 = y[HMMWV_STATE_OMEGA_Y] * t194 - y[HMMWV_STATE_OMEGA_Z] * t183 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t181 - rate[HMMWV_STATE_OMEGA_Z] * t184);
+        const gic_real t200 = t198 + (t35 + t199) + rate[HMMWV_STATE_RACK_RATE] *
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * t172 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * t176);
+        const gic_real t201 = (t200 + rate[HMMWV_STATE_SPRING_F_R_RATE] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] *
+            t172 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * t176)) * (t37 + t185);
         const gic_real t202 = t189 * (t21 + t192) + (t197 * (t31 + t182) + t201);
         const gic_real t203 = R(90.555) * t202;
-        const gic_real t204 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t205 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t206 = t205 + m[218] * rate[19];
-        const gic_real t207 = m[194] * R(4.7728205);
-        const gic_real t208 = m[193] * R(7.58122);
-        const gic_real t209 = m[192] * R(4.8947505);
-        const gic_real t210 = m[197] * t207 + (m[196] * t208 + m[195] * t209);
-        const gic_real t211 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t212 = t211 + m[217] * rate[19];
-        const gic_real t213 = m[191] * R(4.7728205);
-        const gic_real t214 = m[190] * R(7.58122);
-        const gic_real t215 = m[189] * R(4.8947505);
-        const gic_real t216 = m[197] * t213 + (m[196] * t214 + m[195] * t215);
-        const gic_real t217 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t218 = t217 + m[216] * rate[19];
-        const gic_real t219 = (m[200] + y[17]) * (t204 * t206 + (t210 * t212 + t216 * t218));
-        const gic_real t220 = (m[194] * t207 + (m[193] * t208 + m[192] * t209)) * t212;
-        const gic_real t221 = m[194] * t213 + (m[193] * t214 + m[192] * t215);
-        const gic_real t222 = (m[199] + y[16]) * (t210 * t206 + (t220 + t221 * t218));
-        const gic_real t223 = (m[191] * t213 + (m[190] * t214 + m[189] * t215)) * t218;
-        const gic_real t224 = (m[198] + y[15]) * (t216 * t206 + (t221 * t212 + t223));
+        const gic_real t204 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            R(7.58122)) + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] *
+            R(4.8947505)));
+        const gic_real t205 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Z] + (rate[HMMWV_STATE_OMEGA_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_X] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Y])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 2] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t206 = t205 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 8] * rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t207 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t208 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t209 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * R(4.8947505);
+        const gic_real t210 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t207 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t208 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t209);
+        const gic_real t211 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_Y] + (rate[HMMWV_STATE_OMEGA_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * y[HMMWV_STATE_OMEGA_Z] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_X])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 1] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t212 = t211 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 7] * rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t213 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * R(4.7728205);
+        const gic_real t214 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(7.58122);
+        const gic_real t215 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * R(4.8947505);
+        const gic_real t216 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZZ] * t213 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] *
+            t214 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZX] * t215);
+        const gic_real t217 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_ALPHA_X] + (rate[HMMWV_STATE_OMEGA_X] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * y[HMMWV_STATE_OMEGA_Y] -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * y[HMMWV_STATE_OMEGA_Z])) +
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 0] * rate[HMMWV_STATE_RACK_RATE];
+        const gic_real t218 = t217 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_S + 6] * rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t219 = (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] + y[HMMWV_STATE_OMEGA_Z]) * (t204 * t206 +
+            (t210 * t212 + t216 * t218));
+        const gic_real t220 = (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t207 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t208 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t209)) * t212;
+        const gic_real t221 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YZ] * t213 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] *
+            t214 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YX] * t215);
+        const gic_real t222 = (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] + y[HMMWV_STATE_OMEGA_Y]) * (t210 * t206 +
+            (t220 + t221 * t218));
+        const gic_real t223 = (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XZ] * t213 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] *
+            t214 + m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XX] * t215)) * t218;
+        const gic_real t224 = (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (t216 * t206 +
+            (t221 * t212 + t223));
         const gic_real t225 = t219 + (t222 + t224);
-        const gic_real t226 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t227 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t228 = m[102] * t227;
-        const gic_real t229 = R(-1.688965) * y[17];
-        const gic_real t230 = t229 - y[15] * t227 - t228;
+        const gic_real t226 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.246867347245056);
+        const gic_real t227 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.246867347245056);
+        const gic_real t228 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t227;
+        const gic_real t229 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t230 = t229 - y[HMMWV_STATE_OMEGA_X] * t227 - t228;
         const gic_real t231 = t230 - t228;
         const gic_real t232 = R(0.307086) + t226;
-        const gic_real t233 = y[16] * t227 - y[17] * t232;
-        const gic_real t234 = R(-1.688965) * rate[16];
-        const gic_real t235 = y[15] * t231 - y[16] * t233 + (rate[15] * t232 - t234);
-        const gic_real t236 = m[108] * t226 - m[102] * t228 + (t17 + t235) + rate[20] * (m[114] * t226);
-        const gic_real t237 = m[102] * t226;
-        const gic_real t238 = R(-1.688965) * y[16];
-        const gic_real t239 = t237 + (y[15] * t232 - t238);
+        const gic_real t233 = y[HMMWV_STATE_OMEGA_Y] * t227 - y[HMMWV_STATE_OMEGA_Z] * t232;
+        const gic_real t234 = R(-1.688965) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t235 = y[HMMWV_STATE_OMEGA_X] * t231 - y[HMMWV_STATE_OMEGA_Y] * t233 +
+            (rate[HMMWV_STATE_OMEGA_X] * t232 - t234);
+        const gic_real t236 = m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] * t226 - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            t228 + (t17 + t235) + rate[HMMWV_STATE_SPRING_R_L_RATE] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t226);
+        const gic_real t237 = m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t226;
+        const gic_real t238 = R(-1.688965) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t239 = t237 + (y[HMMWV_STATE_OMEGA_X] * t232 - t238);
         const gic_real t240 = t237 + t239;
-        const gic_real t241 = R(-1.688965) * rate[17];
-        const gic_real t242 = y[17] * t233 - y[15] * t240 + (t241 - rate[15] * t227);
-        const gic_real t243 = t29 + t242 - (m[102] * t237 + m[108] * t227) - rate[20] * (m[114] * t227);
-        const gic_real t244 = y[16] * t240 - y[17] * t231 + (rate[16] * t227 - rate[17] * t232);
+        const gic_real t241 = R(-1.688965) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t242 = y[HMMWV_STATE_OMEGA_Z] * t233 - y[HMMWV_STATE_OMEGA_X] * t240 + (t241 -
+            rate[HMMWV_STATE_OMEGA_X] * t227);
+        const gic_real t243 = t29 + t242 - (m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] * t237 +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] * t227) - rate[HMMWV_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * t227);
+        const gic_real t244 = y[HMMWV_STATE_OMEGA_Y] * t240 - y[HMMWV_STATE_OMEGA_Z] * t231 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t227 - rate[HMMWV_STATE_OMEGA_Z] * t232);
         const gic_real t245 = t243 * (t31 + t230) + (t35 + t244) * (t37 + t233);
         const gic_real t246 = R(23.965) * (t236 * (t21 + t239) + t245);
-        const gic_real t247 = rate[17] - m[102] * y[16];
-        const gic_real t248 = (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469))) * t247;
-        const gic_real t249 = m[98] * R(0.8938);
-        const gic_real t250 = m[97] * R(0.4469);
-        const gic_real t251 = m[101] * t249 + m[100] * t250;
-        const gic_real t252 = rate[16] + m[102] * y[17];
-        const gic_real t253 = t251 * t247 + (m[98] * t249 + m[97] * t250) * t252;
-        const gic_real t254 = (m[102] + y[15]) * (R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]));
-        const gic_real t255 = y[17] * (t248 + t251 * t252) + (y[16] * t253 + t254);
+        const gic_real t247 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t248 = (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * R(0.4469))) *
+            t247;
+        const gic_real t249 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t250 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * R(0.4469);
+        const gic_real t251 = m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZZ] * t249 + m[HMMWV_MOTION_LCA_R_L + HMMWV_A_ZY] * t250;
+        const gic_real t252 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t253 = t251 * t247 + (m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YZ] * t249 +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_A_YY] * t250) * t252;
+        const gic_real t254 = (m[HMMWV_MOTION_LCA_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_R_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_L_RATE]));
+        const gic_real t255 = y[HMMWV_STATE_OMEGA_Z] * (t248 + t251 * t252) + (y[HMMWV_STATE_OMEGA_Y] * t253 + t254);
         const gic_real t256 = t107 + (t144 + t166) + (t203 + t225) + (t246 + t255);
-        const gic_real t257 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t258 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t259 = m[132] * t258;
-        const gic_real t260 = t229 - y[15] * t258 - t259;
+        const gic_real t257 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(-0.246867347245056);
+        const gic_real t258 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(-0.246867347245056);
+        const gic_real t259 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t258;
+        const gic_real t260 = t229 - y[HMMWV_STATE_OMEGA_X] * t258 - t259;
         const gic_real t261 = t260 - t259;
         const gic_real t262 = R(-0.307086) + t257;
-        const gic_real t263 = y[16] * t258 - y[17] * t262;
-        const gic_real t264 = y[15] * t261 - y[16] * t263 + (rate[15] * t262 - t234);
-        const gic_real t265 = m[138] * t257 - m[132] * t259 + (t17 + t264) + rate[21] * (m[144] * t257);
-        const gic_real t266 = m[132] * t257;
-        const gic_real t267 = t266 + (y[15] * t262 - t238);
+        const gic_real t263 = y[HMMWV_STATE_OMEGA_Y] * t258 - y[HMMWV_STATE_OMEGA_Z] * t262;
+        const gic_real t264 = y[HMMWV_STATE_OMEGA_X] * t261 - y[HMMWV_STATE_OMEGA_Y] * t263 +
+            (rate[HMMWV_STATE_OMEGA_X] * t262 - t234);
+        const gic_real t265 = m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] * t257 - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            t259 + (t17 + t264) + rate[HMMWV_STATE_SPRING_R_R_RATE] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t257);
+        const gic_real t266 = m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t257;
+        const gic_real t267 = t266 + (y[HMMWV_STATE_OMEGA_X] * t262 - t238);
         const gic_real t268 = t266 + t267;
-        const gic_real t269 = y[17] * t263 - y[15] * t268 + (t241 - rate[15] * t258);
-        const gic_real t270 = t29 + t269 - (m[132] * t266 + m[138] * t258) - rate[21] * (m[144] * t258);
-        const gic_real t271 = y[16] * t268 - y[17] * t261 + (rate[16] * t258 - rate[17] * t262);
+        const gic_real t269 = y[HMMWV_STATE_OMEGA_Z] * t263 - y[HMMWV_STATE_OMEGA_X] * t268 + (t241 -
+            rate[HMMWV_STATE_OMEGA_X] * t258);
+        const gic_real t270 = t29 + t269 - (m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] * t266 +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] * t258) - rate[HMMWV_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * t258);
+        const gic_real t271 = y[HMMWV_STATE_OMEGA_Y] * t268 - y[HMMWV_STATE_OMEGA_Z] * t261 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t258 - rate[HMMWV_STATE_OMEGA_Z] * t262);
         const gic_real t272 = t270 * (t31 + t260) + (t35 + t271) * (t37 + t263);
         const gic_real t273 = R(23.965) * (t265 * (t21 + t267) + t272);
-        const gic_real t274 = rate[17] - m[132] * y[16];
-        const gic_real t275 = (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469))) * t274;
-        const gic_real t276 = m[128] * R(0.8938);
-        const gic_real t277 = m[127] * R(0.4469);
-        const gic_real t278 = m[131] * t276 + m[130] * t277;
-        const gic_real t279 = rate[16] + m[132] * y[17];
-        const gic_real t280 = t278 * t274 + (m[128] * t276 + m[127] * t277) * t279;
-        const gic_real t281 = (m[132] + y[15]) * (R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]));
-        const gic_real t282 = y[17] * (t275 + t278 * t279) + (y[16] * t280 + t281);
-        const gic_real t283 = m[230] * R(0.09182100000000004);
-        const gic_real t284 = t283 + m[229] * R(0.08910630000000008);
-        const gic_real t285 = m[233] * R(0.09182100000000004);
-        const gic_real t286 = t285 + m[232] * R(0.08910630000000008);
-        const gic_real t287 = m[234] * t286;
-        const gic_real t288 = m[238] - t287;
-        const gic_real t289 = R(-1.653405) * y[17];
-        const gic_real t290 = m[224] + t286;
-        const gic_real t291 = t288 + (t289 - y[15] * t290);
+        const gic_real t274 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t275 = (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] *
+            R(0.8938)) + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * R(0.4469))) *
+            t274;
+        const gic_real t276 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * R(0.8938);
+        const gic_real t277 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * R(0.4469);
+        const gic_real t278 = m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZZ] * t276 + m[HMMWV_MOTION_LCA_R_R + HMMWV_A_ZY] * t277;
+        const gic_real t279 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t280 = t278 * t274 + (m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YZ] * t276 +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_A_YY] * t277) * t279;
+        const gic_real t281 = (m[HMMWV_MOTION_LCA_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV_MOTION_LCA_R_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_LCA_R_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_R_RATE]));
+        const gic_real t282 = y[HMMWV_STATE_OMEGA_Z] * (t275 + t278 * t279) + (y[HMMWV_STATE_OMEGA_Y] * t280 + t281);
+        /* wheel tire_r_l */
+        const gic_real t283 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t284 = t283 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.08910630000000008);
+        const gic_real t285 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t286 = t285 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.08910630000000008);
+        const gic_real t287 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t286;
+        const gic_real t288 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - t287;
+        const gic_real t289 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t290 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t286;
+        const gic_real t291 = t288 + (t289 - y[HMMWV_STATE_OMEGA_X] * t290);
         const gic_real t292 = t288 + t291;
-        const gic_real t293 = m[223] + t284;
-        const gic_real t294 = y[16] * t290 - y[17] * t293;
-        const gic_real t295 = R(-1.653405) * rate[16];
-        const gic_real t296 = y[15] * t292 - y[16] * t294 + (rate[15] * t293 - t295);
-        const gic_real t297 = m[245] + (m[240] * t284 - m[234] * t287) + (t17 + t296);
-        const gic_real t298 = m[234] * t284;
-        const gic_real t299 = m[239] + t298;
-        const gic_real t300 = R(-1.653405) * y[16];
-        const gic_real t301 = t299 + (y[15] * t293 - t300);
-        const gic_real t302 = (t297 + rate[20] * (m[251] + m[246] * t284)) * (t21 + t301);
+        const gic_real t293 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t284;
+        const gic_real t294 = y[HMMWV_STATE_OMEGA_Y] * t290 - y[HMMWV_STATE_OMEGA_Z] * t293;
+        const gic_real t295 = R(-1.653405) * rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t296 = y[HMMWV_STATE_OMEGA_X] * t292 - y[HMMWV_STATE_OMEGA_Y] * t294 +
+            (rate[HMMWV_STATE_OMEGA_X] * t293 - t295);
+        const gic_real t297 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t284 - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t287) +
+            (t17 + t296);
+        const gic_real t298 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t284;
+        const gic_real t299 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + t298;
+        const gic_real t300 = R(-1.653405) * y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t301 = t299 + (y[HMMWV_STATE_OMEGA_X] * t293 - t300);
+        const gic_real t302 = (t297 + rate[HMMWV_STATE_SPRING_R_L_RATE] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 5] +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t284)) * (t21 + t301);
         const gic_real t303 = t299 + t301;
-        const gic_real t304 = R(-1.653405) * rate[17];
-        const gic_real t305 = y[17] * t294 - y[15] * t303 + (t304 - rate[15] * t290);
-        const gic_real t306 = m[244] - (m[234] * t298 + m[240] * t286) + (t29 + t305);
-        const gic_real t307 = (t306 + rate[20] * (m[250] - m[246] * t286)) * (t31 + t291);
-        const gic_real t308 = y[16] * t303 - y[17] * t292 + (rate[16] * t290 - rate[17] * t293);
+        const gic_real t304 = R(-1.653405) * rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t305 = y[HMMWV_STATE_OMEGA_Z] * t294 - y[HMMWV_STATE_OMEGA_X] * t303 + (t304 -
+            rate[HMMWV_STATE_OMEGA_X] * t290);
+        const gic_real t306 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] * t298 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] * t286) +
+            (t29 + t305);
+        const gic_real t307 = (t306 + rate[HMMWV_STATE_SPRING_R_L_RATE] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 4] -
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * t286)) * (t31 + t291);
+        const gic_real t308 = y[HMMWV_STATE_OMEGA_Y] * t303 - y[HMMWV_STATE_OMEGA_Z] * t292 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t290 - rate[HMMWV_STATE_OMEGA_Z] * t293);
         const gic_real t309 = R(90.555) * (t302 + (t307 + (t35 + t308) * (t37 + t294)));
-        const gic_real t310 = rate[17] - m[234] * y[16];
-        const gic_real t311 = (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(7.58122))) * t310;
-        const gic_real t312 = m[230] * R(4.7728205);
-        const gic_real t313 = m[229] * R(7.58122);
-        const gic_real t314 = m[233] * t312 + m[232] * t313;
-        const gic_real t315 = rate[16] + m[234] * y[17];
-        const gic_real t316 = t314 * t310 + (m[230] * t312 + m[229] * t313) * t315;
-        const gic_real t317 = (m[234] + y[15]) * (R(4.8947505) * (m[240] + rate[15] + m[246] * rate[20]));
-        const gic_real t318 = y[17] * (t311 + t314 * t315) + (y[16] * t316 + t317);
-        const gic_real t319 = m[260] * R(0.09182100000000004);
-        const gic_real t320 = t319 + m[259] * R(-0.08910630000000008);
-        const gic_real t321 = m[263] * R(0.09182100000000004);
-        const gic_real t322 = t321 + m[262] * R(-0.08910630000000008);
-        const gic_real t323 = m[264] * t322;
-        const gic_real t324 = m[268] - t323;
-        const gic_real t325 = m[254] + t322;
-        const gic_real t326 = t324 + (t289 - y[15] * t325);
+        const gic_real t310 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t311 = (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            R(7.58122))) * t310;
+        const gic_real t312 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t313 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(7.58122);
+        const gic_real t314 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZZ] * t312 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] *
+            t313;
+        const gic_real t315 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t316 = t314 * t310 + (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YZ] * t312 +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * t313) * t315;
+        const gic_real t317 = (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_L + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_WHEEL_R_L + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_L_RATE]));
+        const gic_real t318 = y[HMMWV_STATE_OMEGA_Z] * (t311 + t314 * t315) + (y[HMMWV_STATE_OMEGA_Y] * t316 + t317);
+        /* wheel tire_r_r */
+        const gic_real t319 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(0.09182100000000004);
+        const gic_real t320 = t319 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.08910630000000008);
+        const gic_real t321 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * R(0.09182100000000004);
+        const gic_real t322 = t321 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.08910630000000008);
+        const gic_real t323 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t322;
+        const gic_real t324 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - t323;
+        const gic_real t325 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t322;
+        const gic_real t326 = t324 + (t289 - y[HMMWV_STATE_OMEGA_X] * t325);
         const gic_real t327 = t324 + t326;
-        const gic_real t328 = m[253] + t320;
-        const gic_real t329 = y[16] * t325 - y[17] * t328;
-        const gic_real t330 = y[15] * t327 - y[16] * t329 + (rate[15] * t328 - t295);
-        const gic_real t331 = m[275] + (m[270] * t320 - m[264] * t323) + (t17 + t330);
-        const gic_real t332 = m[264] * t320;
-        const gic_real t333 = m[269] + t332;
-        const gic_real t334 = t333 + (y[15] * t328 - t300);
-        const gic_real t335 = (t331 + rate[21] * (m[281] + m[276] * t320)) * (t21 + t334);
+        const gic_real t328 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t320;
+        const gic_real t329 = y[HMMWV_STATE_OMEGA_Y] * t325 - y[HMMWV_STATE_OMEGA_Z] * t328;
+        const gic_real t330 = y[HMMWV_STATE_OMEGA_X] * t327 - y[HMMWV_STATE_OMEGA_Y] * t329 +
+            (rate[HMMWV_STATE_OMEGA_X] * t328 - t295);
+        const gic_real t331 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Z] +
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t320 - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t323) +
+            (t17 + t330);
+        const gic_real t332 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t320;
+        const gic_real t333 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + t332;
+        const gic_real t334 = t333 + (y[HMMWV_STATE_OMEGA_X] * t328 - t300);
+        const gic_real t335 = (t331 + rate[HMMWV_STATE_SPRING_R_R_RATE] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 5] +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t320)) * (t21 + t334);
         const gic_real t336 = t333 + t334;
-        const gic_real t337 = y[17] * t329 - y[15] * t336 + (t304 - rate[15] * t325);
-        const gic_real t338 = m[274] - (m[264] * t332 + m[270] * t322) + (t29 + t337);
-        const gic_real t339 = (t338 + rate[21] * (m[280] - m[276] * t322)) * (t31 + t326);
-        const gic_real t340 = y[16] * t336 - y[17] * t327 + (rate[16] * t325 - rate[17] * t328);
+        const gic_real t337 = y[HMMWV_STATE_OMEGA_Z] * t329 - y[HMMWV_STATE_OMEGA_X] * t336 + (t304 -
+            rate[HMMWV_STATE_OMEGA_X] * t325);
+        const gic_real t338 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ACCELERATION_Y] -
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] * t332 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] * t322) +
+            (t29 + t337);
+        const gic_real t339 = (t338 + rate[HMMWV_STATE_SPRING_R_R_RATE] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 4] -
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * t322)) * (t31 + t326);
+        const gic_real t340 = y[HMMWV_STATE_OMEGA_Y] * t336 - y[HMMWV_STATE_OMEGA_Z] * t327 +
+            (rate[HMMWV_STATE_OMEGA_Y] * t325 - rate[HMMWV_STATE_OMEGA_Z] * t328);
         const gic_real t341 = R(90.555) * (t335 + (t339 + (t35 + t340) * (t37 + t329)));
-        const gic_real t342 = rate[17] - m[264] * y[16];
-        const gic_real t343 = (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(7.58122))) * t342;
-        const gic_real t344 = m[260] * R(4.7728205);
-        const gic_real t345 = m[259] * R(7.58122);
-        const gic_real t346 = m[263] * t344 + m[262] * t345;
-        const gic_real t347 = rate[16] + m[264] * y[17];
-        const gic_real t348 = t346 * t342 + (m[260] * t344 + m[259] * t345) * t347;
-        const gic_real t349 = (m[264] + y[15]) * (R(4.8947505) * (m[270] + rate[15] + m[276] * rate[21]));
-        const gic_real t350 = y[17] * (t343 + t346 * t347) + (y[16] * t348 + t349);
+        const gic_real t342 = rate[HMMWV_STATE_OMEGA_Z] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Y];
+        const gic_real t343 = (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] *
+            R(4.7728205)) + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            R(7.58122))) * t342;
+        const gic_real t344 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * R(4.7728205);
+        const gic_real t345 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(7.58122);
+        const gic_real t346 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZZ] * t344 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] *
+            t345;
+        const gic_real t347 = rate[HMMWV_STATE_OMEGA_Y] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            y[HMMWV_STATE_OMEGA_Z];
+        const gic_real t348 = t346 * t342 + (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YZ] * t344 +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * t345) * t347;
+        const gic_real t349 = (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] + y[HMMWV_STATE_OMEGA_X]) * (R(4.8947505) *
+            (m[HMMWV_MOTION_WHEEL_R_R + HMMWV_ALPHA_X] + rate[HMMWV_STATE_OMEGA_X] +
+            m[HMMWV_MOTION_WHEEL_R_R + HMMWV_S + 0] * rate[HMMWV_STATE_SPRING_R_R_RATE]));
+        const gic_real t350 = y[HMMWV_STATE_OMEGA_Z] * (t343 + t346 * t347) + (y[HMMWV_STATE_OMEGA_Y] * t348 + t349);
         const gic_real t351 = t256 + (t273 + t282) + (t309 + t318) + (t341 + t350);
-        const gic_real t352 = t115 + (m[157] * R(0.12319000000000002) + t116);
-        const gic_real t353 = t108 + (m[154] * R(0.12319000000000002) + t109);
-        const gic_real t354 = m[151] + t352;
+        const gic_real t352 = t115 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_YY] * R(0.12319000000000002) + t116);
+        const gic_real t353 = t108 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_XY] * R(0.12319000000000002) + t109);
+        const gic_real t354 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Y] + t352;
         const gic_real t355 = R(1.653405) + t353;
-        const gic_real t356 = m[167] + (m[162] * t352 - m[163] * t353) + (y[15] * t354 - y[16] * t355);
-        const gic_real t357 = t111 + (m[160] * R(0.12319000000000002) + t112);
-        const gic_real t358 = m[152] + t357;
-        const gic_real t359 = m[166] + (m[164] * t353 - m[162] * t357) + (y[17] * t355 - y[15] * t358);
-        const gic_real t360 = m[163] * t357 - m[164] * t352 + (y[16] * t358 - y[17] * t354);
-        const gic_real t361 = y[14] + (t8 * t356 + (t23 * t359 + t32 * t360));
-        const gic_real t362 = y[13] + (t12 * t356 + (t25 * t359 + t33 * t360));
-        const gic_real t363 = y[0] + (t16 * t358 + (t28 * t354 + t34 * t355));
-        const gic_real t364 = y[1] + (t12 * t358 + (t25 * t354 + t33 * t355));
+        const gic_real t356 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t352 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t353) +
+            (y[HMMWV_STATE_OMEGA_X] * t354 - y[HMMWV_STATE_OMEGA_Y] * t355);
+        const gic_real t357 = t111 + (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_A_ZY] * R(0.12319000000000002) + t112);
+        const gic_real t358 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_C_Z] + t357;
+        const gic_real t359 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t353 - m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_X] * t357) +
+            (y[HMMWV_STATE_OMEGA_Z] * t355 - y[HMMWV_STATE_OMEGA_X] * t358);
+        const gic_real t360 = m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Y] * t357 -
+            m[HMMWV_MOTION_WHEEL_F_L + HMMWV_OMEGA_Z] * t352 + (y[HMMWV_STATE_OMEGA_Y] * t358 - y[HMMWV_STATE_OMEGA_Z] *
+            t354);
+        const gic_real t361 = y[HMMWV_STATE_V_Z] + (t8 * t356 + (t23 * t359 + t32 * t360));
+        const gic_real t362 = y[HMMWV_STATE_V_Y] + (t12 * t356 + (t25 * t359 + t33 * t360));
+        const gic_real t363 = y[HMMWV_STATE_R_X] + (t16 * t358 + (t28 * t354 + t34 * t355));
+        const gic_real t364 = y[HMMWV_STATE_R_Y] + (t12 * t358 + (t25 * t354 + t33 * t355));
         gic_real road365[3];
         if (!hmmwv_road_height(self, time, t363, t364, road365))
             return GIC_ERROR_ROAD;
-        const gic_real t366 = y[12] + (t16 * t356 + (t28 * t359 + t34 * t360));
+        const gic_real t366 = y[HMMWV_STATE_V_X] + (t16 * t356 + (t28 * t359 + t34 * t360));
         const gic_real t367 = t362 * road365[2] + t366 * road365[1] - t361;
-        const gic_real t368 = y[2] + (t8 * t358 + (t23 * t354 + t32 * t355));
+        const gic_real t368 = y[HMMWV_STATE_R_Z] + (t8 * t358 + (t23 * t354 + t32 * t355));
         const gic_real t369 = road365[0] + R(0.4699) - t368;
         const gic_real t370 = GIC_MIN(GIC_MAX(t369 * R(100.0), R(0.0)), R(1.0));
         const gic_real t371 = t367 * ((R(3.0) - (t370 + t370)) * (t370 * t370) * R(500.0));
-        const gic_real t372 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(24780.4));
-        const gic_real t373 = t372 + xd[3] * (xd[3] * R(24780.4)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t374 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t375 = t167 + (m[190] * R(-0.12319000000000002) + t168);
-        const gic_real t376 = m[187] + t374;
+        /* force spring_r_l */
+        const gic_real t372 = xd[HMMWV_X_SPRING_F_L] * (xd[HMMWV_X_SPRING_F_L] * R(17490.8)) + xd[HMMWV_X_SPRING_F_R] *
+            (xd[HMMWV_X_SPRING_F_R] * R(17490.8)) + xd[HMMWV_X_SPRING_R_L] * (xd[HMMWV_X_SPRING_R_L] * R(24780.4));
+        const gic_real t373 = t372 + xd[HMMWV_X_SPRING_R_R] * (xd[HMMWV_X_SPRING_R_R] * R(24780.4)) + xd[HMMWV_X_RACK] *
+            (xd[HMMWV_X_RACK] * R(12000.0));
+        const gic_real t374 = t174 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t375 = t167 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_XY] * R(-0.12319000000000002) + t168);
+        const gic_real t376 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Y] + t374;
         const gic_real t377 = R(1.653405) + t375;
-        const gic_real t378 = m[203] + (m[198] * t374 - m[199] * t375) + (y[15] * t376 - y[16] * t377);
-        const gic_real t379 = t170 + (m[196] * R(-0.12319000000000002) + t171);
-        const gic_real t380 = m[188] + t379;
-        const gic_real t381 = m[202] + (m[200] * t375 - m[198] * t379) + (y[17] * t377 - y[15] * t380);
-        const gic_real t382 = m[199] * t379 - m[200] * t374 + (y[16] * t380 - y[17] * t376);
-        const gic_real t383 = y[14] + (t8 * t378 + (t23 * t381 + t32 * t382));
-        const gic_real t384 = y[13] + (t12 * t378 + (t25 * t381 + t33 * t382));
-        const gic_real t385 = y[0] + (t16 * t380 + (t28 * t376 + t34 * t377));
-        const gic_real t386 = y[1] + (t12 * t380 + (t25 * t376 + t33 * t377));
+        const gic_real t378 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Z] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t374 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t375) +
+            (y[HMMWV_STATE_OMEGA_X] * t376 - y[HMMWV_STATE_OMEGA_Y] * t377);
+        const gic_real t379 = t170 + (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_A_ZY] * R(-0.12319000000000002) + t171);
+        const gic_real t380 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_C_Z] + t379;
+        const gic_real t381 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_VELOCITY_Y] +
+            (m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t375 - m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_X] * t379) +
+            (y[HMMWV_STATE_OMEGA_Z] * t377 - y[HMMWV_STATE_OMEGA_X] * t380);
+        const gic_real t382 = m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Y] * t379 -
+            m[HMMWV_MOTION_WHEEL_F_R + HMMWV_OMEGA_Z] * t374 + (y[HMMWV_STATE_OMEGA_Y] * t380 - y[HMMWV_STATE_OMEGA_Z] *
+            t376);
+        const gic_real t383 = y[HMMWV_STATE_V_Z] + (t8 * t378 + (t23 * t381 + t32 * t382));
+        const gic_real t384 = y[HMMWV_STATE_V_Y] + (t12 * t378 + (t25 * t381 + t33 * t382));
+        const gic_real t385 = y[HMMWV_STATE_R_X] + (t16 * t380 + (t28 * t376 + t34 * t377));
+        const gic_real t386 = y[HMMWV_STATE_R_Y] + (t12 * t380 + (t25 * t376 + t33 * t377));
         gic_real road387[3];
         if (!hmmwv_road_height(self, time, t385, t386, road387))
             return GIC_ERROR_ROAD;
-        const gic_real t388 = y[12] + (t16 * t378 + (t28 * t381 + t34 * t382));
+        const gic_real t388 = y[HMMWV_STATE_V_X] + (t16 * t378 + (t28 * t381 + t34 * t382));
         const gic_real t389 = t384 * road387[2] + t388 * road387[1] - t383;
-        const gic_real t390 = y[2] + (t8 * t380 + (t23 * t376 + t32 * t377));
+        const gic_real t390 = y[HMMWV_STATE_R_Z] + (t8 * t380 + (t23 * t376 + t32 * t377));
         const gic_real t391 = R(0.4699) + road387[0] - t390;
         const gic_real t392 = GIC_MIN(GIC_MAX(R(100.0) * t391, R(0.0)), R(1.0));
         const gic_real t393 = t389 * (R(500.0) * ((R(3.0) - (t392 + t392)) * (t392 * t392)));
-        const gic_real t394 = t361 * GIC_MAX(t371 + t369 * R(283000.0), R(0.0)) - t373 + t383 * GIC_MAX(t393 + R(283000.0) * t391, R(0.0));
-        const gic_real t395 = t283 + m[229] * R(0.12319000000000002);
-        const gic_real t396 = m[223] + t395;
-        const gic_real t397 = m[239] + m[234] * t395 + (y[15] * t396 - t300);
-        const gic_real t398 = t285 + m[232] * R(0.12319000000000002);
-        const gic_real t399 = m[224] + t398;
-        const gic_real t400 = m[238] - m[234] * t398 + (t289 - y[15] * t399);
-        const gic_real t401 = y[16] * t399 - y[17] * t396;
-        const gic_real t402 = y[14] + (t8 * t397 + (t23 * t400 + t32 * t401));
-        const gic_real t403 = y[13] + (t12 * t397 + (t25 * t400 + t33 * t401));
+        const gic_real t394 = t361 * GIC_MAX(t371 + t369 * R(283000.0), R(0.0)) - t373 + t383 * GIC_MAX(t393 +
+            R(283000.0) * t391, R(0.0));
+        const gic_real t395 = t283 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_YY] * R(0.12319000000000002);
+        const gic_real t396 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Y] + t395;
+        const gic_real t397 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t395 + (y[HMMWV_STATE_OMEGA_X] * t396 - t300);
+        const gic_real t398 = t285 + m[HMMWV_MOTION_WHEEL_R_L + HMMWV_A_ZY] * R(0.12319000000000002);
+        const gic_real t399 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_C_Z] + t398;
+        const gic_real t400 = m[HMMWV_MOTION_WHEEL_R_L + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_L + HMMWV_OMEGA_X] *
+            t398 + (t289 - y[HMMWV_STATE_OMEGA_X] * t399);
+        const gic_real t401 = y[HMMWV_STATE_OMEGA_Y] * t399 - y[HMMWV_STATE_OMEGA_Z] * t396;
+        const gic_real t402 = y[HMMWV_STATE_V_Z] + (t8 * t397 + (t23 * t400 + t32 * t401));
+        const gic_real t403 = y[HMMWV_STATE_V_Y] + (t12 * t397 + (t25 * t400 + t33 * t401));
         const gic_real t404 = R(-1.653405) * t34;
         const gic_real t405 = R(-1.653405) * t33;
         gic_real road406[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t16 * t399 + (t28 * t396 + t404)), y[1] + (t12 * t399 + (t25 * t396 + t405)), road406))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t16 * t399 + (t28 * t396 + t404)), y[HMMWV_STATE_R_Y] +
+            (t12 * t399 + (t25 * t396 + t405)), road406))
             return GIC_ERROR_ROAD;
-        const gic_real t407 = y[12] + (t16 * t397 + (t28 * t400 + t34 * t401));
+        const gic_real t407 = y[HMMWV_STATE_V_X] + (t16 * t397 + (t28 * t400 + t34 * t401));
         const gic_real t408 = t403 * road406[2] + t407 * road406[1] - t402;
         const gic_real t409 = R(-1.653405) * t32;
-        const gic_real t410 = R(0.4699) + road406[0] - (y[2] + (t8 * t399 + (t23 * t396 + t409)));
+        const gic_real t410 = R(0.4699) + road406[0] - (y[HMMWV_STATE_R_Z] + (t8 * t399 + (t23 * t396 + t409)));
         const gic_real t411 = GIC_MIN(GIC_MAX(R(100.0) * t410, R(0.0)), R(1.0));
         const gic_real t412 = t408 * (R(500.0) * ((R(3.0) - (t411 + t411)) * (t411 * t411)));
-        const gic_real t413 = t319 + m[259] * R(-0.12319000000000002);
-        const gic_real t414 = m[253] + t413;
-        const gic_real t415 = m[269] + m[264] * t413 + (y[15] * t414 - t300);
-        const gic_real t416 = t321 + m[262] * R(-0.12319000000000002);
-        const gic_real t417 = m[254] + t416;
-        const gic_real t418 = m[268] - m[264] * t416 + (t289 - y[15] * t417);
-        const gic_real t419 = y[16] * t417 - y[17] * t414;
-        const gic_real t420 = y[14] + (t8 * t415 + (t23 * t418 + t32 * t419));
-        const gic_real t421 = y[13] + (t12 * t415 + (t25 * t418 + t33 * t419));
+        const gic_real t413 = t319 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_YY] * R(-0.12319000000000002);
+        const gic_real t414 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Y] + t413;
+        const gic_real t415 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Z] + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t413 + (y[HMMWV_STATE_OMEGA_X] * t414 - t300);
+        const gic_real t416 = t321 + m[HMMWV_MOTION_WHEEL_R_R + HMMWV_A_ZY] * R(-0.12319000000000002);
+        const gic_real t417 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_C_Z] + t416;
+        const gic_real t418 = m[HMMWV_MOTION_WHEEL_R_R + HMMWV_VELOCITY_Y] - m[HMMWV_MOTION_WHEEL_R_R + HMMWV_OMEGA_X] *
+            t416 + (t289 - y[HMMWV_STATE_OMEGA_X] * t417);
+        const gic_real t419 = y[HMMWV_STATE_OMEGA_Y] * t417 - y[HMMWV_STATE_OMEGA_Z] * t414;
+        const gic_real t420 = y[HMMWV_STATE_V_Z] + (t8 * t415 + (t23 * t418 + t32 * t419));
+        const gic_real t421 = y[HMMWV_STATE_V_Y] + (t12 * t415 + (t25 * t418 + t33 * t419));
         gic_real road422[3];
-        if (!hmmwv_road_height(self, time, y[0] + (t16 * t417 + (t404 + t28 * t414)), y[1] + (t12 * t417 + (t405 + t25 * t414)), road422))
+        if (!hmmwv_road_height(self, time, y[HMMWV_STATE_R_X] + (t16 * t417 + (t404 + t28 * t414)), y[HMMWV_STATE_R_Y] +
+            (t12 * t417 + (t405 + t25 * t414)), road422))
             return GIC_ERROR_ROAD;
-        const gic_real t423 = y[12] + (t16 * t415 + (t28 * t418 + t34 * t419));
+        const gic_real t423 = y[HMMWV_STATE_V_X] + (t16 * t415 + (t28 * t418 + t34 * t419));
         const gic_real t424 = t421 * road422[2] + t423 * road422[1] - t420;
-        const gic_real t425 = R(0.4699) + road422[0] - (y[2] + (t8 * t417 + (t409 + t23 * t414)));
+        const gic_real t425 = R(0.4699) + road422[0] - (y[HMMWV_STATE_R_Z] + (t8 * t417 + (t409 + t23 * t414)));
         const gic_real t426 = GIC_MIN(GIC_MAX(R(100.0) * t425, R(0.0)), R(1.0));
         const gic_real t427 = t424 * (R(500.0) * ((R(3.0) - (t426 + t426)) * (t426 * t426)));
-        const gic_real t428 = t394 + t402 * GIC_MAX(t412 + R(283000.0) * t410, R(0.0)) + t420 * GIC_MAX(t427 + R(283000.0) * t425, R(0.0));
+        const gic_real t428 = t394 + t402 * GIC_MAX(t412 + R(283000.0) * t410, R(0.0)) + t420 * GIC_MAX(t427 +
+            R(283000.0) * t425, R(0.0));
         const gic_real t429 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t430 = t429 + (GIC_FABS(t80) + GIC_FABS(t71)) + (GIC_FABS(t106) + GIC_FABS(t97));
         const gic_real t431 = t430 + (GIC_FABS(t166) + GIC_FABS(t144)) + (GIC_FABS(t225) + GIC_FABS(t203));
@@ -5095,28 +6466,28 @@ static GIC_COLD int hmmwv_energy(const hmmwv *self, gic_real time, const gic_rea
         const gic_real t433 = t432 + (GIC_FABS(t318) + GIC_FABS(t309)) + (GIC_FABS(t350) + GIC_FABS(t341));
         const gic_real t434 = t3 + t351;
         const gic_real t435 = t433 + (GIC_FABS(t428) + GIC_FABS(t3));
-        const gic_real t436 = rate[15];
-        const gic_real t437 = rate[16];
-        const gic_real t438 = rate[17];
-        const gic_real t439 = rate[18];
-        const gic_real t440 = rate[19];
-        const gic_real t441 = rate[20];
-        const gic_real t442 = rate[21];
-        const gic_real t443 = rate[22];
-        energy[0] = t434;
-        energy[1] = t428;
-        energy[2] = t435;
-        acc[0] = t436;
-        acc[3] = t35;
-        acc[1] = t437;
-        acc[4] = t29;
-        acc[2] = t438;
-        acc[5] = t17;
-        acc[6] = t439;
-        acc[7] = t440;
-        acc[8] = t441;
-        acc[9] = t442;
-        acc[10] = t443;
+        const gic_real t436 = rate[HMMWV_STATE_OMEGA_X];
+        const gic_real t437 = rate[HMMWV_STATE_OMEGA_Y];
+        const gic_real t438 = rate[HMMWV_STATE_OMEGA_Z];
+        const gic_real t439 = rate[HMMWV_STATE_SPRING_F_L_RATE];
+        const gic_real t440 = rate[HMMWV_STATE_SPRING_F_R_RATE];
+        const gic_real t441 = rate[HMMWV_STATE_SPRING_R_L_RATE];
+        const gic_real t442 = rate[HMMWV_STATE_SPRING_R_R_RATE];
+        const gic_real t443 = rate[HMMWV_STATE_RACK_RATE];
+        energy[HMMWV_ENERGY_RATE] = t434;
+        energy[HMMWV_ENERGY_POWER] = t428;
+        energy[HMMWV_ENERGY_MAGNITUDES] = t435;
+        acc[HMMWV_UNKNOWN_ALPHA_X] = t436;
+        acc[HMMWV_UNKNOWN_ACCELERATION_X] = t35;
+        acc[HMMWV_UNKNOWN_ALPHA_Y] = t437;
+        acc[HMMWV_UNKNOWN_ACCELERATION_Y] = t29;
+        acc[HMMWV_UNKNOWN_ALPHA_Z] = t438;
+        acc[HMMWV_UNKNOWN_ACCELERATION_Z] = t17;
+        acc[HMMWV_UNKNOWN_OF_SPRING_F_L] = t439;
+        acc[HMMWV_UNKNOWN_OF_SPRING_F_R] = t440;
+        acc[HMMWV_UNKNOWN_OF_SPRING_R_L] = t441;
+        acc[HMMWV_UNKNOWN_OF_SPRING_R_R] = t442;
+        acc[HMMWV_UNKNOWN_OF_RACK] = t443;
     }
     return GIC_OK;
 }
@@ -5184,7 +6555,7 @@ GIC_COLD int hmmwv_self_test(hmmwv *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_any_setup(void *self)
 {

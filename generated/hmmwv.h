@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x56fef7d9
+#define HMMWV_H 0x3135796d
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "hmmwv.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "hmmwv.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_ABI = 6,
+    HMMWV_ABI = 7,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_SLOW = 23,
@@ -227,40 +227,49 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[HMMWV_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[HMMWV_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][HMMWV_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][HMMWV_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[HMMWV_STATE_ROOM];
     gic_real input[HMMWV_INPUT_ROOM];
     gic_real output[HMMWV_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (hmmwv_model.parameter_geometric) by hmmwv_setup_with */
+    gic_real parameter[HMMWV_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (hmmwv_model.parameter_geometric) by
+                                                    * hmmwv_setup_with */
     gic_real port[HMMWV_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[HMMWV_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[HMMWV_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(HMMWV_STATE_ROOM, HMMWV_STATES - HMMWV_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_STATE_ROOM, HMMWV_INPUT_ROOM)];
     gic_real x[HMMWV_COORDINATE_ROOM], xd[HMMWV_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * HMMWV_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * HMMWV_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[HMMWV_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_setup(hmmwv *self);
 
-/* The same as if the file had these numbers (HMMWV_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (HMMWV_PARAMETERS) as values of its tunable parameters; self->parameter
+ * will do. */
 int hmmwv_setup_with(hmmwv *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_STATES numbers. rate is
+ * written only on GIC_OK. */
 int hmmwv_rhs(hmmwv *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int hmmwv_step(hmmwv *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -272,19 +281,20 @@ int hmmwv_poses(hmmwv *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_time(const hmmwv *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *hmmwv_status_text(int status);
 const char *hmmwv_status_subset(const hmmwv *self);
 const char *hmmwv_status_state(const hmmwv *self);
 const char *hmmwv_status_condition(const hmmwv *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void hmmwv_snapshot(const hmmwv *self, hmmwv *copy);
 void hmmwv_restore(hmmwv *self, const hmmwv *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int hmmwv_self_test(hmmwv *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

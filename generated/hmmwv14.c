@@ -80,7 +80,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x2658322d
+#if HMMWV14_H != 0xe818cb7b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -141,16 +141,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -170,10 +171,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -198,10 +215,138 @@ typedef struct hmmwv14_links {
     gic_real x[HMMWV14_DEPENDENCE_ROOM], rate[HMMWV14_DEPENDENCE_ROOM], change[HMMWV14_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[HMMWV14_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[HMMWV14_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } hmmwv14_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef HMMWV14_LAYOUT_NAMES
+#define HMMWV14_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    HMMWV14_C_X = 0,
+    HMMWV14_C_Y = 1,
+    HMMWV14_C_Z = 2,
+    HMMWV14_A_XX = 3,
+    HMMWV14_A_XY = 4,
+    HMMWV14_A_XZ = 5,
+    HMMWV14_A_YX = 6,
+    HMMWV14_A_YY = 7,
+    HMMWV14_A_YZ = 8,
+    HMMWV14_A_ZX = 9,
+    HMMWV14_A_ZY = 10,
+    HMMWV14_A_ZZ = 11,
+    HMMWV14_OMEGA_X = 12,
+    HMMWV14_OMEGA_Y = 13,
+    HMMWV14_OMEGA_Z = 14,
+    HMMWV14_VELOCITY_X = 15,
+    HMMWV14_VELOCITY_Y = 16,
+    HMMWV14_VELOCITY_Z = 17,
+    HMMWV14_ALPHA_X = 18,
+    HMMWV14_ALPHA_Y = 19,
+    HMMWV14_ALPHA_Z = 20,
+    HMMWV14_ACCELERATION_X = 21,
+    HMMWV14_ACCELERATION_Y = 22,
+    HMMWV14_ACCELERATION_Z = 23,
+    HMMWV14_S = 24, /* unit velocities, 6 numbers a coordinate */
+    HMMWV14_I_FIRST_X = 0,
+    HMMWV14_I_FIRST_Y = 1,
+    HMMWV14_I_FIRST_Z = 2,
+    HMMWV14_I_SECOND_XX = 3,
+    HMMWV14_I_SECOND_YY = 4,
+    HMMWV14_I_SECOND_ZZ = 5,
+    HMMWV14_I_SECOND_XY = 6,
+    HMMWV14_I_SECOND_XZ = 7,
+    HMMWV14_I_SECOND_YZ = 8,
+    HMMWV14_I_FORCE_X = 9,
+    HMMWV14_I_FORCE_Y = 10,
+    HMMWV14_I_FORCE_Z = 11,
+    HMMWV14_I_MOMENT_X = 12,
+    HMMWV14_I_MOMENT_Y = 13,
+    HMMWV14_I_MOMENT_Z = 14,
+    HMMWV14_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    HMMWV14_MOTION_RACK = 0,
+    HMMWV14_MOTION_LCA_F_L = 30,
+    HMMWV14_MOTION_LCA_F_R = 60,
+    HMMWV14_MOTION_WHEEL_F_L = 186,
+    HMMWV14_MOTION_WHEEL_F_R = 258,
+    HMMWV14_MOTION_LCA_R_L = 90,
+    HMMWV14_MOTION_LCA_R_R = 120,
+    HMMWV14_MOTION_WHEEL_R_L = 324,
+    HMMWV14_MOTION_WHEEL_R_R = 384,
+    HMMWV14_MOTION_UCA_F_L = 150,
+    HMMWV14_MOTION_UCA_F_R = 222,
+    HMMWV14_MOTION_UCA_R_L = 294,
+    HMMWV14_MOTION_UCA_R_R = 354,
+    HMMWV14_INERTIA_RACK = 0,
+    HMMWV14_INERTIA_LCA_F_L = 23,
+    HMMWV14_INERTIA_LCA_F_R = 46,
+    HMMWV14_INERTIA_LCA_R_L = 69,
+    HMMWV14_INERTIA_LCA_R_R = 92,
+    HMMWV14_INERTIA_UCA_F_L = 115,
+    HMMWV14_INERTIA_UCA_F_R = 147,
+    HMMWV14_INERTIA_UCA_R_L = 179,
+    HMMWV14_INERTIA_UCA_R_R = 202,
+    HMMWV14_SUBSET_CHASSIS = 0,
+    HMMWV14_SUBSET_RACK = 1,
+    HMMWV14_SUBSET_LCA_F_L = 2,
+    HMMWV14_SUBSET_LCA_F_R = 3,
+    HMMWV14_SUBSET_LCA_R_L = 4,
+    HMMWV14_SUBSET_LCA_R_R = 5,
+    HMMWV14_SUBSET_UCA_F_L = 6,
+    HMMWV14_SUBSET_UCA_F_R = 7,
+    HMMWV14_SUBSET_UCA_R_L = 8,
+    HMMWV14_SUBSET_UCA_R_R = 9,
+    HMMWV14_X_SPRING_F_L = 0,
+    HMMWV14_X_SPRING_F_R = 1,
+    HMMWV14_X_SPRING_R_L = 2,
+    HMMWV14_X_SPRING_R_R = 3,
+    HMMWV14_X_RACK = 4,
+    HMMWV14_Q_X = 0,
+    HMMWV14_Q_Y = 1,
+    HMMWV14_Q_Z = 2,
+    HMMWV14_Q_P0 = 3,
+    HMMWV14_Q_P1 = 4,
+    HMMWV14_Q_P2 = 5,
+    HMMWV14_Q_P3 = 6,
+    HMMWV14_POSE_CHASSIS = 0,
+    HMMWV14_POSE_RACK = 7,
+    HMMWV14_POSE_LCA_F_L = 14,
+    HMMWV14_POSE_LCA_F_R = 21,
+    HMMWV14_POSE_WHEEL_F_L = 28,
+    HMMWV14_POSE_WHEEL_F_R = 35,
+    HMMWV14_POSE_LCA_R_L = 42,
+    HMMWV14_POSE_LCA_R_R = 49,
+    HMMWV14_POSE_WHEEL_R_L = 56,
+    HMMWV14_POSE_WHEEL_R_R = 63,
+    HMMWV14_POSE_UCA_F_L = 70,
+    HMMWV14_POSE_UCA_F_R = 77,
+    HMMWV14_POSE_UCA_R_L = 84,
+    HMMWV14_POSE_UCA_R_R = 91,
+    HMMWV14_UNKNOWN_ALPHA_X = 0,
+    HMMWV14_UNKNOWN_ALPHA_Y = 1,
+    HMMWV14_UNKNOWN_ALPHA_Z = 2,
+    HMMWV14_UNKNOWN_ACCELERATION_X = 3,
+    HMMWV14_UNKNOWN_ACCELERATION_Y = 4,
+    HMMWV14_UNKNOWN_ACCELERATION_Z = 5,
+    HMMWV14_UNKNOWN_OF_SPRING_F_L = 6,
+    HMMWV14_UNKNOWN_OF_SPRING_F_R = 7,
+    HMMWV14_UNKNOWN_OF_SPRING_R_L = 8,
+    HMMWV14_UNKNOWN_OF_SPRING_R_R = 9,
+    HMMWV14_UNKNOWN_OF_RACK = 10,
+    HMMWV14_ENERGY_RATE = 0,
+    HMMWV14_ENERGY_POWER = 1,
+    HMMWV14_ENERGY_MAGNITUDES = 2,
+    HMMWV14_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real hmmwv14_k_rack[1][1] = {
     { /* rack */
@@ -215,45 +360,46 @@ static const gic_real hmmwv14_k_rack[1][1] = {
 static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[HMMWV14_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[HMMWV14_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[HMMWV14_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[HMMWV14_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[HMMWV14_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[HMMWV14_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[HMMWV14_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[HMMWV14_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[HMMWV14_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[HMMWV14_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[HMMWV14_I_FORCE_Y] = inertia_force_y;
+        inertia[HMMWV14_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[HMMWV14_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[HMMWV14_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -267,17 +413,49 @@ static int hmmwv14_solve_rack(hmmwv14 *self, const gic_real *GIC_RESTRICT k, con
 static GIC_COLD void hmmwv14_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[HMMWV14_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[HMMWV14_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[HMMWV14_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  spring_f_l.arm^2 + spring_f_l.distance^2
+ *    1  (a^2 + b^2 of spring_f_l)
+ *    2  (a^2 + b^2 of spring_f_l) * 0.0001
+ *    3  spring_f_l.a
+ *    4  spring_f_l.b * sign
+ *    5  spring_f_l.a * sign
+ *    6  spring_f_l.b
+ *    7  from arm_f_l.side_b, spring_f_l.point_b, 1 / (a^2 + b^2 of spring_f_l)
+ *    8  1 / (a^2 + b^2 of spring_f_l) * 0.046609
+ *    9  (-0.046609) * 1 / (a^2 + b^2 of spring_f_l)
+ *   10  -arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   11  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   12  (-0.970969) * 1 / (a^2 + b^2 of spring_f_l)
+ *   13  arm_f_l.side_b_z * 1 / (a^2 + b^2 of spring_f_l)
+ *   14  arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   15  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   16  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *   17  spring_f_l.point_a_z
+ *   18  lca_f_l.com_z
+ *   19  lca_f_l.com_y
+ *   20  arm_f_l.point_a_y
+ *   21  arm_f_l.point_a_x * 23.965
+ *   22  scale of the determinant
+ *   23  arm_f_l.point_a_x
+ *   24  spring_f_l.point_b_z
+ *   25  spring_f_l.point_b_y
+ *   26  spring_f_l.point_a_y
+ *   27  scale of spring_f_l
+ */
 static const gic_real hmmwv14_k_lca_f_l[4][28] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
@@ -323,12 +501,13 @@ static const gic_real hmmwv14_k_lca_f_l[4][28] = {
 static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -340,100 +519,105 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
         const gic_real t5 = t3 * k[5] + k[6] * t1;
         const gic_real t6 = t4 * k[7] + t5 * k[8];
         const gic_real t7 = t4 * k[9] + t5 * k[7];
-        const gic_real t8 = t5 * k[10] + t4 * k[11];
-        motion[7] = t8;
-        const gic_real t9 = t5 * k[12] + t4 * k[13];
-        motion[8] = t9;
-        const gic_real t10 = t5 * k[11] + t4 * k[14];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[13] + t4 * k[15];
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[10] + t4 * k[11];
+        motion[HMMWV14_A_YY] = a_yy;
+        const gic_real a_yz = t5 * k[12] + t4 * k[13];
+        motion[HMMWV14_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * k[11] + t4 * k[14];
+        motion[HMMWV14_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[13] + t4 * k[15];
+        motion[HMMWV14_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[16];
         const gic_real t13 = t7 - k[17];
-        const gic_real t14 = t9 * k[18] + t8 * k[19];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * k[18] + a_yy * k[19];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * k[18] + t10 * k[19];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * k[18] + a_zy * k[19];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[20] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * k[21]);
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * k[21]);
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[HMMWV14_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[HMMWV14_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * k[21]);
+        inertia[HMMWV14_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * k[21]);
+        inertia[HMMWV14_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[22] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[HMMWV14_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[HMMWV14_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[HMMWV14_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[HMMWV14_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV14_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[HMMWV14_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[22] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[HMMWV14_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - k[23] * turn[1] + t44);
         const gic_real t52 = k[23] * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[HMMWV14_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[HMMWV14_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[HMMWV14_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(k[21] * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(k[21] * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = k[21] * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - k[21] * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[HMMWV14_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(k[21] * t38);
+        inertia[HMMWV14_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(k[21] * t37);
+        inertia[HMMWV14_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[HMMWV14_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[HMMWV14_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = k[21] * t59 + (t58 - t19 * inertia_force_x);
+        inertia[HMMWV14_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[HMMWV14_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - k[21] * t60;
+        inertia[HMMWV14_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[HMMWV14_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[HMMWV14_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -447,35 +631,82 @@ static int hmmwv14_solve_lca_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, 
 static GIC_COLD void hmmwv14_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = k[24] * motion[HMMWV14_A_ZZ] + k[25] * motion[HMMWV14_A_ZY];
         const gic_real t2 = t1 - k[17];
-        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t3 = k[24] * motion[HMMWV14_A_YZ] + k[25] * motion[HMMWV14_A_YY];
         const gic_real t4 = k[20] + t3 - k[26];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
         const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[HMMWV14_A_ZY] * motion[HMMWV14_A_ZY] +
+            motion[HMMWV14_A_YY] * motion[HMMWV14_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[HMMWV14_A_YZ] + motion[HMMWV14_A_ZY])) +
+            GIC_FABS(motion[HMMWV14_A_YY] - motion[HMMWV14_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[HMMWV14_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[HMMWV14_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[HMMWV14_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[HMMWV14_OMEGA_X] - rate[0] * motion[HMMWV14_S + 0]) / (R(1e-30) + (t12 +
+            t13));
+        const gic_real t15 = t3 * motion[HMMWV14_OMEGA_X];
+        const gic_real t16 = t1 * motion[HMMWV14_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[HMMWV14_ALPHA_X] - motion[HMMWV14_OMEGA_X] * t16) - t4 *
+            (motion[HMMWV14_OMEGA_X] * t15 + t1 * motion[HMMWV14_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[HMMWV14_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
     }
 }
 
+/* Columns, with the names of uca_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.side_a_z
+ *    5  upper_f_l.side_a_x * 0.122504
+ *    6  upper_f_l.axis_a_y
+ *    7  upper_f_l.side_b_z * 1.13382e-08 + 0.994742 * knee_f_l.point_a_y
+ *    8  sign
+ *    9  from upper_f_l.side_b, knee_f_l.point_a, upper_f_l.side_a
+ *   10  upper_f_l.axis_a_y * 0.0651616
+ *   11  0.990234 * (upper_f_l.side_b_z * 1.13382e-08 + 0.994742 * knee_f_l.point_a_y)
+ *   12  from upper_f_l.side_b, knee_f_l.point_a, upper_f_l.side_a
+ *   13  upper_f_l.side_b_z * (-0.217383) - upper_f_l.side_a_x * 0.994742
+ *   14  0.990234 * upper_f_l.side_b_z
+ *   15  (-0.217383) * upper_f_l.third_b_y + upper_f_l.side_a_x * 0.994742
+ *   16  -(0.990234 * upper_f_l.third_b_y)
+ *   17  upper_f_l.side_b_z * 0.976086 - upper_f_l.side_a_z * 0.994742
+ *   18  from upper_f_l.axis_a, upper_f_l.side_a
+ *   19  0.976086 * upper_f_l.third_b_y + upper_f_l.side_a_z * 0.994742
+ *   20  (0.21526 * upper_f_l.side_a_x - 0.966554 * upper_f_l.side_a_z) * (-4.60017)
+ *   21  uca_f_l.com_y
+ *   22  upper_f_l.axis_a_y * 0.0325976
+ *   23  sign * 2.92808
+ *   24  from tierod_f_l.arm, knee_f_l.point_b
+ *   25  (tierod_f_l.arm_y - -knee_f_l.point_b_y * 0.708938) * 46.8451
+ *   26  -knee_f_l.point_b_y * 8.57363
+ *   27  from knee_f_l.point_b, tierod_f_l.arm
+ *   28  tierod_f_l.point_b_y
+ *   29  wheel_f_l.com_y
+ *   30  upper_f_l.side_a_x
+ *   31  -upper_f_l.side_a_x * (-4.60017)
+ *   32  from upper_f_l.side_a
+ *   33  -(upper_f_l.axis_a_y * (-0.217383)) - 0.976086 * -upper_f_l.side_a_x * (-4.60017)
+ *   34  (0.21526 * upper_f_l.side_a_x - 0.966554 * upper_f_l.side_a_z) * (-1.00986)
+ *   35  knee_f_l.point_b_y
+ *   36  knee_f_l.point_a_y
+ *   37  0.21526 * upper_f_l.side_a_x - 0.966554 * upper_f_l.side_a_z
+ *   38  -upper_f_l.side_a_x
+ *   39  -(upper_f_l.axis_a_y * (-0.217383))
+ */
 static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][40] = {
     { /* uca_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4618482),
@@ -506,8 +737,9 @@ static const gic_real hmmwv14_k_uca_f_l_wheel_f_l[2][40] = {
 /* Class 'uca_f_l_wheel_f_l': 12 unknowns of uca_f_l + wheel_f_l, uca_f_r + wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv14_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -516,32 +748,35 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[HMMWV14_A_YY];
+        const gic_real t2 = k[0] * m1[HMMWV14_A_ZY];
+        const gic_real t3 = k[1] + m0[HMMWV14_C_Y];
         const gic_real t4 = t1 + k[2];
+        /* pose, in closed form */
         const gic_real t5 = t2 - R(0.22009100000000004);
-        const gic_real t6 = m1[24] * t2;
-        const gic_real t7 = m1[24] * t1;
-        motion[71] = t7;
-        const gic_real t8 = m1[12] * (m1[12] * t1) + m1[18] * t2;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t6 = m1[HMMWV14_S + 0] * t2;
+        const gic_real s_1_5_2 = m1[HMMWV14_S + 0] * t1;
+        motion[36 + HMMWV14_S + 11] = s_1_5_2;
+        const gic_real t8 = m1[HMMWV14_OMEGA_X] * (m1[HMMWV14_OMEGA_X] * t1) + m1[HMMWV14_ALPHA_X] * t2;
         const gic_real t9 = t4 - k[3];
         const gic_real t10 = R(0.9760863515660297) * t5 + R(-0.02663034899203382);
         const gic_real t11 = R(0.5) * t6;
-        const gic_real t12 = R(0.25) * t7;
+        const gic_real t12 = R(0.25) * s_1_5_2;
         const gic_real t13 = rate[1] * t6;
-        const gic_real t14 = rate[1] * t7;
-        motion[53] = t14;
-        const gic_real t15 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[59] = t15;
+        const gic_real velocity_z_2 = rate[1] * s_1_5_2;
+        motion[36 + HMMWV14_VELOCITY_Z] = velocity_z_2;
+        const gic_real acceleration_z_2 = m1[HMMWV14_ALPHA_X] * t1 - m1[HMMWV14_OMEGA_X] * (m1[HMMWV14_OMEGA_X] * t2);
+        motion[36 + HMMWV14_ACCELERATION_Z] = acceleration_z_2;
         const gic_real t16 = R(0.9902342769914657) * t9 + (k[4] * t5 + k[5]);
-        const gic_real t17 = R(0.5) * (t9 * t9 + (t5 * t5 + R(-0.026228877219560045))) - R(0.06516162806573095) * (k[6] * t9 + (R(0.21526024724178433) * t5 + R(0.11840694444895063)));
-        const gic_real t18 = -t13;
-        motion[52] = t18;
-        const gic_real t19 = -t8;
-        motion[58] = t19;
-        const gic_real t20 = -t6;
-        motion[70] = t20;
+        const gic_real t17 = R(0.5) * (t9 * t9 + (t5 * t5 + R(-0.026228877219560045))) - R(0.06516162806573095) *
+            (k[6] * t9 + (R(0.21526024724178433) * t5 + R(0.11840694444895063)));
+        const gic_real velocity_y_2 = -t13;
+        motion[36 + HMMWV14_VELOCITY_Y] = velocity_y_2;
+        const gic_real acceleration_y_2 = -t8;
+        motion[36 + HMMWV14_ACCELERATION_Y] = acceleration_y_2;
+        const gic_real s_1_4_2 = -t6;
+        motion[36 + HMMWV14_S + 10] = s_1_4_2;
         const gic_real t21 = k[7] * t10 - R(-0.02731899434646525) * t16;
         const gic_real t22 = R(-0.02731899434646525) * t10 + k[7] * t16;
         const gic_real t23 = t21 * t21 + t22 * t22;
@@ -557,21 +792,22 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t29 = k[9] * t28 + (R(0.014026708168106437) + R(-0.01862410816810641) * t27);
         const gic_real t30 = R(0.027052204614805956) * t28 + (k[10] + k[11] * t27);
         const gic_real t31 = k[12] * t28 + (R(0.06298224285030377) + R(0.04204675714969626) * t27);
-        const gic_real t32 = k[13] * t28 + R(-0.20230352269044816) * t27;
-        motion[5] = t32;
-        const gic_real t33 = R(-0.985027387816924) * t28 + k[14] * t27;
-        motion[8] = t33;
-        const gic_real t34 = R(-0.20230352269044816) * t28 + k[15] * t27;
-        motion[4] = t34;
-        const gic_real t35 = k[16] * t28 + R(0.9850273878169241) * t27;
-        motion[7] = t35;
+        const gic_real a_xz = k[13] * t28 + R(-0.20230352269044816) * t27;
+        motion[HMMWV14_A_XZ] = a_xz;
+        const gic_real a_yz = R(-0.985027387816924) * t28 + k[14] * t27;
+        motion[HMMWV14_A_YZ] = a_yz;
+        const gic_real a_xy = R(-0.20230352269044816) * t28 + k[15] * t27;
+        motion[HMMWV14_A_XY] = a_xy;
+        const gic_real a_yy = k[16] * t28 + R(0.9850273878169241) * t27;
+        motion[HMMWV14_A_YY] = a_yy;
         const gic_real t36 = R(0.22009100000000004) + t29;
-        const gic_real t37 = k[17] * t28 + R(0.9740576554432789) * t27;
-        motion[11] = t37;
+        const gic_real a_zz = k[17] * t28 + R(0.9740576554432789) * t27;
+        motion[HMMWV14_A_ZZ] = a_zz;
         const gic_real t38 = k[3] + t30;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t39 = t30 + k[18] * t29;
-        const gic_real t40 = R(0.974057655443279) * t28 + k[19] * t27;
-        motion[10] = t40;
+        const gic_real a_zy = R(0.974057655443279) * t28 + k[19] * t27;
+        motion[HMMWV14_A_ZY] = a_zy;
         const gic_real t41 = R(1.5309008) + t31;
         const gic_real t42 = t2 - t36;
         const gic_real t43 = R(0.05422899999999997) - t36;
@@ -582,41 +818,42 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t48 = R(1.438648) - t41;
         const gic_real t49 = R(1.653405) - t41;
         const gic_real t50 = t41 - R(1.653405);
-        const gic_real t51 = t38 - t46;
-        motion[37] = t51;
+        const gic_real c_y_2 = t38 - t46;
+        motion[36 + HMMWV14_C_Y] = c_y_2;
         const gic_real t52 = t31 + k[20] * t30;
         const gic_real t53 = t36 - t2;
         const gic_real t54 = R(0.5) * t42;
         const gic_real t55 = R(-0.06944310175868001) + t43 * t43 + (t45 * t45 + t48 * t48);
         const gic_real t56 = t49 * t48 + (t42 * t43 + t44 * t45);
-        const gic_real t57 = t41 - t50;
-        motion[36] = t57;
+        const gic_real c_x_2 = t41 - t50;
+        motion[36 + HMMWV14_C_X] = c_x_2;
         const gic_real t58 = R(0.5) * t50;
         const gic_real t59 = R(0.25) * (R(-4.4901656251401265) * t30 - k[18] * t52);
-        const gic_real t60 = t36 - t53;
-        motion[38] = t60;
+        const gic_real c_z_2 = t36 - t53;
+        motion[36 + HMMWV14_C_Z] = c_z_2;
         const gic_real t61 = R(0.25) * t49;
         const gic_real t62 = R(0.25) * t46;
-        const gic_real t63 = k[21] * t34 + (R(0.031507339809937016) + R(8.518978193491379e-06) * t32);
-        const gic_real t64 = k[21] * t35 + (k[22] + R(8.518978193491379e-06) * t33);
-        const gic_real t65 = k[21] * t40 + (R(0.007016966063240429) + R(8.518978193491379e-06) * t37);
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t63 = k[21] * a_xy + (R(0.031507339809937016) + R(8.518978193491379e-06) * a_xz);
+        const gic_real t64 = k[21] * a_yy + (k[22] + R(8.518978193491379e-06) * a_yz);
+        const gic_real t65 = k[21] * a_zy + (R(0.007016966063240429) + R(8.518978193491379e-06) * a_zz);
         const gic_real t66 = R(8.573627050492615) * t56;
         const gic_real t67 = R(0.5) * t55 - R(0.7089382012815334) * t56;
-        const gic_real t68 = R(0.03138) * t33;
-        const gic_real t69 = R(0.03138) + t37 * (R(0.03138) * t37);
+        const gic_real t68 = R(0.03138) * a_yz;
+        const gic_real t69 = R(0.03138) + a_zz * (R(0.03138) * a_zz);
         const gic_real t70 = t43 - t42 * t66;
         const gic_real t71 = t45 - t44 * t66;
         const gic_real t72 = t48 - t49 * t66;
         const gic_real t73 = R(1.5309008) + t63;
-        const gic_real t74 = R(0.03138) * t32;
+        const gic_real t74 = R(0.03138) * a_xz;
         const gic_real t75 = k[3] + t64;
-        const gic_real t76 = R(0.03138) + t33 * t68;
-        const gic_real t77 = t37 * t68;
+        const gic_real t76 = R(0.03138) + a_yz * t68;
+        const gic_real t77 = a_zz * t68;
         const gic_real t78 = R(0.22009100000000004) + t65;
         const gic_real t79 = R(5.813) * t73;
-        const gic_real t80 = R(0.03138) + t32 * t74;
-        const gic_real t81 = t33 * t74;
-        const gic_real t82 = t37 * t74;
+        const gic_real t80 = R(0.03138) + a_xz * t74;
+        const gic_real t81 = a_yz * t74;
+        const gic_real t82 = a_zz * t74;
         const gic_real t83 = R(5.813) * t75;
         const gic_real t84 = t72 * t72 + (t70 * t70 + t71 * t71);
         const gic_real t85 = R(5.813) * t78;
@@ -637,77 +874,78 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t96 = t44 * t93 - t42 * t94;
         const gic_real t97 = t42 * t95 - t49 * t93;
         const gic_real t98 = t49 * t94 - t44 * t95;
-        const gic_real t99 = k[24] * t96 + (R(0.21916659821076717) * t95 + R(-2.8601928491017183) * t49);
-        motion[41] = t99;
-        const gic_real t100 = R(18.07838873614245) * t96 + (k[25] * t95 + k[26] * t49);
-        motion[40] = t100;
-        const gic_real t101 = k[24] * t97 + (R(0.21916659821076717) * t94 + R(-2.8601928491017183) * t44);
-        motion[44] = t101;
-        const gic_real t102 = R(18.07838873614245) * t97 + (k[25] * t94 + k[26] * t44);
-        motion[43] = t102;
-        const gic_real t103 = k[27] * t96 + (R(-6.332169372123424) * t95 + R(0.14982584743276875) * t49);
-        motion[39] = t103;
-        const gic_real t104 = k[27] * t97 + (R(-6.332169372123424) * t94 + R(0.14982584743276875) * t44);
-        motion[42] = t104;
-        const gic_real t105 = k[24] * t98 + (R(0.21916659821076717) * t93 + R(-2.8601928491017183) * t42);
-        motion[47] = t105;
-        const gic_real t106 = R(18.07838873614245) * t98 + (k[25] * t93 + k[26] * t42);
-        motion[46] = t106;
-        const gic_real t107 = k[27] * t98 + (R(-6.332169372123424) * t93 + R(0.14982584743276875) * t42);
-        motion[45] = t107;
-        const gic_real t108 = R(-0.14025880000000002) * t103 + (R(0.10177780000000003) * t99 + k[28] * t100);
-        const gic_real t109 = R(-0.14025880000000002) * t104 + (R(0.10177780000000003) * t101 + k[28] * t102);
-        const gic_real t110 = R(-0.004825999999999997) * t103 + (R(0.09182100000000004) * t99 + k[29] * t100);
-        const gic_real t111 = R(-0.004825999999999997) * t104 + (R(0.09182100000000004) * t101 + k[29] * t102);
-        const gic_real t112 = R(-0.14025880000000002) * t107 + (R(0.10177780000000003) * t105 + k[28] * t106);
-        const gic_real t113 = t108 + (t57 - R(1.438648));
-        const gic_real t114 = R(-0.004825999999999997) * t107 + (R(0.09182100000000004) * t105 + k[29] * t106);
-        const gic_real t115 = t109 + (t51 - t3);
-        const gic_real t116 = t57 + t110;
-        const gic_real t117 = R(2.8083995) * t100;
-        const gic_real t118 = R(2.8083995) * t102;
-        const gic_real t119 = R(0.12192999999999987) * t103;
-        const gic_real t120 = R(0.12192999999999987) * t104;
-        const gic_real t121 = t51 + t111;
-        const gic_real t122 = t107 * (R(0.12192999999999987) * t107) + (R(4.7728205) + t106 * (R(2.8083995) * t106));
-        const gic_real t123 = t112 + (t60 - R(0.05422899999999997));
+        const gic_real a_xz_2 = k[24] * t96 + (R(0.21916659821076717) * t95 + R(-2.8601928491017183) * t49);
+        motion[36 + HMMWV14_A_XZ] = a_xz_2;
+        const gic_real a_xy_2 = R(18.07838873614245) * t96 + (k[25] * t95 + k[26] * t49);
+        motion[36 + HMMWV14_A_XY] = a_xy_2;
+        const gic_real a_yz_2 = k[24] * t97 + (R(0.21916659821076717) * t94 + R(-2.8601928491017183) * t44);
+        motion[36 + HMMWV14_A_YZ] = a_yz_2;
+        const gic_real a_yy_2 = R(18.07838873614245) * t97 + (k[25] * t94 + k[26] * t44);
+        motion[36 + HMMWV14_A_YY] = a_yy_2;
+        const gic_real a_xx_2 = k[27] * t96 + (R(-6.332169372123424) * t95 + R(0.14982584743276875) * t49);
+        motion[36 + HMMWV14_A_XX] = a_xx_2;
+        const gic_real a_yx_2 = k[27] * t97 + (R(-6.332169372123424) * t94 + R(0.14982584743276875) * t44);
+        motion[36 + HMMWV14_A_YX] = a_yx_2;
+        const gic_real a_zz_2 = k[24] * t98 + (R(0.21916659821076717) * t93 + R(-2.8601928491017183) * t42);
+        motion[36 + HMMWV14_A_ZZ] = a_zz_2;
+        const gic_real a_zy_2 = R(18.07838873614245) * t98 + (k[25] * t93 + k[26] * t42);
+        motion[36 + HMMWV14_A_ZY] = a_zy_2;
+        const gic_real a_zx_2 = k[27] * t98 + (R(-6.332169372123424) * t93 + R(0.14982584743276875) * t42);
+        motion[36 + HMMWV14_A_ZX] = a_zx_2;
+        const gic_real t108 = R(-0.14025880000000002) * a_xx_2 + (R(0.10177780000000003) * a_xz_2 + k[28] * a_xy_2);
+        const gic_real t109 = R(-0.14025880000000002) * a_yx_2 + (R(0.10177780000000003) * a_yz_2 + k[28] * a_yy_2);
+        const gic_real t110 = R(-0.004825999999999997) * a_xx_2 + (R(0.09182100000000004) * a_xz_2 + k[29] * a_xy_2);
+        const gic_real t111 = R(-0.004825999999999997) * a_yx_2 + (R(0.09182100000000004) * a_yz_2 + k[29] * a_yy_2);
+        const gic_real t112 = R(-0.14025880000000002) * a_zx_2 + (R(0.10177780000000003) * a_zz_2 + k[28] * a_zy_2);
+        const gic_real t113 = t108 + (c_x_2 - R(1.438648));
+        const gic_real t114 = R(-0.004825999999999997) * a_zx_2 + (R(0.09182100000000004) * a_zz_2 + k[29] * a_zy_2);
+        const gic_real t115 = t109 + (c_y_2 - t3);
+        const gic_real t116 = c_x_2 + t110;
+        const gic_real t117 = R(2.8083995) * a_xy_2;
+        const gic_real t118 = R(2.8083995) * a_yy_2;
+        const gic_real t119 = R(0.12192999999999987) * a_xx_2;
+        const gic_real t120 = R(0.12192999999999987) * a_yx_2;
+        const gic_real t121 = c_y_2 + t111;
+        const gic_real t122 = a_zx_2 * (R(0.12192999999999987) * a_zx_2) + (R(4.7728205) + a_zy_2 * (R(2.8083995) *
+            a_zy_2));
+        const gic_real t123 = t112 + (c_z_2 - R(0.05422899999999997));
         const gic_real t124 = R(4.0) * (t108 * t115 - t109 * t113);
         const gic_real t125 = R(4.0) * t115;
-        const gic_real t126 = t60 + t114;
-        const gic_real t127 = t103 * t119 + (R(4.7728205) + t100 * t117);
-        const gic_real t128 = t104 * t120 + (R(4.7728205) + t102 * t118);
+        const gic_real t126 = c_z_2 + t114;
+        const gic_real t127 = a_xx_2 * t119 + (R(4.7728205) + a_xy_2 * t117);
+        const gic_real t128 = a_yx_2 * t120 + (R(4.7728205) + a_yy_2 * t118);
         const gic_real t129 = R(4.0) * (t112 * t113 - t108 * t123);
         const gic_real t130 = R(4.0) * (t109 * t123 - t112 * t115);
-        const gic_real t131 = R(4.0) * (t6 * t115 - t7 * t123);
+        const gic_real t131 = R(4.0) * (t6 * t115 - s_1_5_2 * t123);
         const gic_real t132 = GIC_SQRT(t124 * t124 + (t44 * t44 + t58 * t58));
-        const gic_real t133 = t102 * t117 + t104 * t119;
-        const gic_real t134 = t106 * t117 + t107 * t119;
-        const gic_real t135 = t106 * t118 + t107 * t120;
+        const gic_real t133 = a_yy_2 * t117 + a_yx_2 * t119;
+        const gic_real t134 = a_zy_2 * t117 + a_zx_2 * t119;
+        const gic_real t135 = a_zy_2 * t118 + a_zx_2 * t120;
         const gic_real t136 = R(90.555) * t116;
         const gic_real t137 = R(90.555) * t121;
         const gic_real t138 = R(90.555) * t126;
-        const gic_real t139 = t133 + (t81 - t75 * t79) - t121 * t136;
-        inertia[6] = t139;
-        const gic_real t140 = t134 + (t82 - t78 * t79) - t126 * t136;
-        inertia[7] = t140;
-        const gic_real t141 = t135 + (t77 - t78 * t83) - t126 * t137;
-        inertia[8] = t141;
+        const gic_real inertia_second_xy = t133 + (t81 - t75 * t79) - t121 * t136;
+        inertia[HMMWV14_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t134 + (t82 - t78 * t79) - t126 * t136;
+        inertia[HMMWV14_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t135 + (t77 - t78 * t83) - t126 * t137;
+        inertia[HMMWV14_I_SECOND_YZ] = inertia_second_yz;
         const gic_real t142 = t121 * t137;
         const gic_real t143 = t116 * t136;
         const gic_real t144 = t126 * t138;
-        const gic_real t145 = t79 + t136;
-        inertia[0] = t145;
-        const gic_real t146 = t83 + t137;
-        inertia[1] = t146;
-        const gic_real t147 = t85 + t138;
-        inertia[2] = t147;
-        const gic_real t148 = t142 + (t143 + (t122 + (t87 + (t69 + t86))));
-        inertia[5] = t148;
-        const gic_real t149 = t144 + (t142 + (t127 + (t88 + (t80 + t87))));
-        inertia[3] = t149;
+        const gic_real inertia_first_x = t79 + t136;
+        inertia[HMMWV14_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = t83 + t137;
+        inertia[HMMWV14_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = t85 + t138;
+        inertia[HMMWV14_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_zz = t142 + (t143 + (t122 + (t87 + (t69 + t86))));
+        inertia[HMMWV14_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t144 + (t142 + (t127 + (t88 + (t80 + t87))));
+        inertia[HMMWV14_I_SECOND_XX] = inertia_second_xx;
         const gic_real t150 = (t44 > GIC_R(0) ? t132 : -t132);
-        const gic_real t151 = t144 + (t143 + (t128 + (t88 + (t76 + t86))));
-        inertia[4] = t151;
+        const gic_real inertia_second_yy = t144 + (t143 + (t128 + (t88 + (t76 + t86))));
+        inertia[HMMWV14_I_SECOND_YY] = inertia_second_yy;
         const gic_real t152 = t44 + t150;
         const gic_real t153 = R(1.0) / -t150;
         const gic_real t154 = R(1.0) / (t150 * t152);
@@ -759,87 +997,91 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t200 = t185 - t183 * t197;
         const gic_real t201 = t186 - t194 * t197;
         const gic_real t202 = R(1.0) / t200;
-        const gic_real t203 = t202 * (t187 - t183 * t198);
-        motion[60] = t203;
-        const gic_real t204 = t202 * (t188 - t183 * t199);
-        motion[66] = t204;
-        const gic_real t205 = t195 * (t190 - t194 * t198 - t201 * t203);
-        motion[61] = t205;
-        const gic_real t206 = t195 * (t201 * t204 + (t189 + t194 * t199));
-        const gic_real t207 = rate[0] * t203 + rate[1] * t204;
-        motion[48] = t207;
-        const gic_real t208 = turn[0] + t207;
-        const gic_real t209 = t184 * t205 + (t175 * t181 - t171 - t191 * t203);
-        const gic_real t210 = t170 - t175 * t180 - t191 * t204 - t184 * t206;
-        const gic_real t211 = rate[0] * t205 - rate[1] * t206;
-        motion[49] = t211;
-        const gic_real t212 = t206 * t110 + (t7 + t204 * t111);
-        const gic_real t213 = t203 * t111 - t205 * t110;
-        const gic_real t214 = -t206;
-        motion[67] = t214;
-        const gic_real t215 = t109 * t207 - t108 * t211;
-        const gic_real t216 = t46 * t207 - t50 * t211;
-        const gic_real t217 = t176 * t209;
-        motion[26] = t217;
-        const gic_real t218 = t207 * t111 - t211 * t110;
-        const gic_real t219 = t176 * t210;
-        motion[32] = t219;
-        const gic_real t220 = turn[1] + t211;
+        const gic_real s_0_0_2 = t202 * (t187 - t183 * t198);
+        motion[36 + HMMWV14_S + 0] = s_0_0_2;
+        const gic_real s_1_0_2 = t202 * (t188 - t183 * t199);
+        motion[36 + HMMWV14_S + 6] = s_1_0_2;
+        const gic_real s_0_1_2 = t195 * (t190 - t194 * t198 - t201 * s_0_0_2);
+        motion[36 + HMMWV14_S + 1] = s_0_1_2;
+        const gic_real t206 = t195 * (t201 * s_1_0_2 + (t189 + t194 * t199));
+        const gic_real omega_x_2 = rate[0] * s_0_0_2 + rate[1] * s_1_0_2;
+        motion[36 + HMMWV14_OMEGA_X] = omega_x_2;
+        const gic_real t208 = turn[0] + omega_x_2;
+        const gic_real t209 = t184 * s_0_1_2 + (t175 * t181 - t171 - t191 * s_0_0_2);
+        const gic_real t210 = t170 - t175 * t180 - t191 * s_1_0_2 - t184 * t206;
+        const gic_real omega_y_2 = rate[0] * s_0_1_2 - rate[1] * t206;
+        motion[36 + HMMWV14_OMEGA_Y] = omega_y_2;
+        const gic_real t212 = t206 * t110 + (s_1_5_2 + s_1_0_2 * t111);
+        const gic_real t213 = s_0_0_2 * t111 - s_0_1_2 * t110;
+        const gic_real s_1_1_2 = -t206;
+        motion[36 + HMMWV14_S + 7] = s_1_1_2;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t215 = t109 * omega_x_2 - t108 * omega_y_2;
+        const gic_real t216 = t46 * omega_x_2 - t50 * omega_y_2;
+        const gic_real s_0_2 = t176 * t209;
+        motion[HMMWV14_S + 2] = s_0_2;
+        const gic_real t218 = omega_x_2 * t111 - omega_y_2 * t110;
+        const gic_real s_1_2 = t176 * t210;
+        motion[HMMWV14_S + 8] = s_1_2;
+        const gic_real t220 = turn[1] + omega_y_2;
         const gic_real t221 = R(90.555) * t213;
         const gic_real t222 = R(90.555) * t212;
-        const gic_real t223 = R(-4.600172533850227) * (R(-2.2469878212142617e-18) * t217 - R(0.9760863515660297) * t217);
-        motion[24] = t223;
-        const gic_real t224 = R(-4.600172533850227) * (R(-2.2469878212142617e-18) * t219 - R(0.9760863515660297) * t219);
-        motion[30] = t224;
-        const gic_real t225 = t172 * t203 - t152 * t159 - t173 * t205 - t162 * t217;
-        const gic_real t226 = t173 * t206 + (t172 * t204 - t152 * t158) - t162 * t219;
-        const gic_real t227 = k[18] * t217;
-        const gic_real t228 = k[18] * t219;
-        const gic_real t229 = rate[0] * t217 + rate[1] * t219;
-        motion[14] = t229;
-        const gic_real t230 = t14 + t215;
-        const gic_real t231 = rate[0] * t223 + rate[1] * t224;
-        motion[12] = t231;
+        const gic_real s_0_0 = R(-4.600172533850227) * (R(-2.2469878212142617e-18) * s_0_2 - R(0.9760863515660297) *
+            s_0_2);
+        motion[HMMWV14_S + 0] = s_0_0;
+        const gic_real s_1_0 = R(-4.600172533850227) * (R(-2.2469878212142617e-18) * s_1_2 - R(0.9760863515660297) *
+            s_1_2);
+        motion[HMMWV14_S + 6] = s_1_0;
+        const gic_real t225 = t172 * s_0_0_2 - t152 * t159 - t173 * s_0_1_2 - t162 * s_0_2;
+        const gic_real t226 = t173 * t206 + (t172 * s_1_0_2 - t152 * t158) - t162 * s_1_2;
+        const gic_real t227 = k[18] * s_0_2;
+        const gic_real t228 = k[18] * s_1_2;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[HMMWV14_OMEGA_Z] = omega_z;
+        const gic_real t230 = velocity_z_2 + t215;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[HMMWV14_OMEGA_X] = omega_x;
         const gic_real t232 = rate[0] * t227 + rate[1] * t228;
-        const gic_real t233 = t14 + t218;
-        const gic_real t234 = t217 * t64 + t227 * t65;
-        const gic_real t235 = t219 * t64 + t228 * t65;
-        const gic_real t236 = t153 * t225;
-        motion[62] = t236;
+        const gic_real t233 = velocity_z_2 + t218;
+        const gic_real t234 = s_0_2 * t64 + t227 * t65;
+        const gic_real t235 = s_1_2 * t64 + t228 * t65;
+        const gic_real s_0_2_2 = t153 * t225;
+        motion[36 + HMMWV14_S + 2] = s_0_2_2;
         const gic_real t237 = t233 + (t233 + (turn[0] * t121 - turn[1] * t116));
-        const gic_real t238 = t153 * t226;
-        motion[68] = t238;
-        const gic_real t239 = R(0.9665541626242249) * t232 + k[6] * t231;
-        const gic_real t240 = k[6] * t229 + R(0.21526024724178433) * t232;
-        const gic_real t241 = R(0.9665541626242249) * t229 - R(0.21526024724178433) * t231;
-        const gic_real t242 = rate[0] * t236 + rate[1] * t238;
-        motion[50] = t242;
-        const gic_real t243 = t30 * t229 + t29 * t232;
-        const gic_real t244 = t31 * t232 + t30 * t231;
-        const gic_real t245 = t31 * t229 - t29 * t231;
-        const gic_real t246 = t232 * t63 + t231 * t64;
-        const gic_real t247 = t229 * t241 + t232 * t239;
-        const gic_real t248 = t231 * t241 - t232 * t240;
-        const gic_real t249 = t112 * t211 - t109 * t242;
-        const gic_real t250 = t108 * t242 - t112 * t207;
-        const gic_real t251 = t8 + t207 * t216 - t229 * t243 - t231 * t244;
-        const gic_real t252 = R(0.9902342769914657) * (t231 * t239 + t229 * t240) + k[30] * t247;
-        const gic_real t253 = t8 * t115 - t15 * t123 - t230 * t230 - t249 * t249;
-        const gic_real t254 = t250 - (m0[16] + t13);
-        const gic_real t255 = t53 * t211 - t46 * t242;
-        const gic_real t256 = t50 * t242 - t53 * t207;
-        const gic_real t257 = t115 * (t242 * t249 - t207 * t215) + t113 * (t211 * t215 - t242 * t250);
+        const gic_real s_1_2_2 = t153 * t226;
+        motion[36 + HMMWV14_S + 8] = s_1_2_2;
+        const gic_real t239 = R(0.9665541626242249) * t232 + k[6] * omega_x;
+        const gic_real t240 = k[6] * omega_z + R(0.21526024724178433) * t232;
+        const gic_real t241 = R(0.9665541626242249) * omega_z - R(0.21526024724178433) * omega_x;
+        const gic_real omega_z_2 = rate[0] * s_0_2_2 + rate[1] * s_1_2_2;
+        motion[36 + HMMWV14_OMEGA_Z] = omega_z_2;
+        const gic_real t243 = t30 * omega_z + t29 * t232;
+        const gic_real t244 = t31 * t232 + t30 * omega_x;
+        const gic_real t245 = t31 * omega_z - t29 * omega_x;
+        const gic_real t246 = t232 * t63 + omega_x * t64;
+        const gic_real t247 = omega_z * t241 + t232 * t239;
+        const gic_real t248 = omega_x * t241 - t232 * t240;
+        const gic_real t249 = t112 * omega_y_2 - t109 * omega_z_2;
+        const gic_real t250 = t108 * omega_z_2 - t112 * omega_x_2;
+        const gic_real t251 = t8 + omega_x_2 * t216 - omega_z * t243 - omega_x * t244;
+        const gic_real t252 = R(0.9902342769914657) * (omega_x * t239 + omega_z * t240) + k[30] * t247;
+        const gic_real t253 = t8 * t115 - acceleration_z_2 * t123 - t230 * t230 - t249 * t249;
+        const gic_real t254 = t250 - (m0[HMMWV14_VELOCITY_Y] + t13);
+        const gic_real t255 = t53 * omega_y_2 - t46 * omega_z_2;
+        const gic_real t256 = t50 * omega_z_2 - t53 * omega_x_2;
+        const gic_real t257 = t115 * (omega_z_2 * t249 - omega_x_2 * t215) + t113 * (omega_y_2 * t215 - omega_z_2 *
+            t250);
         const gic_real t258 = t246 + (t246 + (turn[0] * t75 - turn[1] * t73));
         const gic_real t259 = t252 - k[4] * t248;
-        const gic_real t260 = t242 * t256 - t232 * t244 - (t229 * t245 + t211 * t216);
-        const gic_real t261 = t253 - t254 * t254 - t123 * (t207 * t250 - t211 * t249);
+        const gic_real t260 = omega_z_2 * t256 - t232 * t244 - (omega_z * t245 + omega_y_2 * t216);
+        const gic_real t261 = t253 - t254 * t254 - t123 * (omega_x_2 * t250 - omega_y_2 * t249);
         const gic_real t262 = R(-0.2173831508800009) * t247 - R(0.9760863515660297) * t248 - k[31] * t259;
-        const gic_real t263 = t231 * t245 - (t15 + t232 * t243) + (t211 * t255 - t207 * t256);
-        const gic_real t264 = t242 * t110 - t207 * t114;
-        const gic_real t265 = t211 * t114 - t242 * t111;
-        const gic_real t266 = t229 * t63 - t231 * t65;
-        const gic_real t267 = t229 * t64 + t232 * t65;
-        const gic_real t268 = k[32] * t29 * t262 + (t251 - t242 * t255 - R(-4.600172533850227) * t29 * t259);
+        const gic_real t263 = omega_x * t245 - (acceleration_z_2 + t232 * t243) + (omega_y_2 * t255 - omega_x_2 * t256);
+        const gic_real t264 = omega_z_2 * t110 - omega_x_2 * t114;
+        const gic_real t265 = omega_y_2 * t114 - omega_z_2 * t111;
+        const gic_real t266 = omega_z * t63 - omega_x * t65;
+        const gic_real t267 = omega_z * t64 + t232 * t65;
+        const gic_real t268 = k[32] * t29 * t262 + (t251 - omega_z_2 * t255 - R(-4.600172533850227) * t29 * t259);
         const gic_real t269 = R(-1.0098620328900394) * t29 * t262 + t260;
         const gic_real t270 = R(4.0) * (t261 - t257);
         const gic_real t271 = R(-4.600172533850227) * t30 * t259 + t263 - R(-1.0098620328900394) * t52 * t262;
@@ -848,99 +1090,99 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t274 = turn[1] * t78 - turn[2] * t75 - t267 - t267;
         const gic_real t275 = R(0.5) * t268;
         const gic_real t276 = t264 - t13;
-        const gic_real t277 = t242 * t265 - (turn[0] * t237 + (t8 + t207 * t218));
+        const gic_real t277 = omega_z_2 * t265 - (turn[0] * t237 + (t8 + omega_x_2 * t218));
         const gic_real t278 = t154 * (t58 * t275 + (t152 * t269 + t124 * t270));
         const gic_real t279 = R(0.25) * t271;
         const gic_real t280 = t276 + (t276 + (turn[2] * t116 - turn[0] * t126));
-        const gic_real t281 = t15 + t207 * t264 - t211 * t265 - turn[1] * t272;
-        const gic_real t282 = turn[1] * t258 - (t229 * t266 + t232 * t246) - turn[2] * t273;
+        const gic_real t281 = acceleration_z_2 + omega_x_2 * t264 - omega_y_2 * t265 - turn[1] * t272;
+        const gic_real t282 = turn[1] * t258 - (omega_z * t266 + t232 * t246) - turn[2] * t273;
         const gic_real t283 = turn[1] - t232;
-        const gic_real t284 = turn[2] + t229;
-        const gic_real t285 = turn[2] + t242;
-        const gic_real t286 = turn[0] + t231;
-        const gic_real t287 = turn[2] * t274 - t229 * t267 - t231 * t246 - turn[0] * t258;
+        const gic_real t284 = turn[2] + omega_z;
+        const gic_real t285 = turn[2] + omega_z_2;
+        const gic_real t286 = turn[0] + omega_x;
+        const gic_real t287 = turn[2] * t274 - omega_z * t267 - omega_x * t246 - turn[0] * t258;
         const gic_real t288 = t275 - t58 * t278;
         const gic_real t289 = t270 - t124 * t278;
         const gic_real t290 = t122 * t285 + (t135 * t220 + t134 * t208);
         const gic_real t291 = t135 * t285 + (t128 * t220 + t133 * t208);
         const gic_real t292 = t134 * t285 + (t133 * t220 + t127 * t208);
         const gic_real t293 = t177 * (t175 * t288 + t59 * t279 - t161 * t289);
-        const gic_real t294 = turn[1] * t237 + t211 * t218 - t242 * t264 - turn[2] * t280;
+        const gic_real t294 = turn[1] * t237 + omega_y_2 * t218 - omega_z_2 * t264 - turn[2] * t280;
         const gic_real t295 = t82 * t286 + (t69 * t284 + t77 * t283);
         const gic_real t296 = t81 * t286 + (t77 * t284 + t76 * t283);
         const gic_real t297 = t80 * t286 + (t82 * t284 + t81 * t283);
-        const gic_real t298 = turn[0] * t273 + (t231 * t266 - (turn[1] * t274 + t232 * t267));
+        const gic_real t298 = turn[0] * t273 + (omega_x * t266 - (turn[1] * t274 + t232 * t267));
         const gic_real t299 = t279 - t59 * t293;
         const gic_real t300 = t289 + t161 * t293;
-        const gic_real t301 = t223 * t80 + (t217 * t82 - t227 * t81);
-        const gic_real t302 = t223 * t81 + (t217 * t77 - t227 * t76);
-        const gic_real t303 = t236 * t135 + (t205 * t128 + t203 * t133);
+        const gic_real t301 = s_0_0 * t80 + (s_0_2 * t82 - t227 * t81);
+        const gic_real t302 = s_0_0 * t81 + (s_0_2 * t77 - t227 * t76);
+        const gic_real t303 = s_0_2_2 * t135 + (s_0_1_2 * t128 + s_0_0_2 * t133);
         const gic_real t304 = t196 * (t194 * t299 + t183 * t300);
-        const gic_real t305 = t236 * t122 + (t205 * t135 + t203 * t134);
-        const gic_real t306 = t223 * t82 + (t217 * t69 - t227 * t77);
-        const gic_real t307 = t238 * t110 - (t6 + t204 * t114);
-        const gic_real t308 = t238 * t134 + (t204 * t127 - t206 * t133);
-        const gic_real t309 = t224 * t80 + (t219 * t82 - t228 * t81);
-        const gic_real t310 = t202 * (t300 - t183 * t304);
-        motion[54] = t310;
-        const gic_real t311 = t224 * t81 + (t219 * t77 - t228 * t76);
-        const gic_real t312 = t238 * t135 + (t204 * t133 - t206 * t128);
-        const gic_real t313 = t238 * t122 + (t204 * t134 - t206 * t135);
-        const gic_real t314 = t224 * t82 + (t219 * t69 - t228 * t77);
-        const gic_real t315 = t205 * t114 - t236 * t111;
-        const gic_real t316 = t195 * (t299 - t194 * t304 - t201 * t310);
-        motion[55] = t316;
-        const gic_real t317 = t310 + (turn[1] * t242 - turn[2] * t211);
+        const gic_real t305 = s_0_2_2 * t122 + (s_0_1_2 * t135 + s_0_0_2 * t134);
+        const gic_real t306 = s_0_0 * t82 + (s_0_2 * t69 - t227 * t77);
+        const gic_real t307 = s_1_2_2 * t110 - (t6 + s_1_0_2 * t114);
+        const gic_real t308 = s_1_2_2 * t134 + (s_1_0_2 * t127 - t206 * t133);
+        const gic_real t309 = s_1_0 * t80 + (s_1_2 * t82 - t228 * t81);
+        const gic_real alpha_x_2 = t202 * (t300 - t183 * t304);
+        motion[36 + HMMWV14_ALPHA_X] = alpha_x_2;
+        const gic_real t311 = s_1_0 * t81 + (s_1_2 * t77 - t228 * t76);
+        const gic_real t312 = s_1_2_2 * t135 + (s_1_0_2 * t133 - t206 * t128);
+        const gic_real t313 = s_1_2_2 * t122 + (s_1_0_2 * t134 - t206 * t135);
+        const gic_real t314 = s_1_0 * t82 + (s_1_2 * t69 - t228 * t77);
+        const gic_real t315 = s_0_1_2 * t114 - s_0_2_2 * t111;
+        const gic_real alpha_y_2 = t195 * (t299 - t194 * t304 - t201 * alpha_x_2);
+        motion[36 + HMMWV14_ALPHA_Y] = alpha_y_2;
+        const gic_real t317 = alpha_x_2 + (turn[1] * omega_z_2 - turn[2] * omega_y_2);
         const gic_real t318 = R(5.813) * t234;
-        const gic_real t319 = t217 * t63 - t223 * t65;
-        const gic_real t320 = t236 * t110 - t203 * t114;
-        const gic_real t321 = t227 * t63 + t223 * t64;
-        const gic_real t322 = t236 * t134 + (t205 * t133 + t203 * t127);
+        const gic_real t319 = s_0_2 * t63 - s_0_0 * t65;
+        const gic_real t320 = s_0_2_2 * t110 - s_0_0_2 * t114;
+        const gic_real t321 = t227 * t63 + s_0_0 * t64;
+        const gic_real t322 = s_0_2_2 * t134 + (s_0_1_2 * t133 + s_0_0_2 * t127);
         const gic_real t323 = R(5.813) * t235;
-        const gic_real t324 = t238 * t111 + t206 * t114;
-        const gic_real t325 = t219 * t63 - t224 * t65;
-        const gic_real t326 = t228 * t63 + t224 * t64;
-        const gic_real t327 = t184 * t316 + (t288 - t175 * t293 - t191 * t310);
-        const gic_real t328 = t172 * t310 + (t269 - t152 * t278) - t173 * t316;
-        const gic_real t329 = t310 * t111 + (turn[0] * t280 + t281) - t316 * t110;
-        const gic_real t330 = t316 + (turn[2] * t207 - turn[0] * t242);
-        const gic_real t331 = -t232;
-        motion[13] = t331;
+        const gic_real t324 = s_1_2_2 * t111 + t206 * t114;
+        const gic_real t325 = s_1_2 * t63 - s_1_0 * t65;
+        const gic_real t326 = t228 * t63 + s_1_0 * t64;
+        const gic_real t327 = t184 * alpha_y_2 + (t288 - t175 * t293 - t191 * alpha_x_2);
+        const gic_real t328 = t172 * alpha_x_2 + (t269 - t152 * t278) - t173 * alpha_y_2;
+        const gic_real t329 = alpha_x_2 * t111 + (turn[0] * t280 + t281) - alpha_y_2 * t110;
+        const gic_real t330 = alpha_y_2 + (turn[2] * omega_x_2 - turn[0] * omega_z_2);
+        const gic_real omega_y = -t232;
+        motion[HMMWV14_OMEGA_Y] = omega_y;
         const gic_real t332 = R(90.555) * t315;
-        const gic_real t333 = GIC_FABS(t331) + (GIC_FABS(t229) + (GIC_FABS(t207) + GIC_FABS(t211)));
+        const gic_real t333 = GIC_FABS(omega_y) + (GIC_FABS(omega_z) + (GIC_FABS(omega_x_2) + GIC_FABS(omega_y_2)));
         const gic_real t334 = R(5.813) * t319;
-        const gic_real t335 = t176 * t327;
-        motion[20] = t335;
+        const gic_real alpha_z = t176 * t327;
+        motion[HMMWV14_ALPHA_Z] = alpha_z;
         const gic_real t336 = R(90.555) * t320;
         const gic_real t337 = R(5.813) * t321;
         const gic_real t338 = R(90.555) * t324;
         const gic_real t339 = R(5.813) * t325;
         const gic_real t340 = R(90.555) * t307;
         const gic_real t341 = R(5.813) * t326;
-        const gic_real t342 = t332 - t318;
-        inertia[15] = t342;
-        const gic_real t343 = t262 - k[33] * t335;
-        const gic_real t344 = t153 * (t328 - t162 * t335);
-        motion[56] = t344;
-        const gic_real t345 = t335 - (turn[1] * t231 + turn[0] * t232);
+        const gic_real along_0_force_x = t332 - t318;
+        inertia[HMMWV14_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real t343 = t262 - k[33] * alpha_z;
+        const gic_real alpha_z_2 = t153 * (t328 - t162 * alpha_z);
+        motion[36 + HMMWV14_ALPHA_Z] = alpha_z_2;
+        const gic_real t345 = alpha_z - (turn[1] * omega_x + turn[0] * t232);
         const gic_real t346 = t133 * t330 + (t127 * t317 + (t220 * t290 - t285 * t291));
-        const gic_real t347 = R(-4.600172533850227) * (t259 - R(0.9760863515660297) * t335 - k[34] * t343);
-        motion[18] = t347;
-        const gic_real t348 = R(-1.0098620328900394) * t343;
-        motion[19] = t348;
+        const gic_real alpha_x = R(-4.600172533850227) * (t259 - R(0.9760863515660297) * alpha_z - k[34] * t343);
+        motion[HMMWV14_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = R(-1.0098620328900394) * t343;
+        motion[HMMWV14_ALPHA_Y] = alpha_y;
         const gic_real t349 = t128 * t330 + (t133 * t317 + (t285 * t292 - t208 * t290));
-        const gic_real t350 = R(5.813) * (t348 * t65 + (t282 - t335 * t64));
-        const gic_real t351 = t344 * t110 + (turn[2] * t272 + t277 - t310 * t114);
-        const gic_real t352 = t348 + (turn[2] * t231 - turn[0] * t229);
-        const gic_real t353 = t344 + (turn[0] * t211 - turn[1] * t207);
+        const gic_real t350 = R(5.813) * (alpha_y * t65 + (t282 - alpha_z * t64));
+        const gic_real t351 = alpha_z_2 * t110 + (turn[2] * t272 + t277 - alpha_x_2 * t114);
+        const gic_real t352 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t353 = alpha_z_2 + (turn[0] * omega_y_2 - turn[1] * omega_x_2);
         const gic_real t354 = t135 * t330 + (t134 * t317 + (t208 * t291 - t220 * t292));
-        const gic_real t355 = R(90.555) * (t316 * t114 + t294 - t344 * t111);
-        const gic_real t356 = t347 + (turn[2] * t232 + turn[1] * t229);
+        const gic_real t355 = R(90.555) * (alpha_y_2 * t114 + t294 - alpha_z_2 * t111);
+        const gic_real t356 = alpha_x + (turn[2] * t232 + turn[1] * omega_z);
         const gic_real t357 = t81 * t352 + (t82 * t345 + (t283 * t295 - t284 * t296));
         const gic_real t358 = t76 * t352 + (t77 * t345 + (t284 * t297 - t286 * t295));
         const gic_real t359 = t77 * t352 + (t69 * t345 + (t286 * t296 - t283 * t297));
-        const gic_real t360 = R(5.813) * (t335 * t63 + t287 - t347 * t65);
-        const gic_real t361 = R(5.813) * (t347 * t64 + (t298 - t348 * t63));
+        const gic_real t360 = R(5.813) * (alpha_z * t63 + t287 - alpha_x * t65);
+        const gic_real t361 = R(5.813) * (alpha_x * t64 + (t298 - alpha_y * t63));
         const gic_real t362 = R(90.555) * t329;
         const gic_real t363 = t134 * t353 + t346;
         const gic_real t364 = t135 * t353 + t349;
@@ -955,69 +1197,70 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t373 = t360 * t319 + (t355 * t315 + (t362 * t213 - t350 * t234));
         const gic_real t374 = t360 * t325 + (t362 * t212 - t350 * t235 - t355 * t324);
         const gic_real t375 = t326 * t341 + (t235 * t323 + t212 * t222 - t228 * t311);
-        const gic_real t376 = R(144.12462184390665) * (t150 * t174 * t193 * t200) - ahead[0] * (GIC_FABS(t242) + (GIC_FABS(t231) + t333));
+        const gic_real t376 = R(144.12462184390665) * (t150 * t174 * t193 * t200) - ahead[0] * (GIC_FABS(omega_z_2) +
+            (GIC_FABS(omega_x) + t333));
         const gic_real t377 = t78 * t350 + (t364 - t116 * t362) + (t368 + t126 * t355);
         const gic_real t378 = t116 * t366 - t121 * t355 + (t370 + (t365 - t75 * t350));
-        const gic_real t379 = t75 * t337 + (t322 + (t301 + t121 * t221)) - (t78 * t334 + t126 * t336);
-        inertia[18] = t379;
+        const gic_real along_0_moment_x = t75 * t337 + (t322 + (t301 + t121 * t221)) - (t78 * t334 + t126 * t336);
+        inertia[HMMWV14_I_COORDINATE + 3] = along_0_moment_x;
         const gic_real t380 = t302 - t116 * t221 + (t303 - t78 * t318) - t73 * t337;
         if (!(t376 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t381 = t73 * t334 + (t305 + (t306 + t75 * t318)) + (t116 * t336 - t121 * t332);
-        inertia[20] = t381;
-        const gic_real t382 = t236 * t365 + t205 * t364 + (t203 * t363 + t366 * t320);
-        const gic_real t383 = t75 * t341 + (t308 + (t309 + t121 * t222)) - (t78 * t339 + t126 * t340);
-        inertia[25] = t383;
+        const gic_real along_0_moment_z = t73 * t334 + (t305 + (t306 + t75 * t318)) + (t116 * t336 - t121 * t332);
+        inertia[HMMWV14_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real t382 = s_0_2_2 * t365 + s_0_1_2 * t364 + (s_0_0_2 * t363 + t366 * t320);
+        const gic_real along_1_moment_x = t75 * t341 + (t308 + (t309 + t121 * t222)) - (t78 * t339 + t126 * t340);
+        inertia[HMMWV14_I_COORDINATE + 10] = along_1_moment_x;
         const gic_real t384 = t311 - t116 * t222 + (t312 - t78 * t323) - t73 * t341;
-        const gic_real t385 = t73 * t339 + (t313 + (t314 + t75 * t323)) + (t121 * t338 + t116 * t340);
-        inertia[27] = t385;
-        const gic_real t386 = t238 * t365 + t204 * t363 + (t366 * t307 - t206 * t364);
-        const gic_real t387 = t203 * t322 + (t217 * t306 + t223 * t301) + t369;
-        const gic_real t388 = t319 * t334 + (t236 * t305 + t205 * t303) + (t320 * t336 + t315 * t332);
-        const gic_real t389 = t203 * t308 + (t217 * t314 + t223 * t309) + t371;
-        const gic_real t390 = t319 * t339 + (t236 * t313 + t205 * t312) + (t320 * t340 - t315 * t338);
-        const gic_real t391 = t219 * t314 + t224 * t309 - t206 * t312 + t375;
-        const gic_real t392 = t325 * t339 + (t238 * t313 + t204 * t308) + (t307 * t340 + t324 * t338);
-        const gic_real t393 = t382 + (t217 * t370 + t223 * t367) + (t361 * t321 - t227 * t368 + t373);
-        inertia[21] = t393;
-        const gic_real t394 = t386 + (t219 * t370 + t224 * t367) + (t361 * t326 - t228 * t368 + t374);
-        inertia[28] = t394;
-        const gic_real t395 = t372 - t78 * t360;
-        inertia[12] = t395;
-        const gic_real t396 = t377 - t73 * t361;
-        inertia[13] = t396;
-        const gic_real t397 = t73 * t360 + t378;
-        inertia[14] = t397;
-        const gic_real t398 = t126 * t332 + t380;
-        inertia[19] = t398;
-        const gic_real t399 = t384 - t126 * t338;
-        inertia[26] = t399;
-        const gic_real t400 = -(t323 + t338);
-        inertia[22] = t400;
-        const gic_real t401 = t350 + t355;
-        inertia[9] = t401;
-        const gic_real t402 = t360 + t366;
-        inertia[10] = t402;
-        const gic_real t403 = t361 + t362;
-        inertia[11] = t403;
-        const gic_real t404 = t334 + t336;
-        inertia[16] = t404;
-        const gic_real t405 = t337 + t221;
-        inertia[17] = t405;
-        const gic_real t406 = t339 + t340;
-        inertia[23] = t406;
-        const gic_real t407 = t341 + t222;
-        inertia[24] = t407;
-        const gic_real t408 = t387 + t388;
-        inertia[29] = t408;
-        const gic_real t409 = t389 + t390;
-        inertia[30] = t409;
-        const gic_real t410 = t391 + t392;
-        inertia[31] = t410;
-        const gic_real t411 = -t227;
-        motion[25] = t411;
-        const gic_real t412 = -t228;
-        motion[31] = t412;
+        const gic_real along_1_moment_z = t73 * t339 + (t313 + (t314 + t75 * t323)) + (t121 * t338 + t116 * t340);
+        inertia[HMMWV14_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real t386 = s_1_2_2 * t365 + s_1_0_2 * t363 + (t366 * t307 - t206 * t364);
+        const gic_real t387 = s_0_0_2 * t322 + (s_0_2 * t306 + s_0_0 * t301) + t369;
+        const gic_real t388 = t319 * t334 + (s_0_2_2 * t305 + s_0_1_2 * t303) + (t320 * t336 + t315 * t332);
+        const gic_real t389 = s_0_0_2 * t308 + (s_0_2 * t314 + s_0_0 * t309) + t371;
+        const gic_real t390 = t319 * t339 + (s_0_2_2 * t313 + s_0_1_2 * t312) + (t320 * t340 - t315 * t338);
+        const gic_real t391 = s_1_2 * t314 + s_1_0 * t309 - t206 * t312 + t375;
+        const gic_real t392 = t325 * t339 + (s_1_2_2 * t313 + s_1_0_2 * t308) + (t307 * t340 + t324 * t338);
+        const gic_real along_0_bias = t382 + (s_0_2 * t370 + s_0_0 * t367) + (t361 * t321 - t227 * t368 + t373);
+        inertia[HMMWV14_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_bias = t386 + (s_1_2 * t370 + s_1_0 * t367) + (t361 * t326 - t228 * t368 + t374);
+        inertia[HMMWV14_I_COORDINATE + 13] = along_1_bias;
+        const gic_real inertia_moment_x = t372 - t78 * t360;
+        inertia[HMMWV14_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t377 - t73 * t361;
+        inertia[HMMWV14_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t73 * t360 + t378;
+        inertia[HMMWV14_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_y = t126 * t332 + t380;
+        inertia[HMMWV14_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_1_moment_y = t384 - t126 * t338;
+        inertia[HMMWV14_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_force_x = -(t323 + t338);
+        inertia[HMMWV14_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real inertia_force_x = t350 + t355;
+        inertia[HMMWV14_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_y = t360 + t366;
+        inertia[HMMWV14_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_force_z = t361 + t362;
+        inertia[HMMWV14_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_y = t334 + t336;
+        inertia[HMMWV14_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real along_0_force_z = t337 + t221;
+        inertia[HMMWV14_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_y = t339 + t340;
+        inertia[HMMWV14_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = t341 + t222;
+        inertia[HMMWV14_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real mass_0 = t387 + t388;
+        inertia[HMMWV14_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t389 + t390;
+        inertia[HMMWV14_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t391 + t392;
+        inertia[HMMWV14_I_COORDINATE + 16] = mass_2;
+        const gic_real s_0_1 = -t227;
+        motion[HMMWV14_S + 1] = s_0_1;
+        const gic_real s_1_1 = -t228;
+        motion[HMMWV14_S + 7] = s_1_1;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1028,128 +1271,207 @@ static int hmmwv14_solve_uca_f_l_wheel_f_l(hmmwv14 *self, const gic_real *GIC_RE
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv14_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.33360360000000006) * motion[41] + (k[35] * motion[40] + R(-0.017475200000000024) * motion[39]);
-        const gic_real t2 = R(1.1338201752909144e-08) * motion[5] + (R(0.06298224285030377) + k[36] * motion[4]);
-        const gic_real t3 = R(2.8917913700660266e-17) + GIC_FABS(R(2.928075656552032) * (motion[36] + t1 - (R(1.5309008) + t2)));
-        const gic_real t4 = R(0.33360360000000006) * motion[44] + (k[35] * motion[43] + R(-0.017475200000000024) * motion[42]);
-        const gic_real t5 = R(1.1338201752909144e-08) * motion[8] + (k[10] + k[36] * motion[7]);
-        const gic_real t6 = t3 + GIC_FABS(R(2.928075656552032) * (motion[37] + t4 - (k[3] + t5)));
-        const gic_real t7 = R(0.33360360000000006) * motion[47] + (k[35] * motion[46] + R(-0.017475200000000024) * motion[45]);
-        const gic_real t8 = R(1.1338201752909144e-08) * motion[11] + (R(0.014026708168106437) + k[36] * motion[10]);
-        const gic_real t9 = t6 + GIC_FABS(R(2.928075656552032) * (motion[38] + t7 - (R(0.22009100000000004) + t8)));
-        const gic_real t10 = k[0] * m1[7];
-        const gic_real t11 = t9 + GIC_FABS(R(2.928075656552032) * (motion[36] - R(1.653405))) + GIC_FABS(R(2.928075656552032) * (motion[37] - (t10 + k[2])));
-        const gic_real t12 = k[0] * m1[10];
-        const gic_real t13 = R(0.10177780000000003) * motion[47] + (k[28] * motion[46] + R(-0.14025880000000002) * motion[45]);
-        const gic_real t14 = motion[38] + t13 - R(0.05422899999999997);
-        const gic_real t15 = R(0.10177780000000003) * motion[44] + (k[28] * motion[43] + R(-0.14025880000000002) * motion[42]);
-        const gic_real t16 = motion[37] + t15;
-        const gic_real t17 = k[1] + m0[1];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = R(0.33360360000000006) * motion[36 + HMMWV14_A_XZ] + (k[35] * motion[36 + HMMWV14_A_XY] +
+            R(-0.017475200000000024) * motion[36 + HMMWV14_A_XX]);
+        const gic_real t2 = R(1.1338201752909144e-08) * motion[HMMWV14_A_XZ] + (R(0.06298224285030377) + k[36] *
+            motion[HMMWV14_A_XY]);
+        const gic_real t3 = R(2.8917913700660266e-17) + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_X] + t1 -
+            (R(1.5309008) + t2)));
+        const gic_real t4 = R(0.33360360000000006) * motion[36 + HMMWV14_A_YZ] + (k[35] * motion[36 + HMMWV14_A_YY] +
+            R(-0.017475200000000024) * motion[36 + HMMWV14_A_YX]);
+        const gic_real t5 = R(1.1338201752909144e-08) * motion[HMMWV14_A_YZ] + (k[10] + k[36] * motion[HMMWV14_A_YY]);
+        const gic_real t6 = t3 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_Y] + t4 - (k[3] + t5)));
+        const gic_real t7 = R(0.33360360000000006) * motion[36 + HMMWV14_A_ZZ] + (k[35] * motion[36 + HMMWV14_A_ZY] +
+            R(-0.017475200000000024) * motion[36 + HMMWV14_A_ZX]);
+        const gic_real t8 = R(1.1338201752909144e-08) * motion[HMMWV14_A_ZZ] + (R(0.014026708168106437) + k[36] *
+            motion[HMMWV14_A_ZY]);
+        const gic_real t9 = t6 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_Z] + t7 -
+            (R(0.22009100000000004) + t8)));
+        const gic_real t10 = k[0] * m1[HMMWV14_A_YY];
+        const gic_real t11 = t9 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_X] - R(1.653405))) +
+            GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_Y] - (t10 + k[2])));
+        const gic_real t12 = k[0] * m1[HMMWV14_A_ZY];
+        const gic_real t13 = R(0.10177780000000003) * motion[36 + HMMWV14_A_ZZ] + (k[28] * motion[36 + HMMWV14_A_ZY] +
+            R(-0.14025880000000002) * motion[36 + HMMWV14_A_ZX]);
+        const gic_real t14 = motion[36 + HMMWV14_C_Z] + t13 - R(0.05422899999999997);
+        const gic_real t15 = R(0.10177780000000003) * motion[36 + HMMWV14_A_YZ] + (k[28] * motion[36 + HMMWV14_A_YY] +
+            R(-0.14025880000000002) * motion[36 + HMMWV14_A_YX]);
+        const gic_real t16 = motion[36 + HMMWV14_C_Y] + t15;
+        const gic_real t17 = k[1] + m0[HMMWV14_C_Y];
         const gic_real t18 = t16 - t17;
-        const gic_real t19 = R(0.10177780000000003) * motion[41] + (k[28] * motion[40] + R(-0.14025880000000002) * motion[39]);
-        const gic_real t20 = motion[36] + t19 - R(1.438648);
+        const gic_real t19 = R(0.10177780000000003) * motion[36 + HMMWV14_A_XZ] + (k[28] * motion[36 + HMMWV14_A_XY] +
+            R(-0.14025880000000002) * motion[36 + HMMWV14_A_XX]);
+        const gic_real t20 = motion[36 + HMMWV14_C_X] + t19 - R(1.438648);
         const gic_real t21 = t14 * t14 + (t18 * t18 + t20 * t20) - R(0.14941089924212003);
         const gic_real t22 = (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t14)) * R(0.3415212300824065);
         const gic_real t23 = R(2.0) / (t22 + R(0.12727430698933434));
-        const gic_real t24 = t11 + GIC_FABS(R(2.928075656552032) * (motion[38] - t12)) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
-        const gic_real t26 = GIC_FABS(R(0.21526024724178433) * motion[10] + (k[6] * motion[7] + R(0.9665541626242249) * motion[4]));
-        const gic_real t27 = t24 + GIC_FABS(t25) + t26 + GIC_FABS(k[6] * motion[10] - R(0.21526024724178433) * motion[7] - motion[5]);
-        const gic_real t28 = t27 + GIC_FABS(R(0.21526024724178433) * motion[4] - R(0.9665541626242249) * motion[10] - motion[8]);
-        const gic_real t29 = t28 + GIC_FABS(R(0.9665541626242249) * motion[7] - k[6] * motion[4] - motion[11]);
-        const gic_real t30 = motion[45] * motion[45] + (motion[42] * motion[42] + motion[39] * motion[39]) - R(1.0);
-        const gic_real t31 = motion[46] * motion[46] + (motion[43] * motion[43] + motion[40] * motion[40]) - R(1.0);
-        const gic_real t32 = GIC_FABS(motion[45] * motion[46] + (motion[42] * motion[43] + motion[39] * motion[40]));
-        const gic_real t33 = t29 + GIC_FABS(t30) + GIC_FABS(t31) + t32 + GIC_FABS(motion[42] * motion[46] - motion[43] * motion[45] - motion[41]);
-        const gic_real t34 = t33 + GIC_FABS(motion[40] * motion[45] - motion[39] * motion[46] - motion[44]);
-        const gic_real t35 = t34 + GIC_FABS(motion[39] * motion[43] - motion[40] * motion[42] - motion[47]);
-        const gic_real t36 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[24] + k[37] * motion[25] + R(0.9760863515660297) * motion[26]);
-        const gic_real t37 = R(1.0098620328900394) * (k[38] * motion[24] + R(-0.9902342769914658) * motion[25] + k[39] * motion[26]);
-        const gic_real t38 = t5 * motion[26] - t8 * motion[25] + t7 * motion[61] - t4 * motion[62];
+        const gic_real t24 = t11 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_C_Z] - t12)) + GIC_FABS(R(0.5) *
+            t21 * t23);
+        const gic_real t25 = motion[HMMWV14_A_ZY] * motion[HMMWV14_A_ZY] + (motion[HMMWV14_A_YY] *
+            motion[HMMWV14_A_YY] + motion[HMMWV14_A_XY] * motion[HMMWV14_A_XY]) - R(1.0);
+        const gic_real t26 = GIC_FABS(R(0.21526024724178433) * motion[HMMWV14_A_ZY] + (k[6] * motion[HMMWV14_A_YY] +
+            R(0.9665541626242249) * motion[HMMWV14_A_XY]));
+        const gic_real t27 = t24 + GIC_FABS(t25) + t26 + GIC_FABS(k[6] * motion[HMMWV14_A_ZY] - R(0.21526024724178433) *
+            motion[HMMWV14_A_YY] - motion[HMMWV14_A_XZ]);
+        const gic_real t28 = t27 + GIC_FABS(R(0.21526024724178433) * motion[HMMWV14_A_XY] - R(0.9665541626242249) *
+            motion[HMMWV14_A_ZY] - motion[HMMWV14_A_YZ]);
+        const gic_real t29 = t28 + GIC_FABS(R(0.9665541626242249) * motion[HMMWV14_A_YY] - k[6] * motion[HMMWV14_A_XY] -
+            motion[HMMWV14_A_ZZ]);
+        const gic_real t30 = motion[36 + HMMWV14_A_ZX] * motion[36 + HMMWV14_A_ZX] + (motion[36 + HMMWV14_A_YX] *
+            motion[36 + HMMWV14_A_YX] + motion[36 + HMMWV14_A_XX] * motion[36 + HMMWV14_A_XX]) - R(1.0);
+        const gic_real t31 = motion[36 + HMMWV14_A_ZY] * motion[36 + HMMWV14_A_ZY] + (motion[36 + HMMWV14_A_YY] *
+            motion[36 + HMMWV14_A_YY] + motion[36 + HMMWV14_A_XY] * motion[36 + HMMWV14_A_XY]) - R(1.0);
+        const gic_real t32 = GIC_FABS(motion[36 + HMMWV14_A_ZX] * motion[36 + HMMWV14_A_ZY] +
+            (motion[36 + HMMWV14_A_YX] * motion[36 + HMMWV14_A_YY] + motion[36 + HMMWV14_A_XX] *
+            motion[36 + HMMWV14_A_XY]));
+        const gic_real t33 = t29 + GIC_FABS(t30) + GIC_FABS(t31) + t32 + GIC_FABS(motion[36 + HMMWV14_A_YX] *
+            motion[36 + HMMWV14_A_ZY] - motion[36 + HMMWV14_A_YY] * motion[36 + HMMWV14_A_ZX] -
+            motion[36 + HMMWV14_A_XZ]);
+        const gic_real t34 = t33 + GIC_FABS(motion[36 + HMMWV14_A_XY] * motion[36 + HMMWV14_A_ZX] -
+            motion[36 + HMMWV14_A_XX] * motion[36 + HMMWV14_A_ZY] - motion[36 + HMMWV14_A_YZ]);
+        const gic_real t35 = t34 + GIC_FABS(motion[36 + HMMWV14_A_XX] * motion[36 + HMMWV14_A_YY] -
+            motion[36 + HMMWV14_A_XY] * motion[36 + HMMWV14_A_YX] - motion[36 + HMMWV14_A_ZZ]);
+        const gic_real t36 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[HMMWV14_S + 0] + k[37] *
+            motion[HMMWV14_S + 1] + R(0.9760863515660297) * motion[HMMWV14_S + 2]);
+        const gic_real t37 = R(1.0098620328900394) * (k[38] * motion[HMMWV14_S + 0] + R(-0.9902342769914658) *
+            motion[HMMWV14_S + 1] + k[39] * motion[HMMWV14_S + 2]);
+        const gic_real t38 = t5 * motion[HMMWV14_S + 2] - t8 * motion[HMMWV14_S + 1] + t7 * motion[36 + HMMWV14_S + 1] -
+            t4 * motion[36 + HMMWV14_S + 2];
         const gic_real t39 = GIC_FABS(t36) + GIC_FABS(t37) + GIC_FABS(R(2.928075656552032) * t38);
-        const gic_real t40 = t8 * motion[24] - t2 * motion[26] - t7 * motion[60] + t1 * motion[62];
-        const gic_real t41 = t2 * motion[25] - t5 * motion[24] + t4 * motion[60] - t1 * motion[61];
+        const gic_real t40 = t8 * motion[HMMWV14_S + 0] - t2 * motion[HMMWV14_S + 2] - t7 * motion[36 + HMMWV14_S + 0] +
+            t1 * motion[36 + HMMWV14_S + 2];
+        const gic_real t41 = t2 * motion[HMMWV14_S + 1] - t5 * motion[HMMWV14_S + 0] + t4 * motion[36 + HMMWV14_S + 0] -
+            t1 * motion[36 + HMMWV14_S + 1];
         const gic_real t42 = t39 + GIC_FABS(R(2.928075656552032) * t40) + GIC_FABS(R(2.928075656552032) * t41);
         const gic_real t43 = t15 * t14 - t13 * t18;
         const gic_real t44 = t13 * t20 - t19 * t14;
         const gic_real t45 = t19 * t18 - t15 * t20;
-        const gic_real t46 = t17 - t16 + t43 * motion[60] + t44 * motion[61] + t45 * motion[62];
-        const gic_real t47 = GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]) + (GIC_FABS(motion[60]) + GIC_FABS(motion[61]) + GIC_FABS(motion[62]));
+        const gic_real t46 = t17 - t16 + t43 * motion[36 + HMMWV14_S + 0] + t44 * motion[36 + HMMWV14_S + 1] + t45 *
+            motion[36 + HMMWV14_S + 2];
+        const gic_real t47 = GIC_FABS(motion[HMMWV14_S + 0]) + GIC_FABS(motion[HMMWV14_S + 1]) +
+            GIC_FABS(motion[HMMWV14_S + 2]) + (GIC_FABS(motion[36 + HMMWV14_S + 0]) +
+            GIC_FABS(motion[36 + HMMWV14_S + 1]) + GIC_FABS(motion[36 + HMMWV14_S + 2]));
         const gic_real t48 = R(2.928075656552032) + t47;
-        const gic_real t49 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[30] + k[37] * motion[31] + R(0.9760863515660297) * motion[32]);
-        const gic_real t50 = R(1.0098620328900394) * (k[38] * motion[30] + R(-0.9902342769914658) * motion[31] + k[39] * motion[32]);
-        const gic_real t51 = t5 * motion[32] - t8 * motion[31] + t7 * motion[67] - t4 * motion[68];
+        const gic_real t49 = R(1.0244995213749308) * (R(-0.2173831508800009) * motion[HMMWV14_S + 6] + k[37] *
+            motion[HMMWV14_S + 7] + R(0.9760863515660297) * motion[HMMWV14_S + 8]);
+        const gic_real t50 = R(1.0098620328900394) * (k[38] * motion[HMMWV14_S + 6] + R(-0.9902342769914658) *
+            motion[HMMWV14_S + 7] + k[39] * motion[HMMWV14_S + 8]);
+        const gic_real t51 = t5 * motion[HMMWV14_S + 8] - t8 * motion[HMMWV14_S + 7] + t7 * motion[36 + HMMWV14_S + 7] -
+            t4 * motion[36 + HMMWV14_S + 8];
         const gic_real t52 = GIC_FABS(t49) + GIC_FABS(t50) + GIC_FABS(R(2.928075656552032) * t51);
-        const gic_real t53 = t8 * motion[30] - t2 * motion[32] - t7 * motion[66] + t1 * motion[68];
-        const gic_real t54 = t2 * motion[31] - t5 * motion[30] + t4 * motion[66] - t1 * motion[67];
-        const gic_real t55 = t52 + GIC_FABS(R(2.928075656552032) * (motion[70] + t53)) + GIC_FABS(R(2.928075656552032) * (motion[71] + t54));
-        const gic_real t56 = t55 + GIC_FABS(R(2.928075656552032) * (m1[24] * t12 + motion[70])) + GIC_FABS(R(2.928075656552032) * (motion[71] - m1[24] * t10));
-        const gic_real t57 = t43 * motion[66] + t44 * motion[67] + t45 * motion[68] + t18 * motion[70];
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[70]) + GIC_FABS(motion[71])) + (GIC_FABS(motion[66]) + GIC_FABS(motion[67]) + GIC_FABS(motion[68]));
-        const gic_real t59 = GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]) + t58;
-        const gic_real t60 = t59 + GIC_FABS(m1[24]);
-        const gic_real t61 = (t56 + GIC_FABS(t23 * (t57 + t14 * motion[71]))) / (R(1e-30) + t60);
+        const gic_real t53 = t8 * motion[HMMWV14_S + 6] - t2 * motion[HMMWV14_S + 8] - t7 * motion[36 + HMMWV14_S + 6] +
+            t1 * motion[36 + HMMWV14_S + 8];
+        const gic_real t54 = t2 * motion[HMMWV14_S + 7] - t5 * motion[HMMWV14_S + 6] + t4 * motion[36 + HMMWV14_S + 6] -
+            t1 * motion[36 + HMMWV14_S + 7];
+        const gic_real t55 = t52 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_S + 10] + t53)) +
+            GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_S + 11] + t54));
+        const gic_real t56 = t55 + GIC_FABS(R(2.928075656552032) * (m1[HMMWV14_S + 0] * t12 +
+            motion[36 + HMMWV14_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_S + 11] -
+            m1[HMMWV14_S + 0] * t10));
+        const gic_real t57 = t43 * motion[36 + HMMWV14_S + 6] + t44 * motion[36 + HMMWV14_S + 7] + t45 *
+            motion[36 + HMMWV14_S + 8] + t18 * motion[36 + HMMWV14_S + 10];
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[36 + HMMWV14_S + 10]) +
+            GIC_FABS(motion[36 + HMMWV14_S + 11])) + (GIC_FABS(motion[36 + HMMWV14_S + 6]) +
+            GIC_FABS(motion[36 + HMMWV14_S + 7]) + GIC_FABS(motion[36 + HMMWV14_S + 8]));
+        const gic_real t59 = GIC_FABS(motion[HMMWV14_S + 6]) + GIC_FABS(motion[HMMWV14_S + 7]) +
+            GIC_FABS(motion[HMMWV14_S + 8]) + t58;
+        const gic_real t60 = t59 + GIC_FABS(m1[HMMWV14_S + 0]);
+        const gic_real t61 = (t56 + GIC_FABS(t23 * (t57 + t14 * motion[36 + HMMWV14_S + 11]))) / (R(1e-30) + t60);
         const gic_real t62 = (t42 + GIC_FABS(t23 * t46)) / (t48 + R(1e-30)) + t61;
-        const gic_real t63 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t64 = t63 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t65 = t64 + GIC_FABS(motion[48] - rate[0] * motion[60] - rate[1] * motion[66]);
-        const gic_real t66 = t65 + GIC_FABS(motion[49] - rate[0] * motion[61] - rate[1] * motion[67]);
-        const gic_real t67 = t66 + GIC_FABS(motion[50] - rate[0] * motion[62] - rate[1] * motion[68]);
-        const gic_real t68 = t67 + GIC_FABS(R(2.928075656552032) * (motion[52] - rate[1] * motion[70])) + GIC_FABS(R(2.928075656552032) * (motion[53] - rate[1] * motion[71]));
-        const gic_real t69 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
-        const gic_real t70 = R(2.928075656552032) * (GIC_FABS(motion[52]) + GIC_FABS(motion[53]));
-        const gic_real t71 = GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]);
+        const gic_real t63 = GIC_FABS(motion[HMMWV14_OMEGA_X] - rate[0] * motion[HMMWV14_S + 0] - rate[1] *
+            motion[HMMWV14_S + 6]) + GIC_FABS(motion[HMMWV14_OMEGA_Y] - rate[0] * motion[HMMWV14_S + 1] - rate[1] *
+            motion[HMMWV14_S + 7]);
+        const gic_real t64 = t63 + GIC_FABS(motion[HMMWV14_OMEGA_Z] - rate[0] * motion[HMMWV14_S + 2] - rate[1] *
+            motion[HMMWV14_S + 8]);
+        const gic_real t65 = t64 + GIC_FABS(motion[36 + HMMWV14_OMEGA_X] - rate[0] * motion[36 + HMMWV14_S + 0] -
+            rate[1] * motion[36 + HMMWV14_S + 6]);
+        const gic_real t66 = t65 + GIC_FABS(motion[36 + HMMWV14_OMEGA_Y] - rate[0] * motion[36 + HMMWV14_S + 1] -
+            rate[1] * motion[36 + HMMWV14_S + 7]);
+        const gic_real t67 = t66 + GIC_FABS(motion[36 + HMMWV14_OMEGA_Z] - rate[0] * motion[36 + HMMWV14_S + 2] -
+            rate[1] * motion[36 + HMMWV14_S + 8]);
+        const gic_real t68 = t67 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_VELOCITY_Y] - rate[1] *
+            motion[36 + HMMWV14_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_VELOCITY_Z] - rate[1] *
+            motion[36 + HMMWV14_S + 11]));
+        const gic_real t69 = GIC_FABS(motion[HMMWV14_OMEGA_X]) + GIC_FABS(motion[HMMWV14_OMEGA_Y]) +
+            GIC_FABS(motion[HMMWV14_OMEGA_Z]);
+        const gic_real t70 = R(2.928075656552032) * (GIC_FABS(motion[36 + HMMWV14_VELOCITY_Y]) +
+            GIC_FABS(motion[36 + HMMWV14_VELOCITY_Z]));
+        const gic_real t71 = GIC_FABS(motion[36 + HMMWV14_OMEGA_X]) + GIC_FABS(motion[36 + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(motion[36 + HMMWV14_OMEGA_Z]);
         const gic_real t72 = t48 * GIC_FABS(rate[0]);
         const gic_real t73 = t60 * GIC_FABS(rate[1]);
         const gic_real t74 = t68 / (R(1e-30) + (t69 + (t70 + t71) + t72 + t73));
-        const gic_real t75 = R(0.9665541626242249) * motion[14] - R(0.21526024724178433) * motion[12];
-        const gic_real t76 = R(0.21526024724178433) * motion[13] - k[6] * motion[14];
-        const gic_real t77 = motion[12] * t75 - motion[13] * t76 + (k[6] * motion[18] - R(0.9665541626242249) * motion[19]);
-        const gic_real t78 = k[6] * motion[12] - R(0.9665541626242249) * motion[13];
-        const gic_real t79 = motion[14] * t76 - motion[12] * t78 + (R(0.9665541626242249) * motion[20] - R(0.21526024724178433) * motion[18]);
-        const gic_real t80 = motion[13] * t78 - motion[14] * t75 + (R(0.21526024724178433) * motion[19] - k[6] * motion[20]);
+        const gic_real t75 = R(0.9665541626242249) * motion[HMMWV14_OMEGA_Z] - R(0.21526024724178433) *
+            motion[HMMWV14_OMEGA_X];
+        const gic_real t76 = R(0.21526024724178433) * motion[HMMWV14_OMEGA_Y] - k[6] * motion[HMMWV14_OMEGA_Z];
+        const gic_real t77 = motion[HMMWV14_OMEGA_X] * t75 - motion[HMMWV14_OMEGA_Y] * t76 + (k[6] *
+            motion[HMMWV14_ALPHA_X] - R(0.9665541626242249) * motion[HMMWV14_ALPHA_Y]);
+        const gic_real t78 = k[6] * motion[HMMWV14_OMEGA_X] - R(0.9665541626242249) * motion[HMMWV14_OMEGA_Y];
+        const gic_real t79 = motion[HMMWV14_OMEGA_Z] * t76 - motion[HMMWV14_OMEGA_X] * t78 + (R(0.9665541626242249) *
+            motion[HMMWV14_ALPHA_Z] - R(0.21526024724178433) * motion[HMMWV14_ALPHA_X]);
+        const gic_real t80 = motion[HMMWV14_OMEGA_Y] * t78 - motion[HMMWV14_OMEGA_Z] * t75 + (R(0.21526024724178433) *
+            motion[HMMWV14_ALPHA_Y] - k[6] * motion[HMMWV14_ALPHA_Z]);
         const gic_real t81 = (k[4] * t77 + (R(0.9902342769914657) * t79 + k[30] * t80)) * R(1.0244995213749308);
-        const gic_real t82 = GIC_FABS(t81) + GIC_FABS((R(0.9760863515660297) * t77 + R(-0.2173831508800009) * t80) * R(1.0098620328900394));
-        const gic_real t83 = t4 * motion[48] - t1 * motion[49];
-        const gic_real t84 = t1 * motion[50] - t7 * motion[48];
-        const gic_real t85 = motion[49] * t83 - motion[50] * t84 + (t7 * motion[55] - t4 * motion[56]);
-        const gic_real t86 = t5 * motion[12] - t2 * motion[13];
-        const gic_real t87 = t2 * motion[14] - t8 * motion[12];
-        const gic_real t88 = motion[13] * t86 - motion[14] * t87 + (t8 * motion[19] - t5 * motion[20]);
-        const gic_real t89 = t7 * motion[49] - t4 * motion[50];
-        const gic_real t90 = motion[50] * t89 - motion[48] * t83 + (t1 * motion[56] - t7 * motion[54]);
-        const gic_real t91 = t8 * motion[13] - t5 * motion[14];
-        const gic_real t92 = motion[14] * t91 - motion[12] * t86 + (t2 * motion[20] - t8 * motion[18]);
-        const gic_real t93 = t82 + GIC_FABS(R(2.928075656552032) * (t85 - t88)) + GIC_FABS(R(2.928075656552032) * (motion[58] + t90 - t92));
-        const gic_real t94 = motion[48] * t84 - motion[49] * t89 + (t4 * motion[54] - t1 * motion[55]);
-        const gic_real t95 = motion[12] * t87 - motion[13] * t91 + (t5 * motion[18] - t2 * motion[19]);
-        const gic_real t96 = R(2.928075656552032) * (m1[12] * (m1[12] * t10) + m1[18] * t12 + motion[58]);
-        const gic_real t97 = t93 + GIC_FABS(R(2.928075656552032) * (motion[59] + t94 - t95)) + GIC_FABS(t96);
-        const gic_real t98 = R(2.928075656552032) * (motion[59] - (m1[18] * t10 - m1[12] * (m1[12] * t12)));
-        const gic_real t99 = t15 * motion[48] - t19 * motion[49];
-        const gic_real t100 = motion[53] + t99;
-        const gic_real t101 = t19 * motion[50] - t13 * motion[48];
-        const gic_real t102 = motion[52] + t101 - m0[16];
-        const gic_real t103 = t13 * motion[49] - t15 * motion[50];
-        const gic_real t104 = motion[48] * t101 - motion[49] * t103 + (t15 * motion[54] - t19 * motion[55]);
-        const gic_real t105 = motion[50] * t103 - motion[48] * t99 + (t19 * motion[56] - t13 * motion[54]);
-        const gic_real t106 = motion[49] * t99 - motion[50] * t101 + (t13 * motion[55] - t15 * motion[56]);
-        const gic_real t107 = t14 * (motion[59] + t104) + (t18 * (motion[58] + t105) + t20 * t106);
+        const gic_real t82 = GIC_FABS(t81) + GIC_FABS((R(0.9760863515660297) * t77 + R(-0.2173831508800009) * t80) *
+            R(1.0098620328900394));
+        const gic_real t83 = t4 * motion[36 + HMMWV14_OMEGA_X] - t1 * motion[36 + HMMWV14_OMEGA_Y];
+        const gic_real t84 = t1 * motion[36 + HMMWV14_OMEGA_Z] - t7 * motion[36 + HMMWV14_OMEGA_X];
+        const gic_real t85 = motion[36 + HMMWV14_OMEGA_Y] * t83 - motion[36 + HMMWV14_OMEGA_Z] * t84 + (t7 *
+            motion[36 + HMMWV14_ALPHA_Y] - t4 * motion[36 + HMMWV14_ALPHA_Z]);
+        const gic_real t86 = t5 * motion[HMMWV14_OMEGA_X] - t2 * motion[HMMWV14_OMEGA_Y];
+        const gic_real t87 = t2 * motion[HMMWV14_OMEGA_Z] - t8 * motion[HMMWV14_OMEGA_X];
+        const gic_real t88 = motion[HMMWV14_OMEGA_Y] * t86 - motion[HMMWV14_OMEGA_Z] * t87 + (t8 *
+            motion[HMMWV14_ALPHA_Y] - t5 * motion[HMMWV14_ALPHA_Z]);
+        const gic_real t89 = t7 * motion[36 + HMMWV14_OMEGA_Y] - t4 * motion[36 + HMMWV14_OMEGA_Z];
+        const gic_real t90 = motion[36 + HMMWV14_OMEGA_Z] * t89 - motion[36 + HMMWV14_OMEGA_X] * t83 + (t1 *
+            motion[36 + HMMWV14_ALPHA_Z] - t7 * motion[36 + HMMWV14_ALPHA_X]);
+        const gic_real t91 = t8 * motion[HMMWV14_OMEGA_Y] - t5 * motion[HMMWV14_OMEGA_Z];
+        const gic_real t92 = motion[HMMWV14_OMEGA_Z] * t91 - motion[HMMWV14_OMEGA_X] * t86 + (t2 *
+            motion[HMMWV14_ALPHA_Z] - t8 * motion[HMMWV14_ALPHA_X]);
+        const gic_real t93 = t82 + GIC_FABS(R(2.928075656552032) * (t85 - t88)) + GIC_FABS(R(2.928075656552032) *
+            (motion[36 + HMMWV14_ACCELERATION_Y] + t90 - t92));
+        const gic_real t94 = motion[36 + HMMWV14_OMEGA_X] * t84 - motion[36 + HMMWV14_OMEGA_Y] * t89 + (t4 *
+            motion[36 + HMMWV14_ALPHA_X] - t1 * motion[36 + HMMWV14_ALPHA_Y]);
+        const gic_real t95 = motion[HMMWV14_OMEGA_X] * t87 - motion[HMMWV14_OMEGA_Y] * t91 + (t5 *
+            motion[HMMWV14_ALPHA_X] - t2 * motion[HMMWV14_ALPHA_Y]);
+        const gic_real t96 = R(2.928075656552032) * (m1[HMMWV14_OMEGA_X] * (m1[HMMWV14_OMEGA_X] * t10) +
+            m1[HMMWV14_ALPHA_X] * t12 + motion[36 + HMMWV14_ACCELERATION_Y]);
+        const gic_real t97 = t93 + GIC_FABS(R(2.928075656552032) * (motion[36 + HMMWV14_ACCELERATION_Z] + t94 - t95)) +
+            GIC_FABS(t96);
+        const gic_real t98 = R(2.928075656552032) * (motion[36 + HMMWV14_ACCELERATION_Z] - (m1[HMMWV14_ALPHA_X] * t10 -
+            m1[HMMWV14_OMEGA_X] * (m1[HMMWV14_OMEGA_X] * t12)));
+        const gic_real t99 = t15 * motion[36 + HMMWV14_OMEGA_X] - t19 * motion[36 + HMMWV14_OMEGA_Y];
+        const gic_real t100 = motion[36 + HMMWV14_VELOCITY_Z] + t99;
+        const gic_real t101 = t19 * motion[36 + HMMWV14_OMEGA_Z] - t13 * motion[36 + HMMWV14_OMEGA_X];
+        const gic_real t102 = motion[36 + HMMWV14_VELOCITY_Y] + t101 - m0[HMMWV14_VELOCITY_Y];
+        const gic_real t103 = t13 * motion[36 + HMMWV14_OMEGA_Y] - t15 * motion[36 + HMMWV14_OMEGA_Z];
+        const gic_real t104 = motion[36 + HMMWV14_OMEGA_X] * t101 - motion[36 + HMMWV14_OMEGA_Y] * t103 + (t15 *
+            motion[36 + HMMWV14_ALPHA_X] - t19 * motion[36 + HMMWV14_ALPHA_Y]);
+        const gic_real t105 = motion[36 + HMMWV14_OMEGA_Z] * t103 - motion[36 + HMMWV14_OMEGA_X] * t99 + (t19 *
+            motion[36 + HMMWV14_ALPHA_Z] - t13 * motion[36 + HMMWV14_ALPHA_X]);
+        const gic_real t106 = motion[36 + HMMWV14_OMEGA_Y] * t99 - motion[36 + HMMWV14_OMEGA_Z] * t101 + (t13 *
+            motion[36 + HMMWV14_ALPHA_Y] - t15 * motion[36 + HMMWV14_ALPHA_Z]);
+        const gic_real t107 = t14 * (motion[36 + HMMWV14_ACCELERATION_Z] + t104) + (t18 *
+            (motion[36 + HMMWV14_ACCELERATION_Y] + t105) + t20 * t106);
         const gic_real t108 = t100 * t100 + (t102 * t102 + t103 * t103) + t107;
-        const gic_real t109 = t69 * t69 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t110 = R(2.928075656552032) * (GIC_FABS(motion[58]) + GIC_FABS(motion[59])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
-        const gic_real t111 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t109 = t69 * t69 + (GIC_FABS(motion[HMMWV14_ALPHA_X]) + GIC_FABS(motion[HMMWV14_ALPHA_Y]) +
+            GIC_FABS(motion[HMMWV14_ALPHA_Z]));
+        const gic_real t110 = R(2.928075656552032) * (GIC_FABS(motion[36 + HMMWV14_ACCELERATION_Y]) +
+            GIC_FABS(motion[36 + HMMWV14_ACCELERATION_Z])) + (GIC_FABS(motion[36 + HMMWV14_ALPHA_X]) +
+            GIC_FABS(motion[36 + HMMWV14_ALPHA_Y]) + GIC_FABS(motion[36 + HMMWV14_ALPHA_Z]));
+        const gic_real t111 = R(2.928075656552032) * GIC_FABS(m0[HMMWV14_VELOCITY_Y]);
         const gic_real t112 = t109 + (t70 * t70 + t71 * t71 + t110) + t111 * t111;
-        const gic_real t113 = GIC_FABS(m1[12]);
-        const gic_real t114 = t112 + (t113 * t113 + GIC_FABS(m1[18])) + t72 * t72;
+        const gic_real t113 = GIC_FABS(m1[HMMWV14_OMEGA_X]);
+        const gic_real t114 = t112 + (t113 * t113 + GIC_FABS(m1[HMMWV14_ALPHA_X])) + t72 * t72;
         const gic_real t115 = (t97 + GIC_FABS(t98) + GIC_FABS(t108 * t23)) / (R(1e-30) + (t114 + t73 * t73));
         const gic_real t116 = t62 + t74 + t115;
         worst[0] = t35;
@@ -1157,6 +1479,48 @@ static GIC_COLD void hmmwv14_residual_uca_f_l_wheel_f_l(const gic_real *GIC_REST
     }
 }
 
+/* Columns, with the names of uca_r_l:
+ *    0  ball_r_l.point_a_y
+ *    1  lca_r_l.C_Y
+ *    2  upper_r_l.point_a_y
+ *    3  upper_r_l.side_a_z
+ *    4  upper_r_l.side_a_x * (-0.177546)
+ *    5  upper_r_l.axis_a_y
+ *    6  upper_r_l.side_b_z * 2.86453e-09 + 0.999588 * knee_r_l.point_a_y
+ *    7  sign
+ *    8  from upper_r_l.side_b, knee_r_l.point_a, upper_r_l.side_a
+ *    9  upper_r_l.axis_a_y * (-0.177472)
+ *   10  1 * (upper_r_l.side_b_z * 2.86453e-09 + 0.999588 * knee_r_l.point_a_y)
+ *   11  from upper_r_l.side_b, knee_r_l.point_a, upper_r_l.side_a
+ *   12  upper_r_l.side_b_z * (-0.0140805) - upper_r_l.side_a_x * 0.999588
+ *   13  upper_r_l.side_b_z * 0.999901 - upper_r_l.side_a_z * 0.999588
+ *   14  (-0.0140805) * upper_r_l.third_b_y + upper_r_l.side_a_x * 0.999588
+ *   15  1 * upper_r_l.side_b_z
+ *   16  0.999901 * upper_r_l.third_b_y + upper_r_l.side_a_z * 0.999588
+ *   17  (0.0140805 * upper_r_l.side_a_x - 0.999901 * upper_r_l.side_a_z) * 1.0001
+ *   18  -(1 * upper_r_l.third_b_y)
+ *   19  tierod_r_l.point_a_y
+ *   20  (upper_r_l.axis_a_y * 0.999901 - (-0.0140805) * -upper_r_l.side_a_z * 1.0001) * (-1)
+ *   21  uca_r_l.com_y
+ *   22  upper_r_l.axis_a_y * (-0.0887362)
+ *   23  sign * 2.9285
+ *   24  -(0.134722 * -knee_r_l.point_b_y) * 401.91
+ *   25  (tierod_r_l.arm_y - -knee_r_l.point_b_y * 0.709292) * 46.8638
+ *   26  -knee_r_l.point_b_y * 8.57613
+ *   27  from knee_r_l.point_b, tierod_r_l.arm
+ *   28  tierod_r_l.point_b_y
+ *   29  wheel_r_l.com_y
+ *   30  upper_r_l.side_a_x
+ *   31  -upper_r_l.side_a_z * 1.0001
+ *   32  (0.0140805 * upper_r_l.side_a_x - 0.999901 * upper_r_l.side_a_z) * 1.0001 * (-1)
+ *   33  upper_r_l.axis_a_y * 0.999901 - (-0.0140805) * -upper_r_l.side_a_z * 1.0001
+ *   34  (0.0140805 * upper_r_l.side_a_x - 0.999901 * upper_r_l.side_a_z) * (-1)
+ *   35  knee_r_l.point_b_y
+ *   36  knee_r_l.point_a_y
+ *   37  0.0140805 * upper_r_l.side_a_x - 0.999901 * upper_r_l.side_a_z
+ *   38  upper_r_l.axis_a_y * 0.999901
+ *   39  -upper_r_l.side_a_z
+ */
 static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][40] = {
     { /* uca_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-1.0776391091961054e-05),
@@ -1187,8 +1551,9 @@ static const gic_real hmmwv14_k_uca_r_l_wheel_r_l[2][40] = {
 /* Class 'uca_r_l_wheel_r_l': 12 unknowns of uca_r_l + wheel_r_l, uca_r_r + wheel_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv14_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
@@ -1196,29 +1561,32 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
+        const gic_real t1 = k[0] * m0[HMMWV14_A_YY];
+        const gic_real t2 = k[0] * m0[HMMWV14_A_ZY];
         const gic_real t3 = t1 + k[1];
+        /* pose, in closed form */
         const gic_real t4 = t2 - R(0.22567900000000007);
-        const gic_real t5 = m0[24] * t2;
-        const gic_real t6 = m0[24] * t1;
-        motion[59] = t6;
-        const gic_real t7 = m0[12] * (m0[12] * t1) + m0[18] * t2;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t5 = m0[HMMWV14_S + 0] * t2;
+        const gic_real s_0_5_2 = m0[HMMWV14_S + 0] * t1;
+        motion[30 + HMMWV14_S + 5] = s_0_5_2;
+        const gic_real t7 = m0[HMMWV14_OMEGA_X] * (m0[HMMWV14_OMEGA_X] * t1) + m0[HMMWV14_ALPHA_X] * t2;
         const gic_real t8 = t3 - k[2];
         const gic_real t9 = R(0.9999008646813683) * t4 + R(0.002499938528509463);
         const gic_real t10 = rate[0] * t5;
-        const gic_real t11 = m0[18] * t1 - m0[12] * (m0[12] * t2);
-        motion[53] = t11;
+        const gic_real acceleration_z_2 = m0[HMMWV14_ALPHA_X] * t1 - m0[HMMWV14_OMEGA_X] * (m0[HMMWV14_OMEGA_X] * t2);
+        motion[30 + HMMWV14_ACCELERATION_Z] = acceleration_z_2;
         const gic_real t12 = R(0.9999997071266321) * t8 + (k[3] * t4 + k[4]);
-        const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.010731930149000049))) - R(-0.17747212962088846) * (k[5] * t8 + (R(0.014080507566174662) * t4 + R(-0.17752834692737812)));
-        const gic_real t14 = rate[0] * t6;
-        motion[47] = t14;
-        const gic_real t15 = -t10;
-        motion[46] = t15;
-        const gic_real t16 = -t7;
-        motion[52] = t16;
-        const gic_real t17 = -t5;
-        motion[58] = t17;
+        const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.010731930149000049))) - R(-0.17747212962088846) *
+            (k[5] * t8 + (R(0.014080507566174662) * t4 + R(-0.17752834692737812)));
+        const gic_real velocity_z_2 = rate[0] * s_0_5_2;
+        motion[30 + HMMWV14_VELOCITY_Z] = velocity_z_2;
+        const gic_real velocity_y_2 = -t10;
+        motion[30 + HMMWV14_VELOCITY_Y] = velocity_y_2;
+        const gic_real acceleration_y_2 = -t7;
+        motion[30 + HMMWV14_ACCELERATION_Y] = acceleration_y_2;
+        const gic_real s_0_4_2 = -t5;
+        motion[30 + HMMWV14_S + 4] = s_0_4_2;
         const gic_real t18 = k[6] * t9 - R(-0.007278092027209733) * t12;
         const gic_real t19 = R(-0.007278092027209733) * t9 + k[6] * t12;
         const gic_real t20 = t18 * t18 + t19 * t19;
@@ -1234,21 +1602,22 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t26 = k[8] * t25 + (R(-0.0024988976639120503) + R(-0.007280102336088042) * t24);
         const gic_real t27 = R(0.007278089895650409) * t25 + (k[9] + k[10] * t24);
         const gic_real t28 = k[11] * t25 + (R(-0.17745448389306268) + R(-9.151610693727591e-05) * t24);
-        const gic_real t29 = k[12] * t25 + R(-0.01409667407318452) * t24;
-        motion[5] = t29;
-        const gic_real t30 = k[13] * t25 + R(0.9994887092971874) * t24;
-        motion[11] = t30;
-        const gic_real t31 = R(-0.01409667407318452) * t25 + k[14] * t24;
-        motion[4] = t31;
-        const gic_real t32 = R(-0.9995878202968629) * t25 + k[15] * t24;
-        motion[8] = t32;
+        const gic_real a_xz = k[12] * t25 + R(-0.01409667407318452) * t24;
+        motion[HMMWV14_A_XZ] = a_xz;
+        const gic_real a_zz = k[13] * t25 + R(0.9994887092971874) * t24;
+        motion[HMMWV14_A_ZZ] = a_zz;
+        const gic_real a_xy = R(-0.01409667407318452) * t25 + k[14] * t24;
+        motion[HMMWV14_A_XY] = a_xy;
+        const gic_real a_yz = R(-0.9995878202968629) * t25 + k[15] * t24;
+        motion[HMMWV14_A_YZ] = a_yz;
         const gic_real t33 = R(0.22567900000000007) + t26;
-        const gic_real t34 = R(0.9994887092971875) * t25 + k[16] * t24;
-        motion[10] = t34;
+        const gic_real a_zy = R(0.9994887092971875) * t25 + k[16] * t24;
+        motion[HMMWV14_A_ZY] = a_zy;
         const gic_real t35 = k[2] + t27;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t36 = t26 + k[17] * t27;
-        const gic_real t37 = k[18] * t25 + R(0.999587820296863) * t24;
-        motion[7] = t37;
+        const gic_real a_yy = k[18] * t25 + R(0.999587820296863) * t24;
+        motion[HMMWV14_A_YY] = a_yy;
         const gic_real t38 = R(-1.475859) + t28;
         const gic_real t39 = t2 - t33;
         const gic_real t40 = R(0.058674000000000004) - t33;
@@ -1259,36 +1628,37 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t45 = R(-1.465699) - t38;
         const gic_real t46 = R(-1.653405) - t38;
         const gic_real t47 = t38 - R(-1.653405);
-        const gic_real t48 = t35 - t43;
-        motion[31] = t48;
+        const gic_real c_y_2 = t35 - t43;
+        motion[30 + HMMWV14_C_Y] = c_y_2;
         const gic_real t49 = k[20] * t36 - R(-0.01408190770438876) * t27;
         const gic_real t50 = t27 + k[20] * t28;
         const gic_real t51 = t46 * t45 + (t39 * t40 + t41 * t42);
         const gic_real t52 = R(-0.09149177830640001) + t40 * t40 + (t42 * t42 + t45 * t45);
-        const gic_real t53 = t38 - t47;
-        motion[30] = t53;
+        const gic_real c_x_2 = t38 - t47;
+        motion[30 + HMMWV14_C_X] = c_x_2;
         const gic_real t54 = t33 - t2;
-        const gic_real t55 = k[21] * t31 + (R(-0.0887274110323348) + R(-1.232760342215547e-05) * t29);
-        const gic_real t56 = k[21] * t34 + (R(-0.0012494512130067036) + R(-1.232760342215547e-05) * t30);
-        const gic_real t57 = t33 - t54;
-        motion[32] = t57;
-        const gic_real t58 = k[21] * t37 + (k[22] + R(-1.232760342215547e-05) * t32);
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t55 = k[21] * a_xy + (R(-0.0887274110323348) + R(-1.232760342215547e-05) * a_xz);
+        const gic_real t56 = k[21] * a_zy + (R(-0.0012494512130067036) + R(-1.232760342215547e-05) * a_zz);
+        const gic_real c_z_2 = t33 - t54;
+        motion[30 + HMMWV14_C_Z] = c_z_2;
+        const gic_real t58 = k[21] * a_yy + (k[22] + R(-1.232760342215547e-05) * a_yz);
         const gic_real t59 = R(8.576131760139356) * t51;
-        const gic_real t60 = R(0.03138) * t29;
-        const gic_real t61 = R(0.03138) * t32;
+        const gic_real t60 = R(0.03138) * a_xz;
+        const gic_real t61 = R(0.03138) * a_yz;
         const gic_real t62 = R(0.5) * t52 - R(0.7092920680207613) * t51;
-        const gic_real t63 = R(0.03138) + t30 * (R(0.03138) * t30);
+        const gic_real t63 = R(0.03138) + a_zz * (R(0.03138) * a_zz);
         const gic_real t64 = t40 - t39 * t59;
         const gic_real t65 = t42 - t41 * t59;
         const gic_real t66 = t45 - t46 * t59;
         const gic_real t67 = R(-1.475859) + t55;
         const gic_real t68 = R(0.22567900000000007) + t56;
-        const gic_real t69 = R(0.03138) + t29 * t60;
-        const gic_real t70 = R(0.03138) + t32 * t61;
+        const gic_real t69 = R(0.03138) + a_xz * t60;
+        const gic_real t70 = R(0.03138) + a_yz * t61;
         const gic_real t71 = k[2] + t58;
-        const gic_real t72 = t32 * t60;
-        const gic_real t73 = t30 * t60;
-        const gic_real t74 = t30 * t61;
+        const gic_real t72 = a_yz * t60;
+        const gic_real t73 = a_zz * t60;
+        const gic_real t74 = a_zz * t61;
         const gic_real t75 = R(5.813) * t67;
         const gic_real t76 = R(5.813) * t68;
         const gic_real t77 = t66 * t66 + (t64 * t64 + t65 * t65);
@@ -1310,75 +1680,76 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t89 = t41 * t86 - t39 * t87;
         const gic_real t90 = t39 * t88 - t46 * t86;
         const gic_real t91 = t46 * t87 - t41 * t88;
-        const gic_real t92 = k[24] * t89 + (R(0.5501647151204283) * t88 + R(-2.8645137692041462) * t46);
-        motion[35] = t92;
-        const gic_real t93 = R(-18.085310342821717) * t89 + (k[25] * t88 + k[26] * t46);
-        motion[34] = t93;
-        const gic_real t94 = k[24] * t90 + (R(0.5501647151204283) * t87 + R(-2.8645137692041462) * t41);
-        motion[38] = t94;
-        const gic_real t95 = R(-18.085310342821717) * t90 + (k[25] * t87 + k[26] * t41);
-        motion[37] = t95;
-        const gic_real t96 = k[27] * t89 + R(6.31357074881382) * t88;
-        motion[33] = t96;
-        const gic_real t97 = k[27] * t90 + R(6.31357074881382) * t87;
-        motion[36] = t97;
-        const gic_real t98 = k[24] * t91 + (R(0.5501647151204283) * t86 + R(-2.8645137692041462) * t39);
-        motion[41] = t98;
-        const gic_real t99 = R(-18.085310342821717) * t91 + (k[25] * t86 + k[26] * t39);
-        motion[40] = t99;
-        const gic_real t100 = R(0.1347216) * t96 + (R(0.10883900000000002) * t92 + k[28] * t93);
-        const gic_real t101 = R(0.1347216) * t97 + (R(0.10883900000000002) * t94 + k[28] * t95);
-        const gic_real t102 = k[27] * t91 + R(6.31357074881382) * t86;
-        motion[39] = t102;
-        const gic_real t103 = R(0.09182100000000004) * t92 + k[29] * t93;
-        const gic_real t104 = R(0.09182100000000004) * t94 + k[29] * t95;
-        const gic_real t105 = R(0.09182100000000004) * t98 + k[29] * t99;
-        const gic_real t106 = R(2.8083995) * t93;
-        const gic_real t107 = R(2.8083995) * t95;
-        const gic_real t108 = t100 + (t53 - R(-1.465699));
-        const gic_real t109 = R(0.1347216) * t102 + (R(0.10883900000000002) * t98 + k[28] * t99);
-        const gic_real t110 = t101 + (t48 - k[19]);
-        const gic_real t111 = t53 + t103;
-        const gic_real t112 = t48 + t104;
-        const gic_real t113 = t57 + t105;
-        const gic_real t114 = R(0.12192999999999987) * t96;
-        const gic_real t115 = R(0.12192999999999987) * t97;
-        const gic_real t116 = t102 * (R(0.12192999999999987) * t102) + (R(4.7728205) + t99 * (R(2.8083995) * t99));
-        const gic_real t117 = t96 * t114 + (R(4.7728205) + t93 * t106);
+        const gic_real a_xz_2 = k[24] * t89 + (R(0.5501647151204283) * t88 + R(-2.8645137692041462) * t46);
+        motion[30 + HMMWV14_A_XZ] = a_xz_2;
+        const gic_real a_xy_2 = R(-18.085310342821717) * t89 + (k[25] * t88 + k[26] * t46);
+        motion[30 + HMMWV14_A_XY] = a_xy_2;
+        const gic_real a_yz_2 = k[24] * t90 + (R(0.5501647151204283) * t87 + R(-2.8645137692041462) * t41);
+        motion[30 + HMMWV14_A_YZ] = a_yz_2;
+        const gic_real a_yy_2 = R(-18.085310342821717) * t90 + (k[25] * t87 + k[26] * t41);
+        motion[30 + HMMWV14_A_YY] = a_yy_2;
+        const gic_real a_xx_2 = k[27] * t89 + R(6.31357074881382) * t88;
+        motion[30 + HMMWV14_A_XX] = a_xx_2;
+        const gic_real a_yx_2 = k[27] * t90 + R(6.31357074881382) * t87;
+        motion[30 + HMMWV14_A_YX] = a_yx_2;
+        const gic_real a_zz_2 = k[24] * t91 + (R(0.5501647151204283) * t86 + R(-2.8645137692041462) * t39);
+        motion[30 + HMMWV14_A_ZZ] = a_zz_2;
+        const gic_real a_zy_2 = R(-18.085310342821717) * t91 + (k[25] * t86 + k[26] * t39);
+        motion[30 + HMMWV14_A_ZY] = a_zy_2;
+        const gic_real t100 = R(0.1347216) * a_xx_2 + (R(0.10883900000000002) * a_xz_2 + k[28] * a_xy_2);
+        const gic_real t101 = R(0.1347216) * a_yx_2 + (R(0.10883900000000002) * a_yz_2 + k[28] * a_yy_2);
+        const gic_real a_zx_2 = k[27] * t91 + R(6.31357074881382) * t86;
+        motion[30 + HMMWV14_A_ZX] = a_zx_2;
+        const gic_real t103 = R(0.09182100000000004) * a_xz_2 + k[29] * a_xy_2;
+        const gic_real t104 = R(0.09182100000000004) * a_yz_2 + k[29] * a_yy_2;
+        const gic_real t105 = R(0.09182100000000004) * a_zz_2 + k[29] * a_zy_2;
+        const gic_real t106 = R(2.8083995) * a_xy_2;
+        const gic_real t107 = R(2.8083995) * a_yy_2;
+        const gic_real t108 = t100 + (c_x_2 - R(-1.465699));
+        const gic_real t109 = R(0.1347216) * a_zx_2 + (R(0.10883900000000002) * a_zz_2 + k[28] * a_zy_2);
+        const gic_real t110 = t101 + (c_y_2 - k[19]);
+        const gic_real t111 = c_x_2 + t103;
+        const gic_real t112 = c_y_2 + t104;
+        const gic_real t113 = c_z_2 + t105;
+        const gic_real t114 = R(0.12192999999999987) * a_xx_2;
+        const gic_real t115 = R(0.12192999999999987) * a_yx_2;
+        const gic_real t116 = a_zx_2 * (R(0.12192999999999987) * a_zx_2) + (R(4.7728205) + a_zy_2 * (R(2.8083995) *
+            a_zy_2));
+        const gic_real t117 = a_xx_2 * t114 + (R(4.7728205) + a_xy_2 * t106);
         const gic_real t118 = R(4.0) * (t100 * t110 - t101 * t108);
-        const gic_real t119 = t109 + (t57 - R(0.058674000000000004));
-        const gic_real t120 = t97 * t115 + (R(4.7728205) + t95 * t107);
-        const gic_real t121 = t95 * t106 + t97 * t114;
-        const gic_real t122 = t99 * t106 + t102 * t114;
-        const gic_real t123 = t99 * t107 + t102 * t115;
+        const gic_real t119 = t109 + (c_z_2 - R(0.058674000000000004));
+        const gic_real t120 = a_yx_2 * t115 + (R(4.7728205) + a_yy_2 * t107);
+        const gic_real t121 = a_yy_2 * t106 + a_yx_2 * t114;
+        const gic_real t122 = a_zy_2 * t106 + a_zx_2 * t114;
+        const gic_real t123 = a_zy_2 * t107 + a_zx_2 * t115;
         const gic_real t124 = R(90.555) * t111;
         const gic_real t125 = R(4.0) * (t109 * t108 - t100 * t119);
         const gic_real t126 = GIC_SQRT(t118 * t118 + (t41 * t41 + t47 * t47));
         const gic_real t127 = R(4.0) * (t101 * t119 - t109 * t110);
-        const gic_real t128 = R(4.0) * (t5 * t110 - t6 * t119);
+        const gic_real t128 = R(4.0) * (t5 * t110 - s_0_5_2 * t119);
         const gic_real t129 = R(90.555) * t112;
-        const gic_real t130 = t121 + (t72 - t71 * t75) - t112 * t124;
-        inertia[6] = t130;
-        const gic_real t131 = t122 + (t73 - t68 * t75) - t113 * t124;
-        inertia[7] = t131;
-        const gic_real t132 = t123 + (t74 - t68 * t78) - t113 * t129;
-        inertia[8] = t132;
+        const gic_real inertia_second_xy = t121 + (t72 - t71 * t75) - t112 * t124;
+        inertia[HMMWV14_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t122 + (t73 - t68 * t75) - t113 * t124;
+        inertia[HMMWV14_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t123 + (t74 - t68 * t78) - t113 * t129;
+        inertia[HMMWV14_I_SECOND_YZ] = inertia_second_yz;
         const gic_real t133 = R(90.555) * t113;
         const gic_real t134 = t112 * t129;
         const gic_real t135 = t111 * t124;
-        const gic_real t136 = t75 + t124;
-        inertia[0] = t136;
-        const gic_real t137 = t78 + t129;
-        inertia[1] = t137;
+        const gic_real inertia_first_x = t75 + t124;
+        inertia[HMMWV14_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = t78 + t129;
+        inertia[HMMWV14_I_FIRST_Y] = inertia_first_y;
         const gic_real t138 = t113 * t133;
-        const gic_real t139 = t76 + t133;
-        inertia[2] = t139;
-        const gic_real t140 = t134 + (t135 + (t116 + (t81 + (t63 + t79))));
-        inertia[5] = t140;
-        const gic_real t141 = t138 + (t134 + (t117 + (t80 + (t69 + t81))));
-        inertia[3] = t141;
-        const gic_real t142 = t138 + (t135 + (t120 + (t80 + (t70 + t79))));
-        inertia[4] = t142;
+        const gic_real inertia_first_z = t76 + t133;
+        inertia[HMMWV14_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_zz = t134 + (t135 + (t116 + (t81 + (t63 + t79))));
+        inertia[HMMWV14_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t138 + (t134 + (t117 + (t80 + (t69 + t81))));
+        inertia[HMMWV14_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t138 + (t135 + (t120 + (t80 + (t70 + t79))));
+        inertia[HMMWV14_I_SECOND_YY] = inertia_second_yy;
         const gic_real t143 = (t41 > GIC_R(0) ? t126 : -t126);
         const gic_real t144 = t41 + t143;
         const gic_real t145 = R(1.0) / -t143;
@@ -1405,7 +1776,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t166 = R(1.0) / (t163 * t164);
         const gic_real t167 = t166 * (t155 * t164 + (t46 * t50 + t152 * t154));
         const gic_real t168 = t166 * (t157 * t164 - (t43 * t50 + t152 * t156));
-        const gic_real t169 = t166 * (t164 * t159 + (t6 * t50 - t152 * t158));
+        const gic_real t169 = t166 * (t164 * t159 + (s_0_5_2 * t50 - t152 * t158));
         const gic_real t170 = t46 - t50 * t167;
         const gic_real t171 = t154 - t152 * t167;
         const gic_real t172 = t164 * t167 - t155;
@@ -1413,7 +1784,7 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t174 = t43 + t50 * t168;
         const gic_real t175 = t157 - t164 * t168;
         const gic_real t176 = t158 + t152 * t169;
-        const gic_real t177 = t50 * t169 - t6;
+        const gic_real t177 = t50 * t169 - s_0_5_2;
         const gic_real t178 = GIC_SQRT(t170 * t170 + t171 * t171);
         const gic_real t179 = (t170 > GIC_R(0) ? t178 : -t178);
         const gic_real t180 = t170 + t179;
@@ -1424,202 +1795,206 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
         const gic_real t185 = t173 - t171 * t183;
         const gic_real t186 = t174 - t180 * t183;
         const gic_real t187 = R(1.0) / t185;
-        const gic_real t188 = t187 * (t176 - t171 * t184);
-        motion[54] = t188;
-        const gic_real t189 = t181 * (t177 - t180 * t184 - t186 * t188);
-        motion[55] = t189;
-        const gic_real t190 = rate[0] * t188;
-        motion[42] = t190;
-        const gic_real t191 = turn[0] + t190;
-        const gic_real t192 = t159 - t164 * t169 - t175 * t188 - t172 * t189;
-        const gic_real t193 = rate[0] * t189;
-        motion[43] = t193;
-        const gic_real t194 = t6 + t188 * t104 - t189 * t103;
-        const gic_real t195 = t101 * t190 - t100 * t193;
-        const gic_real t196 = t43 * t190 - t47 * t193;
-        const gic_real t197 = t190 * t104 - t193 * t103;
-        const gic_real t198 = turn[1] + t193;
-        const gic_real t199 = t14 + t195;
+        const gic_real s_0_0_2 = t187 * (t176 - t171 * t184);
+        motion[30 + HMMWV14_S + 0] = s_0_0_2;
+        const gic_real s_0_1_2 = t181 * (t177 - t180 * t184 - t186 * s_0_0_2);
+        motion[30 + HMMWV14_S + 1] = s_0_1_2;
+        const gic_real omega_x_2 = rate[0] * s_0_0_2;
+        motion[30 + HMMWV14_OMEGA_X] = omega_x_2;
+        const gic_real t191 = turn[0] + omega_x_2;
+        const gic_real t192 = t159 - t164 * t169 - t175 * s_0_0_2 - t172 * s_0_1_2;
+        const gic_real omega_y_2 = rate[0] * s_0_1_2;
+        motion[30 + HMMWV14_OMEGA_Y] = omega_y_2;
+        const gic_real t194 = s_0_5_2 + s_0_0_2 * t104 - s_0_1_2 * t103;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t195 = t101 * omega_x_2 - t100 * omega_y_2;
+        const gic_real t196 = t43 * omega_x_2 - t47 * omega_y_2;
+        const gic_real t197 = omega_x_2 * t104 - omega_y_2 * t103;
+        const gic_real t198 = turn[1] + omega_y_2;
+        const gic_real t199 = velocity_z_2 + t195;
         const gic_real t200 = R(90.555) * t194;
-        const gic_real t201 = t165 * t192;
-        motion[24] = t201;
-        const gic_real t202 = t14 + t197;
-        const gic_real t203 = R(1.0000991451474175) * (R(1.2966667937583248e-24) * t201 - R(-0.014080511689981543) * t201);
-        motion[26] = t203;
-        const gic_real t204 = t161 * t188 - t144 * t150 - t162 * t189 - t153 * t201;
-        const gic_real t205 = k[20] * t201;
-        const gic_real t206 = rate[0] * t201;
-        motion[12] = t206;
+        const gic_real s_0_0 = t165 * t192;
+        motion[HMMWV14_S + 0] = s_0_0;
+        const gic_real t202 = velocity_z_2 + t197;
+        const gic_real s_0_2 = R(1.0000991451474175) * (R(1.2966667937583248e-24) * s_0_0 - R(-0.014080511689981543) *
+            s_0_0);
+        motion[HMMWV14_S + 2] = s_0_2;
+        const gic_real t204 = t161 * s_0_0_2 - t144 * t150 - t162 * s_0_1_2 - t153 * s_0_0;
+        const gic_real t205 = k[20] * s_0_0;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV14_OMEGA_X] = omega_x;
         const gic_real t207 = t202 + (t202 + (turn[0] * t112 - turn[1] * t111));
         const gic_real t208 = rate[0] * t205;
-        const gic_real t209 = turn[0] + t206;
-        const gic_real t210 = t205 * t55 + t201 * t58;
-        const gic_real t211 = rate[0] * t203;
-        motion[14] = t211;
-        const gic_real t212 = t203 * t73 + (t201 * t69 - t205 * t72);
-        const gic_real t213 = R(0.9999005718370345) * t208 + k[5] * t206;
-        const gic_real t214 = k[5] * t211 + R(0.014080507566174662) * t208;
-        const gic_real t215 = R(0.9999005718370345) * t211 - R(0.014080507566174662) * t206;
-        const gic_real t216 = t145 * t204;
-        motion[56] = t216;
-        const gic_real t217 = t28 * t208 + t27 * t206;
-        const gic_real t218 = t28 * t211 - t26 * t206;
-        const gic_real t219 = t27 * t211 + t26 * t208;
-        const gic_real t220 = rate[0] * t216;
-        motion[44] = t220;
-        const gic_real t221 = t211 * t55 - t206 * t56;
-        const gic_real t222 = t211 * t215 + t208 * t213;
-        const gic_real t223 = t206 * t215 - t208 * t214;
-        const gic_real t224 = t109 * t193 - t101 * t220;
-        const gic_real t225 = t100 * t220 - t109 * t190;
-        const gic_real t226 = t7 + t190 * t196 - t206 * t217 - t211 * t219;
-        const gic_real t227 = R(0.9999997071266321) * (t206 * t213 + t211 * t214) + k[30] * t222;
-        const gic_real t228 = t7 * t110 - t11 * t119 - t199 * t199 - t224 * t224;
-        const gic_real t229 = t47 * t220 - t54 * t190;
+        const gic_real t209 = turn[0] + omega_x;
+        const gic_real t210 = t205 * t55 + s_0_0 * t58;
+        const gic_real omega_z = rate[0] * s_0_2;
+        motion[HMMWV14_OMEGA_Z] = omega_z;
+        const gic_real t212 = s_0_2 * t73 + (s_0_0 * t69 - t205 * t72);
+        const gic_real t213 = R(0.9999005718370345) * t208 + k[5] * omega_x;
+        const gic_real t214 = k[5] * omega_z + R(0.014080507566174662) * t208;
+        const gic_real t215 = R(0.9999005718370345) * omega_z - R(0.014080507566174662) * omega_x;
+        const gic_real s_0_2_2 = t145 * t204;
+        motion[30 + HMMWV14_S + 2] = s_0_2_2;
+        const gic_real t217 = t28 * t208 + t27 * omega_x;
+        const gic_real t218 = t28 * omega_z - t26 * omega_x;
+        const gic_real t219 = t27 * omega_z + t26 * t208;
+        const gic_real omega_z_2 = rate[0] * s_0_2_2;
+        motion[30 + HMMWV14_OMEGA_Z] = omega_z_2;
+        const gic_real t221 = omega_z * t55 - omega_x * t56;
+        const gic_real t222 = omega_z * t215 + t208 * t213;
+        const gic_real t223 = omega_x * t215 - t208 * t214;
+        const gic_real t224 = t109 * omega_y_2 - t101 * omega_z_2;
+        const gic_real t225 = t100 * omega_z_2 - t109 * omega_x_2;
+        const gic_real t226 = t7 + omega_x_2 * t196 - omega_x * t217 - omega_z * t219;
+        const gic_real t227 = R(0.9999997071266321) * (omega_x * t213 + omega_z * t214) + k[30] * t222;
+        const gic_real t228 = t7 * t110 - acceleration_z_2 * t119 - t199 * t199 - t224 * t224;
+        const gic_real t229 = t47 * omega_z_2 - t54 * omega_x_2;
         const gic_real t230 = t225 - t10;
-        const gic_real t231 = t110 * (t220 * t224 - t190 * t195) + t108 * (t193 * t195 - t220 * t225);
-        const gic_real t232 = t54 * t193 - t43 * t220;
-        const gic_real t233 = t220 * t229 - (t211 * t218 + (t208 * t217 + t193 * t196));
+        const gic_real t231 = t110 * (omega_z_2 * t224 - omega_x_2 * t195) + t108 * (omega_y_2 * t195 - omega_z_2 *
+            t225);
+        const gic_real t232 = t54 * omega_y_2 - t43 * omega_z_2;
+        const gic_real t233 = omega_z_2 * t229 - (omega_z * t218 + (t208 * t217 + omega_y_2 * t196));
         const gic_real t234 = t227 - k[3] * t223;
-        const gic_real t235 = t228 - t230 * t230 - t119 * (t190 * t225 - t193 * t224);
-        const gic_real t236 = t193 * t232 + (t206 * t218 - t11) - (t208 * t219 + t190 * t229);
+        const gic_real t235 = t228 - t230 * t230 - t119 * (omega_x_2 * t225 - omega_y_2 * t224);
+        const gic_real t236 = omega_y_2 * t232 + (omega_x * t218 - acceleration_z_2) - (t208 * t219 + omega_x_2 * t229);
         const gic_real t237 = R(-0.014080511689981543) * t222 - R(0.9999008646813683) * t223 - k[31] * t234;
         const gic_real t238 = t221 + (t221 + (turn[2] * t67 - turn[0] * t68));
-        const gic_real t239 = t220 * t103 - t190 * t105;
-        const gic_real t240 = t193 * t105 - t220 * t104;
-        const gic_real t241 = t208 * t55 + t206 * t58;
+        const gic_real t239 = omega_z_2 * t103 - omega_x_2 * t105;
+        const gic_real t240 = omega_y_2 * t105 - omega_z_2 * t104;
+        const gic_real t241 = t208 * t55 + omega_x * t58;
         const gic_real t242 = R(4.0) * (t235 - t231);
-        const gic_real t243 = t211 * t58 + t208 * t56;
+        const gic_real t243 = omega_z * t58 + t208 * t56;
         const gic_real t244 = R(-1.000000292873454) * t36 * t237 + (t233 - R(1.0000991451474175) * t27 * t234);
-        const gic_real t245 = R(1.0000991451474175) * t28 * t234 + (t226 - t220 * t232) - k[32] * t28 * t237;
+        const gic_real t245 = R(1.0000991451474175) * t28 * t234 + (t226 - omega_z_2 * t232) - k[32] * t28 * t237;
         const gic_real t246 = t236 - R(-1.000000292873454) * t28 * t237;
         const gic_real t247 = t240 + (t240 + (turn[1] * t113 - turn[2] * t112));
         const gic_real t248 = t241 + (t241 + (turn[0] * t71 - turn[1] * t67));
         const gic_real t249 = turn[1] * t68 - turn[2] * t71 - t243 - t243;
         const gic_real t250 = t239 - t10;
-        const gic_real t251 = t220 * t240 - (turn[0] * t207 + (t7 + t190 * t197));
+        const gic_real t251 = omega_z_2 * t240 - (turn[0] * t207 + (t7 + omega_x_2 * t197));
         const gic_real t252 = t146 * (t47 * t245 + (t144 * t244 + t118 * t242));
         const gic_real t253 = t250 + (t250 + (turn[2] * t111 - turn[0] * t113));
-        const gic_real t254 = t11 + t190 * t239 - t193 * t240 - turn[1] * t247;
-        const gic_real t255 = turn[2] + t220;
+        const gic_real t254 = acceleration_z_2 + omega_x_2 * t239 - omega_y_2 * t240 - turn[1] * t247;
+        const gic_real t255 = turn[2] + omega_z_2;
         const gic_real t256 = turn[1] - t208;
-        const gic_real t257 = turn[2] + t211;
-        const gic_real t258 = turn[0] * t238 + (t206 * t221 - t208 * t243) - turn[1] * t249;
+        const gic_real t257 = turn[2] + omega_z;
+        const gic_real t258 = turn[0] * t238 + (omega_x * t221 - t208 * t243) - turn[1] * t249;
         const gic_real t259 = t116 * t255 + (t123 * t198 + t122 * t191);
         const gic_real t260 = t245 - t47 * t252;
         const gic_real t261 = t242 - t118 * t252;
         const gic_real t262 = t123 * t255 + (t120 * t198 + t121 * t191);
         const gic_real t263 = t122 * t255 + (t121 * t198 + t117 * t191);
-        const gic_real t264 = turn[1] * t207 + t193 * t197 - t220 * t239 - turn[2] * t253;
+        const gic_real t264 = turn[1] * t207 + omega_y_2 * t197 - omega_z_2 * t239 - turn[2] * t253;
         const gic_real t265 = t166 * (t164 * t260 - t50 * t246 - t152 * t261);
         const gic_real t266 = t63 * t257 + (t74 * t256 + t73 * t209);
         const gic_real t267 = t74 * t257 + (t70 * t256 + t72 * t209);
         const gic_real t268 = t73 * t257 + (t72 * t256 + t69 * t209);
-        const gic_real t269 = turn[1] * t248 - t208 * t241 - t211 * t221 - turn[2] * t238;
-        const gic_real t270 = turn[2] * t249 - (t211 * t243 + (turn[0] * t248 + t206 * t241));
+        const gic_real t269 = turn[1] * t248 - t208 * t241 - omega_z * t221 - turn[2] * t238;
+        const gic_real t270 = turn[2] * t249 - (omega_z * t243 + (turn[0] * t248 + omega_x * t241));
         const gic_real t271 = t261 + t152 * t265;
         const gic_real t272 = t246 + t50 * t265;
-        const gic_real t273 = t216 * t103 - (t5 + t188 * t105);
-        const gic_real t274 = t203 * t74 + (t201 * t72 - t205 * t70);
-        const gic_real t275 = t216 * t123 + (t189 * t120 + t188 * t121);
+        const gic_real t273 = s_0_2_2 * t103 - (t5 + s_0_0_2 * t105);
+        const gic_real t274 = s_0_2 * t74 + (s_0_0 * t72 - t205 * t70);
+        const gic_real t275 = s_0_2_2 * t123 + (s_0_1_2 * t120 + s_0_0_2 * t121);
         const gic_real t276 = t182 * (t180 * t272 + t171 * t271);
-        const gic_real t277 = t203 * t63 + (t201 * t73 - t205 * t74);
-        const gic_real t278 = t216 * t116 + (t189 * t123 + t188 * t122);
-        const gic_real t279 = t189 * t105 - t216 * t104;
-        const gic_real t280 = t203 * t58 + t205 * t56;
-        const gic_real t281 = t203 * t55 - t201 * t56;
+        const gic_real t277 = s_0_2 * t63 + (s_0_0 * t73 - t205 * t74);
+        const gic_real t278 = s_0_2_2 * t116 + (s_0_1_2 * t123 + s_0_0_2 * t122);
+        const gic_real t279 = s_0_1_2 * t105 - s_0_2_2 * t104;
+        const gic_real t280 = s_0_2 * t58 + t205 * t56;
+        const gic_real t281 = s_0_2 * t55 - s_0_0 * t56;
         const gic_real t282 = R(5.813) * t210;
-        const gic_real t283 = t187 * (t271 - t171 * t276);
-        motion[48] = t283;
-        const gic_real t284 = t216 * t122 + (t189 * t121 + t188 * t117);
-        const gic_real t285 = -t208;
-        motion[13] = t285;
+        const gic_real alpha_x_2 = t187 * (t271 - t171 * t276);
+        motion[30 + HMMWV14_ALPHA_X] = alpha_x_2;
+        const gic_real t284 = s_0_2_2 * t122 + (s_0_1_2 * t121 + s_0_0_2 * t117);
+        const gic_real omega_y = -t208;
+        motion[HMMWV14_OMEGA_Y] = omega_y;
         const gic_real t286 = R(90.555) * t279;
-        const gic_real t287 = GIC_FABS(t285) + (GIC_FABS(t206) + (GIC_FABS(t190) + GIC_FABS(t193)));
+        const gic_real t287 = GIC_FABS(omega_y) + (GIC_FABS(omega_x) + (GIC_FABS(omega_x_2) + GIC_FABS(omega_y_2)));
         const gic_real t288 = R(5.813) * t280;
         const gic_real t289 = R(5.813) * t281;
         const gic_real t290 = R(90.555) * t273;
-        const gic_real t291 = t282 + t200;
-        inertia[17] = t291;
-        const gic_real t292 = -t205;
-        motion[25] = t292;
-        const gic_real t293 = t181 * (t272 - t180 * t276 - t186 * t283);
-        motion[49] = t293;
-        const gic_real t294 = t283 + (turn[1] * t220 - turn[2] * t193);
+        const gic_real along_0_force_z = t282 + t200;
+        inertia[HMMWV14_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real s_0_1 = -t205;
+        motion[HMMWV14_S + 1] = s_0_1;
+        const gic_real alpha_y_2 = t181 * (t272 - t180 * t276 - t186 * alpha_x_2);
+        motion[30 + HMMWV14_ALPHA_Y] = alpha_y_2;
+        const gic_real t294 = alpha_x_2 + (turn[1] * omega_z_2 - turn[2] * omega_y_2);
         const gic_real t295 = t281 * t289 + (t210 * t282 + t194 * t200 - t205 * t274);
-        const gic_real t296 = R(-79.8639169751566) * (t143 * t163 * t179 * t185) - ahead[0] * (GIC_FABS(t220) + (GIC_FABS(t211) + t287));
+        const gic_real t296 = R(-79.8639169751566) * (t143 * t163 * t179 * t185) - ahead[0] * (GIC_FABS(omega_z_2) +
+            (GIC_FABS(omega_z) + t287));
         const gic_real t297 = t212 + t112 * t200 + (t71 * t282 + t284) - t68 * t289;
-        const gic_real t298 = t260 - t164 * t265 - t175 * t283 - t172 * t293;
-        const gic_real t299 = t161 * t283 + (t244 - t144 * t252) - t162 * t293;
-        const gic_real t300 = t283 * t104 + (turn[0] * t253 + t254) - t293 * t103;
-        const gic_real t301 = t293 + (turn[2] * t190 - turn[0] * t220);
+        const gic_real t298 = t260 - t164 * t265 - t175 * alpha_x_2 - t172 * alpha_y_2;
+        const gic_real t299 = t161 * alpha_x_2 + (t244 - t144 * t252) - t162 * alpha_y_2;
+        const gic_real t300 = alpha_x_2 * t104 + (turn[0] * t253 + t254) - alpha_y_2 * t103;
+        const gic_real t301 = alpha_y_2 + (turn[2] * omega_x_2 - turn[0] * omega_z_2);
         const gic_real t302 = t274 - t111 * t200 + (t275 - t67 * t282) - t68 * t288;
         if (!(t296 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t303 = t188 * t284 + (t203 * t277 + t201 * t212) + t295;
-        const gic_real t304 = t165 * t298;
-        motion[18] = t304;
-        const gic_real t305 = t280 * t288 + (t216 * t278 + t189 * t275) + (t273 * t290 + t279 * t286);
-        const gic_real t306 = t237 - k[33] * t304;
-        const gic_real t307 = t145 * (t299 - t153 * t304);
-        motion[50] = t307;
-        const gic_real t308 = t304 + (turn[2] * t208 + turn[1] * t211);
+        const gic_real t303 = s_0_0_2 * t284 + (s_0_2 * t277 + s_0_0 * t212) + t295;
+        const gic_real alpha_x = t165 * t298;
+        motion[HMMWV14_ALPHA_X] = alpha_x;
+        const gic_real t305 = t280 * t288 + (s_0_2_2 * t278 + s_0_1_2 * t275) + (t273 * t290 + t279 * t286);
+        const gic_real t306 = t237 - k[33] * alpha_x;
+        const gic_real alpha_z_2 = t145 * (t299 - t153 * alpha_x);
+        motion[30 + HMMWV14_ALPHA_Z] = alpha_z_2;
+        const gic_real t308 = alpha_x + (turn[2] * t208 + turn[1] * omega_z);
         const gic_real t309 = t121 * t301 + (t117 * t294 + (t198 * t259 - t255 * t262));
-        const gic_real t310 = R(1.0000991451474175) * (t234 - R(-0.014080511689981543) * t304 - k[34] * t306);
-        motion[20] = t310;
-        const gic_real t311 = R(-1.000000292873454) * t306;
-        motion[19] = t311;
+        const gic_real alpha_z = R(1.0000991451474175) * (t234 - R(-0.014080511689981543) * alpha_x - k[34] * t306);
+        motion[HMMWV14_ALPHA_Z] = alpha_z;
+        const gic_real alpha_y = R(-1.000000292873454) * t306;
+        motion[HMMWV14_ALPHA_Y] = alpha_y;
         const gic_real t312 = t120 * t301 + (t121 * t294 + (t255 * t263 - t191 * t259));
-        const gic_real t313 = t307 * t103 + (turn[2] * t247 + t251 - t283 * t105);
-        const gic_real t314 = R(5.813) * (t304 * t58 + t258 - t311 * t55);
-        const gic_real t315 = t307 + (turn[0] * t193 - turn[1] * t190);
-        const gic_real t316 = t311 + (turn[2] * t206 - turn[0] * t211);
+        const gic_real t313 = alpha_z_2 * t103 + (turn[2] * t247 + t251 - alpha_x_2 * t105);
+        const gic_real t314 = R(5.813) * (alpha_x * t58 + t258 - alpha_y * t55);
+        const gic_real t315 = alpha_z_2 + (turn[0] * omega_y_2 - turn[1] * omega_x_2);
+        const gic_real t316 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
         const gic_real t317 = t123 * t301 + (t122 * t294 + (t191 * t262 - t198 * t263));
-        const gic_real t318 = R(90.555) * (t293 * t105 + t264 - t307 * t104);
-        const gic_real t319 = t310 - (turn[1] * t206 + turn[0] * t208);
-        const gic_real t320 = R(5.813) * (t311 * t56 + t269 - t310 * t58);
+        const gic_real t318 = R(90.555) * (alpha_y_2 * t105 + t264 - alpha_z_2 * t104);
+        const gic_real t319 = alpha_z - (turn[1] * omega_x + turn[0] * t208);
+        const gic_real t320 = R(5.813) * (alpha_y * t56 + t269 - alpha_z * t58);
         const gic_real t321 = t72 * t316 + (t69 * t308 + (t256 * t266 - t257 * t267));
         const gic_real t322 = t70 * t316 + (t72 * t308 + (t257 * t268 - t209 * t266));
         const gic_real t323 = t74 * t316 + (t73 * t308 + (t209 * t267 - t256 * t268));
-        const gic_real t324 = R(5.813) * (t310 * t55 + (t270 - t304 * t56));
+        const gic_real t324 = R(5.813) * (alpha_z * t55 + (t270 - alpha_x * t56));
         const gic_real t325 = R(90.555) * t300;
         const gic_real t326 = t122 * t315 + t309;
         const gic_real t327 = t123 * t315 + t312;
         const gic_real t328 = t116 * t315 + t317;
         const gic_real t329 = R(90.555) * t313;
         const gic_real t330 = t73 * t319 + t321;
-        const gic_real t331 = t67 * t289 + t111 * t290 + (t71 * t288 + (t277 + t278) - t112 * t286);
-        inertia[20] = t331;
+        const gic_real along_0_moment_z = t67 * t289 + t111 * t290 + (t71 * t288 + (t277 + t278) - t112 * t286);
+        inertia[HMMWV14_I_COORDINATE + 5] = along_0_moment_z;
         const gic_real t332 = t74 * t319 + t322;
         const gic_real t333 = t63 * t319 + t323;
-        const gic_real t334 = t216 * t328 + t189 * t327 + (t188 * t326 + t329 * t273);
+        const gic_real t334 = s_0_2_2 * t328 + s_0_1_2 * t327 + (s_0_0_2 * t326 + t329 * t273);
         const gic_real t335 = t71 * t314 + (t326 + t112 * t325) + (t330 - t113 * t329);
         const gic_real t336 = t318 * t279 + (t314 * t210 + t325 * t194) - t205 * t332;
         const gic_real t337 = t327 - t111 * t325 - t67 * t314 + (t332 + t113 * t318);
-        const gic_real t338 = t328 + t111 * t329 + (t333 - t112 * t318) + (t67 * t324 - t71 * t320);
-        inertia[14] = t338;
-        const gic_real t339 = t297 - t113 * t290;
-        inertia[18] = t339;
-        const gic_real t340 = t335 - t68 * t324;
-        inertia[12] = t340;
-        const gic_real t341 = t113 * t286 + t302;
-        inertia[19] = t341;
-        const gic_real t342 = t320 + t318;
-        inertia[9] = t342;
-        const gic_real t343 = t324 + t329;
-        inertia[10] = t343;
-        const gic_real t344 = t314 + t325;
-        inertia[11] = t344;
-        const gic_real t345 = t334 + (t203 * t333 + t201 * t330) + (t336 + (t324 * t281 - t320 * t280));
-        inertia[21] = t345;
-        const gic_real t346 = t68 * t320 + t337;
-        inertia[13] = t346;
-        const gic_real t347 = t286 - t288;
-        inertia[15] = t347;
-        const gic_real t348 = t289 + t290;
-        inertia[16] = t348;
-        const gic_real t349 = t303 + t305;
-        inertia[22] = t349;
+        const gic_real inertia_moment_z = t328 + t111 * t329 + (t333 - t112 * t318) + (t67 * t324 - t71 * t320);
+        inertia[HMMWV14_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t297 - t113 * t290;
+        inertia[HMMWV14_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real inertia_moment_x = t335 - t68 * t324;
+        inertia[HMMWV14_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_moment_y = t113 * t286 + t302;
+        inertia[HMMWV14_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real inertia_force_x = t320 + t318;
+        inertia[HMMWV14_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_y = t324 + t329;
+        inertia[HMMWV14_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_force_z = t314 + t325;
+        inertia[HMMWV14_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_bias = t334 + (s_0_2 * t333 + s_0_0 * t330) + (t336 + (t324 * t281 - t320 * t280));
+        inertia[HMMWV14_I_COORDINATE + 6] = along_0_bias;
+        const gic_real inertia_moment_y = t68 * t320 + t337;
+        inertia[HMMWV14_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real along_0_force_x = t286 - t288;
+        inertia[HMMWV14_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = t289 + t290;
+        inertia[HMMWV14_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real mass_0 = t303 + t305;
+        inertia[HMMWV14_I_COORDINATE + 7] = mass_0;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1630,107 +2005,173 @@ static int hmmwv14_solve_uca_r_l_wheel_r_l(hmmwv14 *self, const gic_real *GIC_RE
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv14_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv14_residual_uca_r_l_wheel_r_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv14_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.33401) * motion[35] + k[35] * motion[34];
-        const gic_real t2 = R(2.8645315225742096e-09) * motion[5] + (R(-0.17745448389306268) + k[36] * motion[4]);
-        const gic_real t3 = R(1.9249811512335512e-18) + GIC_FABS(R(2.928503331078754) * (motion[30] + t1 - (R(-1.475859) + t2)));
-        const gic_real t4 = R(0.33401) * motion[38] + k[35] * motion[37];
-        const gic_real t5 = R(2.8645315225742096e-09) * motion[8] + (k[9] + k[36] * motion[7]);
-        const gic_real t6 = t3 + GIC_FABS(R(2.928503331078754) * (motion[31] + t4 - (k[2] + t5)));
-        const gic_real t7 = R(0.33401) * motion[41] + k[35] * motion[40];
-        const gic_real t8 = R(2.8645315225742096e-09) * motion[11] + (R(-0.0024988976639120503) + k[36] * motion[10]);
-        const gic_real t9 = t6 + GIC_FABS(R(2.928503331078754) * (motion[32] + t7 - (R(0.22567900000000007) + t8)));
-        const gic_real t10 = k[0] * m0[7];
-        const gic_real t11 = t9 + GIC_FABS(R(2.928503331078754) * (motion[30] - R(-1.653405))) + GIC_FABS(R(2.928503331078754) * (motion[31] - (t10 + k[1])));
-        const gic_real t12 = k[0] * m0[10];
-        const gic_real t13 = R(0.10883900000000002) * motion[41] + (k[28] * motion[40] + R(0.1347216) * motion[39]);
-        const gic_real t14 = motion[32] + t13 - R(0.058674000000000004);
-        const gic_real t15 = R(0.10883900000000002) * motion[38] + (k[28] * motion[37] + R(0.1347216) * motion[36]);
-        const gic_real t16 = motion[31] + t15 - k[19];
-        const gic_real t17 = R(0.10883900000000002) * motion[35] + (k[28] * motion[34] + R(0.1347216) * motion[33]);
-        const gic_real t18 = motion[30] + t17 - R(-1.465699);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = R(0.33401) * motion[30 + HMMWV14_A_XZ] + k[35] * motion[30 + HMMWV14_A_XY];
+        const gic_real t2 = R(2.8645315225742096e-09) * motion[HMMWV14_A_XZ] + (R(-0.17745448389306268) + k[36] *
+            motion[HMMWV14_A_XY]);
+        const gic_real t3 = R(1.9249811512335512e-18) + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_X] + t1 -
+            (R(-1.475859) + t2)));
+        const gic_real t4 = R(0.33401) * motion[30 + HMMWV14_A_YZ] + k[35] * motion[30 + HMMWV14_A_YY];
+        const gic_real t5 = R(2.8645315225742096e-09) * motion[HMMWV14_A_YZ] + (k[9] + k[36] * motion[HMMWV14_A_YY]);
+        const gic_real t6 = t3 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_Y] + t4 - (k[2] + t5)));
+        const gic_real t7 = R(0.33401) * motion[30 + HMMWV14_A_ZZ] + k[35] * motion[30 + HMMWV14_A_ZY];
+        const gic_real t8 = R(2.8645315225742096e-09) * motion[HMMWV14_A_ZZ] + (R(-0.0024988976639120503) + k[36] *
+            motion[HMMWV14_A_ZY]);
+        const gic_real t9 = t6 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_Z] + t7 -
+            (R(0.22567900000000007) + t8)));
+        const gic_real t10 = k[0] * m0[HMMWV14_A_YY];
+        const gic_real t11 = t9 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_X] - R(-1.653405))) +
+            GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_Y] - (t10 + k[1])));
+        const gic_real t12 = k[0] * m0[HMMWV14_A_ZY];
+        const gic_real t13 = R(0.10883900000000002) * motion[30 + HMMWV14_A_ZZ] + (k[28] * motion[30 + HMMWV14_A_ZY] +
+            R(0.1347216) * motion[30 + HMMWV14_A_ZX]);
+        const gic_real t14 = motion[30 + HMMWV14_C_Z] + t13 - R(0.058674000000000004);
+        const gic_real t15 = R(0.10883900000000002) * motion[30 + HMMWV14_A_YZ] + (k[28] * motion[30 + HMMWV14_A_YY] +
+            R(0.1347216) * motion[30 + HMMWV14_A_YX]);
+        const gic_real t16 = motion[30 + HMMWV14_C_Y] + t15 - k[19];
+        const gic_real t17 = R(0.10883900000000002) * motion[30 + HMMWV14_A_XZ] + (k[28] * motion[30 + HMMWV14_A_XY] +
+            R(0.1347216) * motion[30 + HMMWV14_A_XX]);
+        const gic_real t18 = motion[30 + HMMWV14_C_X] + t17 - R(-1.465699);
         const gic_real t19 = t14 * t14 + (t16 * t16 + t18 * t18) - R(0.1714924505628);
         const gic_real t20 = (GIC_FABS(t18) + GIC_FABS(t16) + GIC_FABS(t14)) * R(0.34147135480007684);
         const gic_real t21 = R(2.0) / (t20 + R(0.13831426985291936));
-        const gic_real t22 = t11 + GIC_FABS(R(2.928503331078754) * (motion[32] - t12)) + GIC_FABS(R(0.5) * t19 * t21);
-        const gic_real t23 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
-        const gic_real t24 = GIC_FABS(R(0.014080507566174662) * motion[10] + (k[5] * motion[7] + R(0.9999005718370345) * motion[4]));
-        const gic_real t25 = t22 + R(2.220446049250313e-16) + GIC_FABS(t23) + t24 + GIC_FABS(k[5] * motion[10] - R(0.014080507566174662) * motion[7] - motion[5]);
-        const gic_real t26 = t25 + GIC_FABS(R(0.014080507566174662) * motion[4] - R(0.9999005718370345) * motion[10] - motion[8]);
-        const gic_real t27 = t26 + GIC_FABS(R(0.9999005718370345) * motion[7] - k[5] * motion[4] - motion[11]);
-        const gic_real t28 = motion[39] * motion[39] + (motion[36] * motion[36] + motion[33] * motion[33]) - R(1.0);
-        const gic_real t29 = motion[40] * motion[40] + (motion[37] * motion[37] + motion[34] * motion[34]) - R(1.0);
-        const gic_real t30 = GIC_FABS(motion[39] * motion[40] + (motion[36] * motion[37] + motion[33] * motion[34]));
-        const gic_real t31 = t27 + GIC_FABS(t28) + GIC_FABS(t29) + t30 + GIC_FABS(motion[36] * motion[40] - motion[37] * motion[39] - motion[35]);
-        const gic_real t32 = t31 + GIC_FABS(motion[34] * motion[39] - motion[33] * motion[40] - motion[38]);
-        const gic_real t33 = t32 + GIC_FABS(motion[33] * motion[37] - motion[34] * motion[36] - motion[41]);
-        const gic_real t34 = R(1.0000991451474173) * (R(-0.014080511689981543) * motion[24] + k[37] * motion[25] + R(0.9999008646813683) * motion[26]);
-        const gic_real t35 = R(1.000000292873454) * (k[38] * motion[24] + R(-0.9999997071266318) * motion[25] + k[39] * motion[26]);
-        const gic_real t36 = t5 * motion[26] - t8 * motion[25] + t7 * motion[55] - t4 * motion[56];
+        const gic_real t22 = t11 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_C_Z] - t12)) + GIC_FABS(R(0.5) *
+            t19 * t21);
+        const gic_real t23 = motion[HMMWV14_A_ZY] * motion[HMMWV14_A_ZY] + (motion[HMMWV14_A_YY] *
+            motion[HMMWV14_A_YY] + motion[HMMWV14_A_XY] * motion[HMMWV14_A_XY]) - R(1.0);
+        const gic_real t24 = GIC_FABS(R(0.014080507566174662) * motion[HMMWV14_A_ZY] + (k[5] * motion[HMMWV14_A_YY] +
+            R(0.9999005718370345) * motion[HMMWV14_A_XY]));
+        const gic_real t25 = t22 + R(2.220446049250313e-16) + GIC_FABS(t23) + t24 + GIC_FABS(k[5] *
+            motion[HMMWV14_A_ZY] - R(0.014080507566174662) * motion[HMMWV14_A_YY] - motion[HMMWV14_A_XZ]);
+        const gic_real t26 = t25 + GIC_FABS(R(0.014080507566174662) * motion[HMMWV14_A_XY] - R(0.9999005718370345) *
+            motion[HMMWV14_A_ZY] - motion[HMMWV14_A_YZ]);
+        const gic_real t27 = t26 + GIC_FABS(R(0.9999005718370345) * motion[HMMWV14_A_YY] - k[5] * motion[HMMWV14_A_XY] -
+            motion[HMMWV14_A_ZZ]);
+        const gic_real t28 = motion[30 + HMMWV14_A_ZX] * motion[30 + HMMWV14_A_ZX] + (motion[30 + HMMWV14_A_YX] *
+            motion[30 + HMMWV14_A_YX] + motion[30 + HMMWV14_A_XX] * motion[30 + HMMWV14_A_XX]) - R(1.0);
+        const gic_real t29 = motion[30 + HMMWV14_A_ZY] * motion[30 + HMMWV14_A_ZY] + (motion[30 + HMMWV14_A_YY] *
+            motion[30 + HMMWV14_A_YY] + motion[30 + HMMWV14_A_XY] * motion[30 + HMMWV14_A_XY]) - R(1.0);
+        const gic_real t30 = GIC_FABS(motion[30 + HMMWV14_A_ZX] * motion[30 + HMMWV14_A_ZY] +
+            (motion[30 + HMMWV14_A_YX] * motion[30 + HMMWV14_A_YY] + motion[30 + HMMWV14_A_XX] *
+            motion[30 + HMMWV14_A_XY]));
+        const gic_real t31 = t27 + GIC_FABS(t28) + GIC_FABS(t29) + t30 + GIC_FABS(motion[30 + HMMWV14_A_YX] *
+            motion[30 + HMMWV14_A_ZY] - motion[30 + HMMWV14_A_YY] * motion[30 + HMMWV14_A_ZX] -
+            motion[30 + HMMWV14_A_XZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[30 + HMMWV14_A_XY] * motion[30 + HMMWV14_A_ZX] -
+            motion[30 + HMMWV14_A_XX] * motion[30 + HMMWV14_A_ZY] - motion[30 + HMMWV14_A_YZ]);
+        const gic_real t33 = t32 + GIC_FABS(motion[30 + HMMWV14_A_XX] * motion[30 + HMMWV14_A_YY] -
+            motion[30 + HMMWV14_A_XY] * motion[30 + HMMWV14_A_YX] - motion[30 + HMMWV14_A_ZZ]);
+        const gic_real t34 = R(1.0000991451474173) * (R(-0.014080511689981543) * motion[HMMWV14_S + 0] + k[37] *
+            motion[HMMWV14_S + 1] + R(0.9999008646813683) * motion[HMMWV14_S + 2]);
+        const gic_real t35 = R(1.000000292873454) * (k[38] * motion[HMMWV14_S + 0] + R(-0.9999997071266318) *
+            motion[HMMWV14_S + 1] + k[39] * motion[HMMWV14_S + 2]);
+        const gic_real t36 = t5 * motion[HMMWV14_S + 2] - t8 * motion[HMMWV14_S + 1] + t7 * motion[30 + HMMWV14_S + 1] -
+            t4 * motion[30 + HMMWV14_S + 2];
         const gic_real t37 = GIC_FABS(t34) + GIC_FABS(t35) + GIC_FABS(R(2.928503331078754) * t36);
-        const gic_real t38 = t8 * motion[24] - t2 * motion[26] - t7 * motion[54] + t1 * motion[56];
-        const gic_real t39 = t2 * motion[25] - t5 * motion[24] + t4 * motion[54] - t1 * motion[55];
-        const gic_real t40 = t37 + GIC_FABS(R(2.928503331078754) * (motion[58] + t38)) + GIC_FABS(R(2.928503331078754) * (motion[59] + t39));
-        const gic_real t41 = t40 + GIC_FABS(R(2.928503331078754) * (m0[24] * t12 + motion[58])) + GIC_FABS(R(2.928503331078754) * (motion[59] - m0[24] * t10));
-        const gic_real t42 = (t15 * t14 - t13 * t16) * motion[54] + (t13 * t18 - t17 * t14) * motion[55];
-        const gic_real t43 = t42 + (t17 * t16 - t15 * t18) * motion[56] + t16 * motion[58];
-        const gic_real t44 = R(2.928503331078754) * (GIC_FABS(motion[58]) + GIC_FABS(motion[59])) + (GIC_FABS(motion[54]) + GIC_FABS(motion[55]) + GIC_FABS(motion[56]));
-        const gic_real t45 = GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]) + t44;
-        const gic_real t46 = t45 + GIC_FABS(m0[24]);
-        const gic_real t47 = (t41 + GIC_FABS(t21 * (t43 + t14 * motion[59]))) / (t46 + R(1e-30));
-        const gic_real t48 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(motion[13] - rate[0] * motion[25]);
-        const gic_real t49 = t48 + GIC_FABS(motion[14] - rate[0] * motion[26]) + GIC_FABS(motion[42] - rate[0] * motion[54]);
-        const gic_real t50 = t49 + GIC_FABS(motion[43] - rate[0] * motion[55]) + GIC_FABS(motion[44] - rate[0] * motion[56]);
-        const gic_real t51 = t50 + GIC_FABS(R(2.928503331078754) * (motion[46] - rate[0] * motion[58])) + GIC_FABS(R(2.928503331078754) * (motion[47] - rate[0] * motion[59]));
-        const gic_real t52 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
-        const gic_real t53 = R(2.928503331078754) * (GIC_FABS(motion[46]) + GIC_FABS(motion[47]));
-        const gic_real t54 = GIC_FABS(motion[42]) + GIC_FABS(motion[43]) + GIC_FABS(motion[44]);
+        const gic_real t38 = t8 * motion[HMMWV14_S + 0] - t2 * motion[HMMWV14_S + 2] - t7 * motion[30 + HMMWV14_S + 0] +
+            t1 * motion[30 + HMMWV14_S + 2];
+        const gic_real t39 = t2 * motion[HMMWV14_S + 1] - t5 * motion[HMMWV14_S + 0] + t4 * motion[30 + HMMWV14_S + 0] -
+            t1 * motion[30 + HMMWV14_S + 1];
+        const gic_real t40 = t37 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_S + 4] + t38)) +
+            GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_S + 5] + t39));
+        const gic_real t41 = t40 + GIC_FABS(R(2.928503331078754) * (m0[HMMWV14_S + 0] * t12 +
+            motion[30 + HMMWV14_S + 4])) + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_S + 5] -
+            m0[HMMWV14_S + 0] * t10));
+        const gic_real t42 = (t15 * t14 - t13 * t16) * motion[30 + HMMWV14_S + 0] + (t13 * t18 - t17 * t14) *
+            motion[30 + HMMWV14_S + 1];
+        const gic_real t43 = t42 + (t17 * t16 - t15 * t18) * motion[30 + HMMWV14_S + 2] + t16 *
+            motion[30 + HMMWV14_S + 4];
+        const gic_real t44 = R(2.928503331078754) * (GIC_FABS(motion[30 + HMMWV14_S + 4]) +
+            GIC_FABS(motion[30 + HMMWV14_S + 5])) + (GIC_FABS(motion[30 + HMMWV14_S + 0]) +
+            GIC_FABS(motion[30 + HMMWV14_S + 1]) + GIC_FABS(motion[30 + HMMWV14_S + 2]));
+        const gic_real t45 = GIC_FABS(motion[HMMWV14_S + 0]) + GIC_FABS(motion[HMMWV14_S + 1]) +
+            GIC_FABS(motion[HMMWV14_S + 2]) + t44;
+        const gic_real t46 = t45 + GIC_FABS(m0[HMMWV14_S + 0]);
+        const gic_real t47 = (t41 + GIC_FABS(t21 * (t43 + t14 * motion[30 + HMMWV14_S + 5]))) / (t46 + R(1e-30));
+        const gic_real t48 = GIC_FABS(motion[HMMWV14_OMEGA_X] - rate[0] * motion[HMMWV14_S + 0]) +
+            GIC_FABS(motion[HMMWV14_OMEGA_Y] - rate[0] * motion[HMMWV14_S + 1]);
+        const gic_real t49 = t48 + GIC_FABS(motion[HMMWV14_OMEGA_Z] - rate[0] * motion[HMMWV14_S + 2]) +
+            GIC_FABS(motion[30 + HMMWV14_OMEGA_X] - rate[0] * motion[30 + HMMWV14_S + 0]);
+        const gic_real t50 = t49 + GIC_FABS(motion[30 + HMMWV14_OMEGA_Y] - rate[0] * motion[30 + HMMWV14_S + 1]) +
+            GIC_FABS(motion[30 + HMMWV14_OMEGA_Z] - rate[0] * motion[30 + HMMWV14_S + 2]);
+        const gic_real t51 = t50 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_VELOCITY_Y] - rate[0] *
+            motion[30 + HMMWV14_S + 4])) + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_VELOCITY_Z] - rate[0] *
+            motion[30 + HMMWV14_S + 5]));
+        const gic_real t52 = GIC_FABS(motion[HMMWV14_OMEGA_X]) + GIC_FABS(motion[HMMWV14_OMEGA_Y]) +
+            GIC_FABS(motion[HMMWV14_OMEGA_Z]);
+        const gic_real t53 = R(2.928503331078754) * (GIC_FABS(motion[30 + HMMWV14_VELOCITY_Y]) +
+            GIC_FABS(motion[30 + HMMWV14_VELOCITY_Z]));
+        const gic_real t54 = GIC_FABS(motion[30 + HMMWV14_OMEGA_X]) + GIC_FABS(motion[30 + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(motion[30 + HMMWV14_OMEGA_Z]);
         const gic_real t55 = t46 * GIC_FABS(rate[0]);
         const gic_real t56 = t47 + t51 / (R(1e-30) + (t52 + (t53 + t54) + t55));
-        const gic_real t57 = R(0.9999005718370345) * motion[14] - R(0.014080507566174662) * motion[12];
-        const gic_real t58 = R(0.014080507566174662) * motion[13] - k[5] * motion[14];
-        const gic_real t59 = motion[12] * t57 - motion[13] * t58 + (k[5] * motion[18] - R(0.9999005718370345) * motion[19]);
-        const gic_real t60 = k[5] * motion[12] - R(0.9999005718370345) * motion[13];
-        const gic_real t61 = motion[14] * t58 - motion[12] * t60 + (R(0.9999005718370345) * motion[20] - R(0.014080507566174662) * motion[18]);
-        const gic_real t62 = motion[13] * t60 - motion[14] * t57 + (R(0.014080507566174662) * motion[19] - k[5] * motion[20]);
+        const gic_real t57 = R(0.9999005718370345) * motion[HMMWV14_OMEGA_Z] - R(0.014080507566174662) *
+            motion[HMMWV14_OMEGA_X];
+        const gic_real t58 = R(0.014080507566174662) * motion[HMMWV14_OMEGA_Y] - k[5] * motion[HMMWV14_OMEGA_Z];
+        const gic_real t59 = motion[HMMWV14_OMEGA_X] * t57 - motion[HMMWV14_OMEGA_Y] * t58 + (k[5] *
+            motion[HMMWV14_ALPHA_X] - R(0.9999005718370345) * motion[HMMWV14_ALPHA_Y]);
+        const gic_real t60 = k[5] * motion[HMMWV14_OMEGA_X] - R(0.9999005718370345) * motion[HMMWV14_OMEGA_Y];
+        const gic_real t61 = motion[HMMWV14_OMEGA_Z] * t58 - motion[HMMWV14_OMEGA_X] * t60 + (R(0.9999005718370345) *
+            motion[HMMWV14_ALPHA_Z] - R(0.014080507566174662) * motion[HMMWV14_ALPHA_X]);
+        const gic_real t62 = motion[HMMWV14_OMEGA_Y] * t60 - motion[HMMWV14_OMEGA_Z] * t57 + (R(0.014080507566174662) *
+            motion[HMMWV14_ALPHA_Y] - k[5] * motion[HMMWV14_ALPHA_Z]);
         const gic_real t63 = (k[3] * t59 + (R(0.9999997071266321) * t61 + k[30] * t62)) * R(1.0000991451474173);
-        const gic_real t64 = GIC_FABS(t63) + GIC_FABS((R(0.9999008646813683) * t59 + R(-0.014080511689981543) * t62) * R(1.000000292873454));
-        const gic_real t65 = t4 * motion[42] - t1 * motion[43];
-        const gic_real t66 = t1 * motion[44] - t7 * motion[42];
-        const gic_real t67 = motion[43] * t65 - motion[44] * t66 + (t7 * motion[49] - t4 * motion[50]);
-        const gic_real t68 = t5 * motion[12] - t2 * motion[13];
-        const gic_real t69 = t2 * motion[14] - t8 * motion[12];
-        const gic_real t70 = motion[13] * t68 - motion[14] * t69 + (t8 * motion[19] - t5 * motion[20]);
-        const gic_real t71 = t7 * motion[43] - t4 * motion[44];
-        const gic_real t72 = motion[44] * t71 - motion[42] * t65 + (t1 * motion[50] - t7 * motion[48]);
-        const gic_real t73 = t8 * motion[13] - t5 * motion[14];
-        const gic_real t74 = motion[14] * t73 - motion[12] * t68 + (t2 * motion[20] - t8 * motion[18]);
-        const gic_real t75 = t64 + GIC_FABS(R(2.928503331078754) * (t67 - t70)) + GIC_FABS(R(2.928503331078754) * (motion[52] + t72 - t74));
-        const gic_real t76 = motion[42] * t66 - motion[43] * t71 + (t4 * motion[48] - t1 * motion[49]);
-        const gic_real t77 = motion[12] * t69 - motion[13] * t73 + (t5 * motion[18] - t2 * motion[19]);
-        const gic_real t78 = R(2.928503331078754) * (m0[12] * (m0[12] * t10) + m0[18] * t12 + motion[52]);
-        const gic_real t79 = t75 + GIC_FABS(R(2.928503331078754) * (motion[53] + t76 - t77)) + GIC_FABS(t78);
-        const gic_real t80 = R(2.928503331078754) * (motion[53] - (m0[18] * t10 - m0[12] * (m0[12] * t12)));
-        const gic_real t81 = t15 * motion[42] - t17 * motion[43];
-        const gic_real t82 = motion[47] + t81;
-        const gic_real t83 = t17 * motion[44] - t13 * motion[42];
-        const gic_real t84 = motion[46] + t83;
-        const gic_real t85 = t13 * motion[43] - t15 * motion[44];
-        const gic_real t86 = motion[42] * t83 - motion[43] * t85 + (t15 * motion[48] - t17 * motion[49]);
-        const gic_real t87 = motion[44] * t85 - motion[42] * t81 + (t17 * motion[50] - t13 * motion[48]);
-        const gic_real t88 = motion[43] * t81 - motion[44] * t83 + (t13 * motion[49] - t15 * motion[50]);
-        const gic_real t89 = t14 * (motion[53] + t86) + (t16 * (motion[52] + t87) + t18 * t88);
+        const gic_real t64 = GIC_FABS(t63) + GIC_FABS((R(0.9999008646813683) * t59 + R(-0.014080511689981543) * t62) *
+            R(1.000000292873454));
+        const gic_real t65 = t4 * motion[30 + HMMWV14_OMEGA_X] - t1 * motion[30 + HMMWV14_OMEGA_Y];
+        const gic_real t66 = t1 * motion[30 + HMMWV14_OMEGA_Z] - t7 * motion[30 + HMMWV14_OMEGA_X];
+        const gic_real t67 = motion[30 + HMMWV14_OMEGA_Y] * t65 - motion[30 + HMMWV14_OMEGA_Z] * t66 + (t7 *
+            motion[30 + HMMWV14_ALPHA_Y] - t4 * motion[30 + HMMWV14_ALPHA_Z]);
+        const gic_real t68 = t5 * motion[HMMWV14_OMEGA_X] - t2 * motion[HMMWV14_OMEGA_Y];
+        const gic_real t69 = t2 * motion[HMMWV14_OMEGA_Z] - t8 * motion[HMMWV14_OMEGA_X];
+        const gic_real t70 = motion[HMMWV14_OMEGA_Y] * t68 - motion[HMMWV14_OMEGA_Z] * t69 + (t8 *
+            motion[HMMWV14_ALPHA_Y] - t5 * motion[HMMWV14_ALPHA_Z]);
+        const gic_real t71 = t7 * motion[30 + HMMWV14_OMEGA_Y] - t4 * motion[30 + HMMWV14_OMEGA_Z];
+        const gic_real t72 = motion[30 + HMMWV14_OMEGA_Z] * t71 - motion[30 + HMMWV14_OMEGA_X] * t65 + (t1 *
+            motion[30 + HMMWV14_ALPHA_Z] - t7 * motion[30 + HMMWV14_ALPHA_X]);
+        const gic_real t73 = t8 * motion[HMMWV14_OMEGA_Y] - t5 * motion[HMMWV14_OMEGA_Z];
+        const gic_real t74 = motion[HMMWV14_OMEGA_Z] * t73 - motion[HMMWV14_OMEGA_X] * t68 + (t2 *
+            motion[HMMWV14_ALPHA_Z] - t8 * motion[HMMWV14_ALPHA_X]);
+        const gic_real t75 = t64 + GIC_FABS(R(2.928503331078754) * (t67 - t70)) + GIC_FABS(R(2.928503331078754) *
+            (motion[30 + HMMWV14_ACCELERATION_Y] + t72 - t74));
+        const gic_real t76 = motion[30 + HMMWV14_OMEGA_X] * t66 - motion[30 + HMMWV14_OMEGA_Y] * t71 + (t4 *
+            motion[30 + HMMWV14_ALPHA_X] - t1 * motion[30 + HMMWV14_ALPHA_Y]);
+        const gic_real t77 = motion[HMMWV14_OMEGA_X] * t69 - motion[HMMWV14_OMEGA_Y] * t73 + (t5 *
+            motion[HMMWV14_ALPHA_X] - t2 * motion[HMMWV14_ALPHA_Y]);
+        const gic_real t78 = R(2.928503331078754) * (m0[HMMWV14_OMEGA_X] * (m0[HMMWV14_OMEGA_X] * t10) +
+            m0[HMMWV14_ALPHA_X] * t12 + motion[30 + HMMWV14_ACCELERATION_Y]);
+        const gic_real t79 = t75 + GIC_FABS(R(2.928503331078754) * (motion[30 + HMMWV14_ACCELERATION_Z] + t76 - t77)) +
+            GIC_FABS(t78);
+        const gic_real t80 = R(2.928503331078754) * (motion[30 + HMMWV14_ACCELERATION_Z] - (m0[HMMWV14_ALPHA_X] * t10 -
+            m0[HMMWV14_OMEGA_X] * (m0[HMMWV14_OMEGA_X] * t12)));
+        const gic_real t81 = t15 * motion[30 + HMMWV14_OMEGA_X] - t17 * motion[30 + HMMWV14_OMEGA_Y];
+        const gic_real t82 = motion[30 + HMMWV14_VELOCITY_Z] + t81;
+        const gic_real t83 = t17 * motion[30 + HMMWV14_OMEGA_Z] - t13 * motion[30 + HMMWV14_OMEGA_X];
+        const gic_real t84 = motion[30 + HMMWV14_VELOCITY_Y] + t83;
+        const gic_real t85 = t13 * motion[30 + HMMWV14_OMEGA_Y] - t15 * motion[30 + HMMWV14_OMEGA_Z];
+        const gic_real t86 = motion[30 + HMMWV14_OMEGA_X] * t83 - motion[30 + HMMWV14_OMEGA_Y] * t85 + (t15 *
+            motion[30 + HMMWV14_ALPHA_X] - t17 * motion[30 + HMMWV14_ALPHA_Y]);
+        const gic_real t87 = motion[30 + HMMWV14_OMEGA_Z] * t85 - motion[30 + HMMWV14_OMEGA_X] * t81 + (t17 *
+            motion[30 + HMMWV14_ALPHA_Z] - t13 * motion[30 + HMMWV14_ALPHA_X]);
+        const gic_real t88 = motion[30 + HMMWV14_OMEGA_Y] * t81 - motion[30 + HMMWV14_OMEGA_Z] * t83 + (t13 *
+            motion[30 + HMMWV14_ALPHA_Y] - t15 * motion[30 + HMMWV14_ALPHA_Z]);
+        const gic_real t89 = t14 * (motion[30 + HMMWV14_ACCELERATION_Z] + t86) + (t16 *
+            (motion[30 + HMMWV14_ACCELERATION_Y] + t87) + t18 * t88);
         const gic_real t90 = t82 * t82 + (t84 * t84 + t85 * t85) + t89;
-        const gic_real t91 = t52 * t52 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t92 = R(2.928503331078754) * (GIC_FABS(motion[52]) + GIC_FABS(motion[53])) + (GIC_FABS(motion[48]) + GIC_FABS(motion[49]) + GIC_FABS(motion[50]));
-        const gic_real t93 = GIC_FABS(m0[12]);
-        const gic_real t94 = t91 + (t53 * t53 + t54 * t54 + t92) + (t93 * t93 + GIC_FABS(m0[18]));
+        const gic_real t91 = t52 * t52 + (GIC_FABS(motion[HMMWV14_ALPHA_X]) + GIC_FABS(motion[HMMWV14_ALPHA_Y]) +
+            GIC_FABS(motion[HMMWV14_ALPHA_Z]));
+        const gic_real t92 = R(2.928503331078754) * (GIC_FABS(motion[30 + HMMWV14_ACCELERATION_Y]) +
+            GIC_FABS(motion[30 + HMMWV14_ACCELERATION_Z])) + (GIC_FABS(motion[30 + HMMWV14_ALPHA_X]) +
+            GIC_FABS(motion[30 + HMMWV14_ALPHA_Y]) + GIC_FABS(motion[30 + HMMWV14_ALPHA_Z]));
+        const gic_real t93 = GIC_FABS(m0[HMMWV14_OMEGA_X]);
+        const gic_real t94 = t91 + (t53 * t53 + t54 * t54 + t92) + (t93 * t93 + GIC_FABS(m0[HMMWV14_ALPHA_X]));
         const gic_real t95 = (t79 + GIC_FABS(t80) + GIC_FABS(t90 * t21)) / (R(1e-30) + (t94 + t55 * t55));
         const gic_real t96 = t56 + t95;
         worst[0] = t33;
@@ -1760,128 +2201,138 @@ static int hmmwv14_recover_piece(hmmwv14 *self, hmmwv14_links *links, const gic_
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[HMMWV14_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = hmmwv14_solve_rack(self, hmmwv14_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[HMMWV14_X_RACK];
+        links->rate[0] = xd[HMMWV14_X_RACK];
+        status = hmmwv14_solve_rack(self, hmmwv14_k_rack[0], links, start + 5, self->motion + HMMWV14_MOTION_RACK,
+            self->inertia + HMMWV14_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = HMMWV14_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[HMMWV14_X_SPRING_F_L];
+        links->rate[0] = xd[HMMWV14_X_SPRING_F_L];
+        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[0], links, start + 5, self->motion +
+            HMMWV14_MOTION_LCA_F_L, self->inertia + HMMWV14_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = HMMWV14_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[HMMWV14_X_SPRING_F_R];
+        links->rate[0] = xd[HMMWV14_X_SPRING_F_R];
+        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[1], links, start + 5, self->motion +
+            HMMWV14_MOTION_LCA_F_R, self->inertia + HMMWV14_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = HMMWV14_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: lca_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
+        links->x[0] = start[HMMWV14_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV14_X_SPRING_R_L];
+        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[2], links, start + 5, self->motion +
+            HMMWV14_MOTION_LCA_R_L, self->inertia + HMMWV14_INERTIA_LCA_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 4;
+            self->head.subset = HMMWV14_SUBSET_LCA_R_L;
             return status;
         }
     }
     /* stage 2: lca_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
+        links->x[0] = start[HMMWV14_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV14_X_SPRING_R_R];
+        status = hmmwv14_solve_lca_f_l(self, hmmwv14_k_lca_f_l[3], links, start + 5, self->motion +
+            HMMWV14_MOTION_LCA_R_R, self->inertia + HMMWV14_INERTIA_LCA_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = HMMWV14_SUBSET_LCA_R_R;
             return status;
         }
     }
     /* stage 3: uca_f_l wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[HMMWV14_X_RACK] && links->same[HMMWV14_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = hmmwv14_solve_uca_f_l_wheel_f_l(self, hmmwv14_k_uca_f_l_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + HMMWV14_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV14_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[HMMWV14_X_RACK];
+        links->rate[0] = xd[HMMWV14_X_RACK];
+        links->x[1] = start[HMMWV14_X_SPRING_F_L];
+        links->rate[1] = xd[HMMWV14_X_SPRING_F_L];
+        status = hmmwv14_solve_uca_f_l_wheel_f_l(self, hmmwv14_k_uca_f_l_wheel_f_l[0], links, start + 5, self->motion +
+            HMMWV14_MOTION_UCA_F_L, self->inertia + HMMWV14_INERTIA_UCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = HMMWV14_SUBSET_UCA_F_L;
             return status;
         }
     }
     /* stage 3: uca_f_r wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[HMMWV14_X_RACK] && links->same[HMMWV14_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = hmmwv14_solve_uca_f_l_wheel_f_l(self, hmmwv14_k_uca_f_l_wheel_f_l[1], links, start + 5, self->motion + 222, self->inertia + 147);
+        links->known[0] = self->motion + HMMWV14_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV14_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[HMMWV14_X_RACK];
+        links->rate[0] = xd[HMMWV14_X_RACK];
+        links->x[1] = start[HMMWV14_X_SPRING_F_R];
+        links->rate[1] = xd[HMMWV14_X_SPRING_F_R];
+        status = hmmwv14_solve_uca_f_l_wheel_f_l(self, hmmwv14_k_uca_f_l_wheel_f_l[1], links, start + 5, self->motion +
+            HMMWV14_MOTION_UCA_F_R, self->inertia + HMMWV14_INERTIA_UCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = HMMWV14_SUBSET_UCA_F_R;
             return status;
         }
     }
     /* stage 3: uca_r_l wheel_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 90; /* lca_r_l */
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv14_solve_uca_r_l_wheel_r_l(self, hmmwv14_k_uca_r_l_wheel_r_l[0], links, start + 5, self->motion + 294, self->inertia + 179);
+        links->known[0] = self->motion + HMMWV14_MOTION_LCA_R_L; /* lca_r_l */
+        links->x[0] = start[HMMWV14_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV14_X_SPRING_R_L];
+        status = hmmwv14_solve_uca_r_l_wheel_r_l(self, hmmwv14_k_uca_r_l_wheel_r_l[0], links, start + 5, self->motion +
+            HMMWV14_MOTION_UCA_R_L, self->inertia + HMMWV14_INERTIA_UCA_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 8;
+            self->head.subset = HMMWV14_SUBSET_UCA_R_L;
             return status;
         }
     }
     /* stage 3: uca_r_r wheel_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV14_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 120; /* lca_r_r */
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv14_solve_uca_r_l_wheel_r_l(self, hmmwv14_k_uca_r_l_wheel_r_l[1], links, start + 5, self->motion + 354, self->inertia + 202);
+        links->known[0] = self->motion + HMMWV14_MOTION_LCA_R_R; /* lca_r_r */
+        links->x[0] = start[HMMWV14_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV14_X_SPRING_R_R];
+        status = hmmwv14_solve_uca_r_l_wheel_r_l(self, hmmwv14_k_uca_r_l_wheel_r_l[1], links, start + 5, self->motion +
+            HMMWV14_MOTION_UCA_R_R, self->inertia + HMMWV14_INERTIA_UCA_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 9;
+            self->head.subset = HMMWV14_SUBSET_UCA_R_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
 static int hmmwv14_recover_way(hmmwv14 *self, hmmwv14_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
@@ -1904,13 +2355,11 @@ static int hmmwv14_recover_way(hmmwv14 *self, hmmwv14_links *links, const gic_re
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (HMMWV14_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1971,15 +2420,15 @@ static void hmmwv14_gather(hmmwv14 *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
-    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
+    memcpy(x + HMMWV14_X_SPRING_F_L, y + HMMWV14_STATE_SPRING_F_L, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + HMMWV14_X_SPRING_F_L, y + HMMWV14_STATE_SPRING_F_L_RATE, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int hmmwv14_orient(const hmmwv14 *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -2016,7 +2465,8 @@ static GIC_COLD int hmmwv14_about(hmmwv14 *self, int status, int32_t subset, int
 
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2026,82 +2476,133 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[91] + n[201];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 7] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 7];
         if (!(t1 > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, 4, 9);
-        const gic_real t2 = n[114] + n[224];
+            return hmmwv14_about(self, GIC_ERROR_MASS, HMMWV14_SUBSET_LCA_R_L, HMMWV14_STATE_SPRING_R_L);
+        const gic_real t2 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 7] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 7];
         if (!(t2 > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t3 = n[45] + n[146];
+            return hmmwv14_about(self, GIC_ERROR_MASS, HMMWV14_SUBSET_LCA_R_R, HMMWV14_STATE_SPRING_R_R);
+        const gic_real t3 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 7] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 16];
         if (!(t3 > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, 2, 7);
-        const gic_real t4 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
-        const gic_real t5 = t4 + n[182] + n[205] + R(1173.18332588);
-        const gic_real t6 = n[87] + n[197];
+            return hmmwv14_about(self, GIC_ERROR_MASS, HMMWV14_SUBSET_LCA_F_L, HMMWV14_STATE_SPRING_F_L);
+        const gic_real t4 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_SECOND_XX] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_XX] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_XX] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_XX] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_XX] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_XX] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_XX];
+        const gic_real t5 = t4 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_XX] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_XX] + R(1173.18332588);
+        const gic_real t6 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 3] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 3];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t7 = R(1.0) / t1;
         const gic_real t8 = t6 * t7;
-        const gic_real t9 = n[110] + n[220];
+        const gic_real t9 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 3] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 3];
         const gic_real t10 = R(1.0) / t2;
         const gic_real t11 = t9 * t10;
-        const gic_real t12 = n[41] + n[140];
+        const gic_real t12 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 3] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 10];
         const gic_real t13 = R(1.0) / t3;
         const gic_real t14 = t12 * t13;
         const gic_real t15 = t5 - t6 * t8 - t9 * t11 - t12 * t14;
         if (!(t15 - t5 * R(1e-06) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t16 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
-        const gic_real t17 = t16 + n[183] + n[206] + R(3056.8666525999997);
-        const gic_real t18 = n[88] + n[198];
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_OMEGA_X);
+        const gic_real t16 = R(19.803070388473838) + n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_YY] +
+            n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_YY] + n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_YY] +
+            n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_YY] + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_YY] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_YY];
+        const gic_real t17 = t16 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_YY] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_YY] + R(3056.8666525999997);
+        const gic_real t18 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 4] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 4];
         const gic_real t19 = t18 * t7;
-        const gic_real t20 = n[111] + n[221];
+        const gic_real t20 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 4] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 4];
         const gic_real t21 = t20 * t10;
-        const gic_real t22 = n[42] + n[141];
+        const gic_real t22 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 4] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 11];
         const gic_real t23 = t22 * t13;
         const gic_real t24 = t17 - t18 * t19 - t20 * t21 - t22 * t23;
-        const gic_real t25 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t26 = t25 + n[185] + n[208] - t18 * t8 - t20 * t11;
+        const gic_real t25 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_SECOND_XY] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_XY] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_XY] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_XY] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_XY] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_XY] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_XY];
+        const gic_real t26 = t25 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_XY] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_XY] - t18 * t8 - t20 * t11;
         const gic_real t27 = t26 - t22 * t14;
         const gic_real t28 = R(1.0) / t15;
         const gic_real t29 = t27 * t28;
         const gic_real t30 = t24 - t27 * t29;
         if (!(t30 - t17 * R(1e-06) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 16);
-        const gic_real t31 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
-        const gic_real t32 = t31 + n[184] + n[207] + R(3576.74332672);
-        const gic_real t33 = n[89] + n[199];
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_OMEGA_Y);
+        const gic_real t31 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_SECOND_ZZ] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_ZZ] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_ZZ] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_ZZ] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_ZZ] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_ZZ] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_ZZ];
+        const gic_real t32 = t31 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_ZZ] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_ZZ] + R(3576.74332672);
+        const gic_real t33 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 5] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 5];
         const gic_real t34 = t33 * t7;
-        const gic_real t35 = n[112] + n[222];
+        const gic_real t35 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 5] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 5];
         const gic_real t36 = t35 * t10;
-        const gic_real t37 = n[43] + n[142];
+        const gic_real t37 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 5] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 12];
         const gic_real t38 = t37 * t13;
         const gic_real t39 = t32 - t33 * t34 - t35 * t36 - t37 * t38;
-        const gic_real t40 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t41 = t40 + n[186] + n[209] + R(-24.88801056000001) - t33 * t8 - t35 * t11;
+        const gic_real t40 = R(-0.7077651653802236) + n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_XZ] +
+            n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_XZ] + n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_XZ] +
+            n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_XZ] + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_XZ] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_XZ];
+        const gic_real t41 = t40 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_XZ] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_XZ] + R(-24.88801056000001) - t33 * t8 - t35 * t11;
         const gic_real t42 = t41 - t37 * t14;
         const gic_real t43 = t42 * t28;
-        const gic_real t44 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t45 = t44 + n[187] + n[210] - t33 * t19 - t35 * t21;
+        const gic_real t44 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_SECOND_YZ] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_SECOND_YZ] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_SECOND_YZ] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_SECOND_YZ] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_SECOND_YZ] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_SECOND_YZ] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_SECOND_YZ];
+        const gic_real t45 = t44 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_SECOND_YZ] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_SECOND_YZ] - t33 * t19 - t35 * t21;
         const gic_real t46 = t45 - t37 * t23 - t42 * t29;
         const gic_real t47 = R(1.0) / t30;
         const gic_real t48 = t46 * t47;
         const gic_real t49 = t39 - t42 * t43 - t46 * t48;
-        const gic_real t50 = n[194] * t7;
-        const gic_real t51 = n[217] * t10;
-        const gic_real t52 = n[137] * t13;
-        const gic_real t53 = R(2576.9240000000004) - n[194] * t50 - n[217] * t51 - n[137] * t52;
-        const gic_real t54 = n[194] * t8 + n[217] * t11 + n[137] * t14;
+        const gic_real t50 = n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 0] * t7;
+        const gic_real t51 = n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 0] * t10;
+        const gic_real t52 = n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 7] * t13;
+        const gic_real t53 = R(2576.9240000000004) - n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 0] * t50 -
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 0] * t51 -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 7] * t52;
+        const gic_real t54 = n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 0] * t8 +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 0] * t11 +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 7] * t14;
         const gic_real t55 = t54 * t28;
-        const gic_real t56 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
-        const gic_real t57 = t56 + n[181] + n[204] + R(444.4287600000002);
-        const gic_real t58 = t57 - n[194] * t19 - n[217] * t21 - n[137] * t23;
+        const gic_real t56 = R(0.4919654879999997) + n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_FIRST_Z] +
+            n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_FIRST_Z] + n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_FIRST_Z] +
+            n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_FIRST_Z] + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FIRST_Z] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FIRST_Z];
+        const gic_real t57 = t56 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FIRST_Z] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FIRST_Z] + R(444.4287600000002);
+        const gic_real t58 = t57 - n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 0] * t19 -
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 0] * t21 -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 7] * t23;
         const gic_real t59 = t58 + t54 * t29;
         const gic_real t60 = t59 * t47;
         const gic_real t61 = t53 - t54 * t55 - t59 * t60;
-        const gic_real t62 = n[85] + n[195];
+        const gic_real t62 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 1] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 1];
         const gic_real t63 = t62 * t7;
-        const gic_real t64 = n[108] + n[218];
+        const gic_real t64 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 1] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 1];
         const gic_real t65 = t64 * t10;
-        const gic_real t66 = n[39] + n[138];
+        const gic_real t66 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 1] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 8];
         const gic_real t67 = t66 * t13;
         const gic_real t68 = R(2576.9240000000004) - t62 * t63 - t64 * t65 - t66 * t67;
         const gic_real t69 = t57 + t62 * t8 + t64 * t11 + t66 * t14;
@@ -2112,11 +2613,19 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t74 = t62 * t50 + t64 * t51 + t66 * t52 + t69 * t55;
         const gic_real t75 = t74 + t71 * t60;
         const gic_real t76 = t61 * t73 - t75 * t75;
-        const gic_real t77 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
-        const gic_real t78 = t77 + n[180] + n[203];
-        const gic_real t79 = t78 + n[194] * t34 + n[217] * t36 + n[137] * t38;
+        const gic_real t77 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_FIRST_Y] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_FIRST_Y] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_FIRST_Y] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_FIRST_Y] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_FIRST_Y] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FIRST_Y] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FIRST_Y];
+        const gic_real t78 = t77 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FIRST_Y] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FIRST_Y];
+        const gic_real t79 = t78 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 0] * t34 +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 0] * t36 +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 7] * t38;
         const gic_real t80 = t54 * t43 - t79 - t59 * t48;
-        const gic_real t81 = R(13.051414656000006) + n[115] + n[147] + n[179] + n[202] + R(116.84512);
+        const gic_real t81 = R(13.051414656000006) + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FIRST_X] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FIRST_X] + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FIRST_X] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FIRST_X] + R(116.84512);
         const gic_real t82 = t81 - t62 * t34 - t64 * t36 - t66 * t38;
         const gic_real t83 = t82 + t69 * t43 - t71 * t48;
         const gic_real t84 = t80 * t73 + t83 * t75;
@@ -2125,33 +2634,48 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t87 = t49 * t61;
         const gic_real t88 = t87 - t80 * t80;
         if (!(t86 - t88 * R(0.0025769240000000004) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 13);
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_V_Y);
         const gic_real t89 = t49 * t73 - t83 * t83;
         if (!(t86 - t89 * R(0.0025769240000000004) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 12);
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_V_X);
         if (!(t86 - R(1e-06) * (t32 * t76) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 17);
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_OMEGA_Z);
         if (!(t86 - R(1e-06) * (t73 * t87) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 17);
-        const gic_real t90 = n[40] + n[139];
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_OMEGA_Z);
+        const gic_real t90 = n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 2] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 9];
         const gic_real t91 = t90 * t13;
-        const gic_real t92 = R(-0.4919654879999997) + n[133] + n[165] - n[145] * t14;
-        const gic_real t93 = n[86] + n[196];
-        const gic_real t94 = n[109] + n[219];
+        const gic_real t92 = R(-0.4919654879999997) + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 3] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 3] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t14;
+        const gic_real t93 = n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 2] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 2];
+        const gic_real t94 = n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 2] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 2];
         const gic_real t95 = t78 - t93 * t8 - t94 * t11 - t90 * t14;
         const gic_real t96 = t95 * t28;
-        const gic_real t97 = n[134] + n[166] - n[145] * t23 - t92 * t29;
+        const gic_real t97 = n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 4] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 4] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t23 - t92 * t29;
         const gic_real t98 = t81 + t93 * t19 + t94 * t21 + t90 * t23;
         const gic_real t99 = t98 + t95 * t29;
         const gic_real t100 = t99 * t47;
-        const gic_real t101 = n[132] + n[164] - n[145] * t91 - t92 * t96 + t97 * t100;
+        const gic_real t101 = n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 2] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 2] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t91 - t92 * t96 + t97 * t100;
         const gic_real t102 = R(1.0) / t86;
         const gic_real t103 = t93 * t34 + t94 * t36 + t90 * t38 + t95 * t43;
         const gic_real t104 = t99 * t48 - t103;
-        const gic_real t105 = R(13.051414655999999) + n[135] + n[167] - n[145] * t38 - t92 * t43;
+        const gic_real t105 = R(13.051414655999999) + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 5] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 5] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t38 - t92 * t43;
         const gic_real t106 = t105 - t97 * t48;
-        const gic_real t107 = n[130] + n[162] - n[145] * t52 + t92 * t55 - t97 * t60;
-        const gic_real t108 = R(9.072) + n[131] + n[163] - n[145] * t67 + t92 * t70;
+        const gic_real t107 = n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 0] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 0] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t52 + t92 * t55 - t97 * t60;
+        const gic_real t108 = R(9.072) + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 1] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 1] -
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t67 + t92 * t70;
         const gic_real t109 = t108 - t97 * t72;
         const gic_real t110 = t106 * t76 - t107 * t84 - t109 * t85;
         const gic_real t111 = t95 * t55 - (t93 * t50 + t94 * t51 + t90 * t52);
@@ -2163,29 +2687,37 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t117 = t107 * t113 - t106 * t85 + t109 * t88;
         const gic_real t118 = t102 * (t104 * t110 + t112 * t114 + t116 * t117);
         const gic_real t119 = t101 - t118;
-        const gic_real t120 = n[64] + n[172];
-        const gic_real t121 = n[65] + n[173] - t120 * t29;
-        const gic_real t122 = n[66] + n[174] - t120 * t43 - t121 * t48;
-        const gic_real t123 = n[169] + t120 * t55 - t121 * t60;
-        const gic_real t124 = n[62] + n[170] + t120 * t70 - t121 * t72;
+        const gic_real t120 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 3] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 10];
+        const gic_real t121 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 4] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 11] - t120 * t29;
+        const gic_real t122 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 5] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 12] - t120 * t43 - t121 * t48;
+        const gic_real t123 = n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 7] + t120 * t55 - t121 * t60;
+        const gic_real t124 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 1] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 8] + t120 * t70 - t121 * t72;
         const gic_real t125 = t122 * t76 - t123 * t84 - t124 * t85;
         const gic_real t126 = t123 * t89 - t122 * t84 + t124 * t113;
         const gic_real t127 = t123 * t113 - t122 * t85 + t124 * t88;
         const gic_real t128 = t102 * (t104 * t125 + t112 * t126 + t116 * t127);
-        const gic_real t129 = n[63] + n[171] - t120 * t96 + t121 * t100 - t128;
+        const gic_real t129 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 2] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 9] - t120 * t96 + t121 * t100 - t128;
         const gic_real t130 = t120 * t28;
         const gic_real t131 = t121 * t47;
         const gic_real t132 = t102 * (t122 * t110 + t123 * t114 + t124 * t117);
-        const gic_real t133 = n[177] - t92 * t130 - t97 * t131 - t132;
-        const gic_real t134 = n[68] + n[178];
+        const gic_real t133 = n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 15] - t92 * t130 - t97 * t131 - t132;
+        const gic_real t134 = n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 7] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 16];
         const gic_real t135 = t102 * (t122 * t125 + t123 * t126 + t124 * t127);
         const gic_real t136 = t134 - t120 * t130 - t121 * t131 - t135;
         const gic_real t137 = t129 * t133 - t119 * t136;
-        const gic_real t138 = R(9.072) + n[144] + n[176];
-        const gic_real t139 = n[145] * t13;
+        const gic_real t138 = R(9.072) + n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 14] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 14];
+        const gic_real t139 = n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t13;
         const gic_real t140 = t92 * t28;
         const gic_real t141 = t97 * t47;
-        const gic_real t142 = t138 - n[145] * t139 - t92 * t140 - t97 * t141;
+        const gic_real t142 = t138 - n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 15] * t139 - t92 * t140 - t97 *
+            t141;
         const gic_real t143 = t102 * (t106 * t110 + t107 * t114 + t109 * t117);
         const gic_real t144 = t142 - t143;
         const gic_real t145 = t119 * t133 - t129 * t144;
@@ -2202,18 +2734,19 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t156 = t153 * t136;
         const gic_real t157 = t156 - t129 * t129;
         if (!(t155 - R(1e-06) * (t138 * t157) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, 1, 11);
+            return hmmwv14_about(self, GIC_ERROR_MASS, HMMWV14_SUBSET_RACK, HMMWV14_STATE_RACK);
         const gic_real t158 = t153 * t144 - t119 * t119;
         if (!(t155 - R(1e-06) * (t134 * t158) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, 3, 8);
+            return hmmwv14_about(self, GIC_ERROR_MASS, HMMWV14_SUBSET_LCA_F_R, HMMWV14_STATE_SPRING_F_R);
         if (!(t155 - t154 * R(0.0025769240000000004) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 14);
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_V_Z);
         if (!(t155 - R(1e-06) * (t144 * t156) > R(0.0)))
-            return hmmwv14_about(self, GIC_ERROR_MASS, -1, 14);
-        const gic_real t159 = y[17] * R(0.5);
-        const gic_real t160 = y[16] * R(0.5);
-        const gic_real t161 = y[15] * R(0.5);
-        const gic_real t162 = -(e[3] * t159 + (e[2] * t160 + e[1] * t161));
+            return hmmwv14_about(self, GIC_ERROR_MASS, -1, HMMWV14_STATE_V_Z);
+        /* rates of the state */
+        const gic_real t159 = y[HMMWV14_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t160 = y[HMMWV14_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t161 = y[HMMWV14_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t159 + (e[2] * t160 + e[1] * t161));
         const gic_real t163 = e[3] + e[3];
         const gic_real t164 = e[1] * t163;
         const gic_real t165 = e[2] + e[2];
@@ -2227,148 +2760,217 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t173 = e[3] * t165;
         const gic_real t174 = e[0] * t169;
         const gic_real t175 = t173 - t174;
-        const gic_real t176 = m[392] * R(0.09182100000000004) + m[391] * R(-0.12319000000000002);
-        const gic_real t177 = m[389] * R(0.09182100000000004) + m[388] * R(-0.12319000000000002);
-        const gic_real t178 = m[385] + t176;
-        const gic_real t179 = m[384] + t177;
-        const gic_real t180 = m[401] + (m[396] * t176 - m[397] * t177) + (y[15] * t178 - y[16] * t179);
+        /* wheel tire_r_r */
+        const gic_real t176 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
+        const gic_real t177 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t178 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t176;
+        const gic_real t179 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t177;
+        const gic_real t180 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t176 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t177) + (y[HMMWV14_STATE_OMEGA_X] * t178 - y[HMMWV14_STATE_OMEGA_Y] * t179);
         const gic_real t181 = e[3] * t163;
         const gic_real t182 = R(1.0) - (t170 + t181);
-        const gic_real t183 = m[395] * R(0.09182100000000004) + m[394] * R(-0.12319000000000002);
-        const gic_real t184 = m[386] + t183;
-        const gic_real t185 = m[400] + (m[398] * t177 - m[396] * t183) + (y[17] * t179 - y[15] * t184);
+        const gic_real t183 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t184 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t183;
+        const gic_real t185 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t177 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t183) + (y[HMMWV14_STATE_OMEGA_Z] * t179 - y[HMMWV14_STATE_OMEGA_X] * t184);
         const gic_real t186 = e[2] * t169;
         const gic_real t187 = e[0] * t163;
         const gic_real t188 = t186 + t187;
-        const gic_real t189 = m[397] * t183 - m[398] * t176 + (y[16] * t184 - y[17] * t178);
-        const gic_real t190 = y[13] + (t175 * t180 + (t182 * t185 + t188 * t189));
+        const gic_real t189 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t183 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t176 + (y[HMMWV14_STATE_OMEGA_Y] * t184 -
+            y[HMMWV14_STATE_OMEGA_Z] * t178);
+        const gic_real t190 = y[HMMWV14_STATE_V_Y] + (t175 * t180 + (t182 * t185 + t188 * t189));
         const gic_real t191 = t186 - t187;
         const gic_real t192 = R(1.0) - (t171 + t181);
-        const gic_real t193 = y[0] + (t167 * t184 + (t191 * t178 + t192 * t179));
-        const gic_real t194 = y[1] + (t175 * t184 + (t182 * t178 + t188 * t179));
+        const gic_real t193 = y[HMMWV14_STATE_R_X] + (t167 * t184 + (t191 * t178 + t192 * t179));
+        const gic_real t194 = y[HMMWV14_STATE_R_Y] + (t175 * t184 + (t182 * t178 + t188 * t179));
         gic_real road195[3];
         if (!hmmwv14_road_height(self, time, t193, t194, road195))
             return GIC_ERROR_ROAD;
-        const gic_real t196 = y[12] + (t167 * t180 + (t191 * t185 + t192 * t189));
+        const gic_real t196 = y[HMMWV14_STATE_V_X] + (t167 * t180 + (t191 * t185 + t192 * t189));
         const gic_real t197 = t173 + t174;
         const gic_real t198 = t164 - t166;
-        const gic_real t199 = y[14] + (t172 * t180 + (t197 * t185 + t198 * t189));
+        const gic_real t199 = y[HMMWV14_STATE_V_Z] + (t172 * t180 + (t197 * t185 + t198 * t189));
         const gic_real t200 = t190 * road195[2] + t196 * road195[1] - t199;
-        const gic_real t201 = y[2] + (t172 * t184 + (t197 * t178 + t198 * t179));
+        const gic_real t201 = y[HMMWV14_STATE_R_Z] + (t172 * t184 + (t197 * t178 + t198 * t179));
         const gic_real t202 = R(0.4699) + road195[0] - t201;
         const gic_real t203 = GIC_MIN(GIC_MAX(R(100.0) * t202, R(0.0)), R(1.0));
         const gic_real t204 = t200 * (R(500.0) * ((R(3.0) - (t203 + t203)) * (t203 * t203)));
         const gic_real t205 = GIC_MAX(t204 + R(283000.0) * t202, R(0.0));
         const gic_real t206 = t172 * t205;
-        const gic_real t207 = m[332] * R(0.09182100000000004) + m[331] * R(0.12319000000000002);
-        const gic_real t208 = m[329] * R(0.09182100000000004) + m[328] * R(0.12319000000000002);
-        const gic_real t209 = m[325] + t207;
-        const gic_real t210 = m[324] + t208;
-        const gic_real t211 = m[341] + (m[336] * t207 - m[337] * t208) + (y[15] * t209 - y[16] * t210);
-        const gic_real t212 = m[335] * R(0.09182100000000004) + m[334] * R(0.12319000000000002);
-        const gic_real t213 = m[326] + t212;
-        const gic_real t214 = m[340] + (m[338] * t208 - m[336] * t212) + (y[17] * t210 - y[15] * t213);
-        const gic_real t215 = m[337] * t212 - m[338] * t207 + (y[16] * t213 - y[17] * t209);
-        const gic_real t216 = y[13] + (t175 * t211 + (t182 * t214 + t188 * t215));
-        const gic_real t217 = y[0] + (t167 * t213 + (t191 * t209 + t192 * t210));
-        const gic_real t218 = y[1] + (t175 * t213 + (t182 * t209 + t188 * t210));
+        /* wheel tire_r_l */
+        const gic_real t207 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t208 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t209 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t207;
+        const gic_real t210 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t208;
+        const gic_real t211 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t207 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t208) + (y[HMMWV14_STATE_OMEGA_X] * t209 - y[HMMWV14_STATE_OMEGA_Y] * t210);
+        const gic_real t212 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t213 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t212;
+        const gic_real t214 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t208 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t212) + (y[HMMWV14_STATE_OMEGA_Z] * t210 - y[HMMWV14_STATE_OMEGA_X] * t213);
+        const gic_real t215 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t212 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t207 + (y[HMMWV14_STATE_OMEGA_Y] * t213 -
+            y[HMMWV14_STATE_OMEGA_Z] * t209);
+        const gic_real t216 = y[HMMWV14_STATE_V_Y] + (t175 * t211 + (t182 * t214 + t188 * t215));
+        const gic_real t217 = y[HMMWV14_STATE_R_X] + (t167 * t213 + (t191 * t209 + t192 * t210));
+        const gic_real t218 = y[HMMWV14_STATE_R_Y] + (t175 * t213 + (t182 * t209 + t188 * t210));
         gic_real road219[3];
         if (!hmmwv14_road_height(self, time, t217, t218, road219))
             return GIC_ERROR_ROAD;
-        const gic_real t220 = y[12] + (t167 * t211 + (t191 * t214 + t192 * t215));
-        const gic_real t221 = y[14] + (t172 * t211 + (t197 * t214 + t198 * t215));
+        const gic_real t220 = y[HMMWV14_STATE_V_X] + (t167 * t211 + (t191 * t214 + t192 * t215));
+        const gic_real t221 = y[HMMWV14_STATE_V_Z] + (t172 * t211 + (t197 * t214 + t198 * t215));
         const gic_real t222 = t216 * road219[2] + t220 * road219[1] - t221;
-        const gic_real t223 = y[2] + (t172 * t213 + (t197 * t209 + t198 * t210));
+        const gic_real t223 = y[HMMWV14_STATE_R_Z] + (t172 * t213 + (t197 * t209 + t198 * t210));
         const gic_real t224 = R(0.4699) + road219[0] - t223;
         const gic_real t225 = GIC_MIN(GIC_MAX(R(100.0) * t224, R(0.0)), R(1.0));
         const gic_real t226 = t222 * (R(500.0) * ((R(3.0) - (t225 + t225)) * (t225 * t225)));
         const gic_real t227 = GIC_MAX(t226 + R(283000.0) * t224, R(0.0));
         const gic_real t228 = t172 * t227;
-        const gic_real t229 = m[266] * R(0.09182100000000004) + (m[265] * R(-0.12319000000000002) + m[264] * R(-0.004825999999999997));
-        const gic_real t230 = m[263] * R(0.09182100000000004) + (m[262] * R(-0.12319000000000002) + m[261] * R(-0.004825999999999997));
-        const gic_real t231 = m[259] + t229;
-        const gic_real t232 = m[258] + t230;
-        const gic_real t233 = m[275] + (m[270] * t229 - m[271] * t230) + (y[15] * t231 - y[16] * t232);
-        const gic_real t234 = m[269] * R(0.09182100000000004) + (m[268] * R(-0.12319000000000002) + m[267] * R(-0.004825999999999997));
-        const gic_real t235 = m[260] + t234;
-        const gic_real t236 = m[274] + (m[272] * t230 - m[270] * t234) + (y[17] * t232 - y[15] * t235);
-        const gic_real t237 = m[271] * t234 - m[272] * t229 + (y[16] * t235 - y[17] * t231);
-        const gic_real t238 = y[13] + (t175 * t233 + (t182 * t236 + t188 * t237));
-        const gic_real t239 = y[0] + (t167 * t235 + (t191 * t231 + t192 * t232));
-        const gic_real t240 = y[1] + (t175 * t235 + (t182 * t231 + t188 * t232));
+        /* wheel tire_f_r */
+        const gic_real t229 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997));
+        const gic_real t230 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997));
+        const gic_real t231 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t229;
+        const gic_real t232 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t230;
+        const gic_real t233 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t229 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t230) + (y[HMMWV14_STATE_OMEGA_X] * t231 - y[HMMWV14_STATE_OMEGA_Y] * t232);
+        const gic_real t234 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997));
+        const gic_real t235 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t234;
+        const gic_real t236 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t230 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t234) + (y[HMMWV14_STATE_OMEGA_Z] * t232 - y[HMMWV14_STATE_OMEGA_X] * t235);
+        const gic_real t237 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t234 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t229 + (y[HMMWV14_STATE_OMEGA_Y] * t235 -
+            y[HMMWV14_STATE_OMEGA_Z] * t231);
+        const gic_real t238 = y[HMMWV14_STATE_V_Y] + (t175 * t233 + (t182 * t236 + t188 * t237));
+        const gic_real t239 = y[HMMWV14_STATE_R_X] + (t167 * t235 + (t191 * t231 + t192 * t232));
+        const gic_real t240 = y[HMMWV14_STATE_R_Y] + (t175 * t235 + (t182 * t231 + t188 * t232));
         gic_real road241[3];
         if (!hmmwv14_road_height(self, time, t239, t240, road241))
             return GIC_ERROR_ROAD;
-        const gic_real t242 = y[12] + (t167 * t233 + (t191 * t236 + t192 * t237));
-        const gic_real t243 = y[14] + (t172 * t233 + (t197 * t236 + t198 * t237));
+        const gic_real t242 = y[HMMWV14_STATE_V_X] + (t167 * t233 + (t191 * t236 + t192 * t237));
+        const gic_real t243 = y[HMMWV14_STATE_V_Z] + (t172 * t233 + (t197 * t236 + t198 * t237));
         const gic_real t244 = t238 * road241[2] + t242 * road241[1] - t243;
-        const gic_real t245 = y[2] + (t172 * t235 + (t197 * t231 + t198 * t232));
+        const gic_real t245 = y[HMMWV14_STATE_R_Z] + (t172 * t235 + (t197 * t231 + t198 * t232));
         const gic_real t246 = R(0.4699) + road241[0] - t245;
         const gic_real t247 = GIC_MIN(GIC_MAX(R(100.0) * t246, R(0.0)), R(1.0));
         const gic_real t248 = t244 * (R(500.0) * ((R(3.0) - (t247 + t247)) * (t247 * t247)));
         const gic_real t249 = GIC_MAX(t248 + R(283000.0) * t246, R(0.0));
         const gic_real t250 = t172 * t249;
-        const gic_real t251 = m[194] * R(0.09182100000000004) + (m[193] * R(0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t252 = m[191] * R(0.09182100000000004) + (m[190] * R(0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t253 = m[187] + t251;
-        const gic_real t254 = m[186] + t252;
-        const gic_real t255 = m[203] + (m[198] * t251 - m[199] * t252) + (y[15] * t253 - y[16] * t254);
-        const gic_real t256 = m[197] * R(0.09182100000000004) + (m[196] * R(0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t257 = m[188] + t256;
-        const gic_real t258 = m[202] + (m[200] * t252 - m[198] * t256) + (y[17] * t254 - y[15] * t257);
-        const gic_real t259 = m[199] * t256 - m[200] * t251 + (y[16] * t257 - y[17] * t253);
-        const gic_real t260 = y[13] + (t175 * t255 + (t182 * t258 + t188 * t259));
-        const gic_real t261 = y[0] + (t167 * t257 + (t191 * t253 + t192 * t254));
-        const gic_real t262 = y[1] + (t175 * t257 + (t182 * t253 + t188 * t254));
+        /* wheel tire_f_l */
+        const gic_real t251 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997));
+        const gic_real t252 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997));
+        const gic_real t253 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t251;
+        const gic_real t254 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t252;
+        const gic_real t255 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t251 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t252) + (y[HMMWV14_STATE_OMEGA_X] * t253 - y[HMMWV14_STATE_OMEGA_Y] * t254);
+        const gic_real t256 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997));
+        const gic_real t257 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t256;
+        const gic_real t258 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t252 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t256) + (y[HMMWV14_STATE_OMEGA_Z] * t254 - y[HMMWV14_STATE_OMEGA_X] * t257);
+        const gic_real t259 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t256 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t251 + (y[HMMWV14_STATE_OMEGA_Y] * t257 -
+            y[HMMWV14_STATE_OMEGA_Z] * t253);
+        const gic_real t260 = y[HMMWV14_STATE_V_Y] + (t175 * t255 + (t182 * t258 + t188 * t259));
+        const gic_real t261 = y[HMMWV14_STATE_R_X] + (t167 * t257 + (t191 * t253 + t192 * t254));
+        const gic_real t262 = y[HMMWV14_STATE_R_Y] + (t175 * t257 + (t182 * t253 + t188 * t254));
         gic_real road263[3];
         if (!hmmwv14_road_height(self, time, t261, t262, road263))
             return GIC_ERROR_ROAD;
-        const gic_real t264 = y[12] + (t167 * t255 + (t191 * t258 + t192 * t259));
-        const gic_real t265 = y[14] + (t172 * t255 + (t197 * t258 + t198 * t259));
+        const gic_real t264 = y[HMMWV14_STATE_V_X] + (t167 * t255 + (t191 * t258 + t192 * t259));
+        const gic_real t265 = y[HMMWV14_STATE_V_Z] + (t172 * t255 + (t197 * t258 + t198 * t259));
         const gic_real t266 = t260 * road263[2] + t264 * road263[1] - t265;
-        const gic_real t267 = y[2] + (t172 * t257 + (t197 * t253 + t198 * t254));
+        const gic_real t267 = y[HMMWV14_STATE_R_Z] + (t172 * t257 + (t197 * t253 + t198 * t254));
         const gic_real t268 = road263[0] + R(0.4699) - t267;
         const gic_real t269 = GIC_MIN(GIC_MAX(t268 * R(100.0), R(0.0)), R(1.0));
         const gic_real t270 = t266 * ((R(3.0) - (t269 + t269)) * (t269 * t269) * R(500.0));
         const gic_real t271 = GIC_MAX(t270 + t268 * R(283000.0), R(0.0));
         const gic_real t272 = t172 * t271;
-        const gic_real t273 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t273 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.2403881036540444);
         const gic_real t274 = t273 - R(0.32313880000000006);
-        const gic_real t275 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t275 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.2403881036540444);
         const gic_real t276 = R(0.307086) + t275 - R(0.4977892);
         const gic_real t277 = R(1.0) / GIC_SQRT(t274 * t274 + (t276 * t276 + R(4.633797183999867e-05)));
-        const gic_real t278 = t277 * (m[42] * t275 * t274 - m[42] * t273 * t276);
+        const gic_real t278 = t277 * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t275 * t274 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t273 * t276);
         const gic_real t279 = t277 * (t278 * R(17490.8));
         const gic_real t280 = t274 * t279;
-        const gic_real t281 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t281 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.2403881036540444);
         const gic_real t282 = t281 - R(0.32313880000000006);
-        const gic_real t283 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t283 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.2403881036540444);
         const gic_real t284 = R(-0.307086) + t283 - R(-0.4977892);
         const gic_real t285 = R(1.0) / GIC_SQRT(t282 * t282 + (R(4.633797183999867e-05) + t284 * t284));
-        const gic_real t286 = t285 * (m[72] * t283 * t282 - m[72] * t281 * t284);
+        const gic_real t286 = t285 * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t283 * t282 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t281 * t284);
         const gic_real t287 = t285 * (R(17490.8) * t286);
         const gic_real t288 = t282 * t287;
-        const gic_real t289 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
+        /* force shock_r_l */
+        const gic_real t289 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.23915941563573181);
         const gic_real t290 = t289 - R(0.32313880000000006);
-        const gic_real t291 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        const gic_real t291 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.23915941563573181);
         const gic_real t292 = R(0.307086) + t291 - R(0.4977892);
         const gic_real t293 = R(1.0) / GIC_SQRT(t290 * t290 + (R(4.633797183999867e-05) + t292 * t292));
-        const gic_real t294 = t293 * (m[102] * t291 * t290 - m[102] * t289 * t292);
+        const gic_real t294 = t293 * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t291 * t290 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t289 * t292);
         const gic_real t295 = t293 * (t294 * R(24780.4));
         const gic_real t296 = t290 * t295;
-        const gic_real t297 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
+        /* force shock_r_r */
+        const gic_real t297 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.23915941563573181);
         const gic_real t298 = t297 - R(0.32313880000000006);
-        const gic_real t299 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        const gic_real t299 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.23915941563573181);
         const gic_real t300 = R(-0.307086) + t299 - R(-0.4977892);
         const gic_real t301 = R(1.0) / GIC_SQRT(t298 * t298 + (R(4.633797183999867e-05) + t300 * t300));
-        const gic_real t302 = t301 * (m[132] * t299 * t298 - m[132] * t297 * t300);
+        const gic_real t302 = t301 * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t299 * t298 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t297 * t300);
         const gic_real t303 = t301 * (R(24780.4) * t302);
         const gic_real t304 = t298 * t303;
+        /* applied forces: moment and force on the base, and along each coordinate */
         const gic_real t305 = t272 + (t280 + t288 + t296 + t304 - t280 - t288);
-        const gic_real t306 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t307 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t308 = y[16] * R(0.21300000000000008);
-        const gic_real t309 = t306 + n[190] + n[213] + R(2086.52) * (y[15] * t307 - y[16] * t308);
+        const gic_real t306 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_FORCE_Z] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_FORCE_Z] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_FORCE_Z] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_FORCE_Z] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_FORCE_Z] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FORCE_Z] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FORCE_Z];
+        const gic_real t307 = y[HMMWV14_STATE_OMEGA_Z] * R(0.056) - y[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t308 = y[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t309 = t306 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FORCE_Z] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FORCE_Z] + R(2086.52) * (y[HMMWV14_STATE_OMEGA_X] * t307 -
+            y[HMMWV14_STATE_OMEGA_Y] * t308);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
         const gic_real t310 = t206 + (t228 + (t250 + t305 - t296 - t304)) - t309;
         const gic_real t311 = t292 * t295;
         const gic_real t312 = t289 * t311 - t291 * t296;
@@ -2377,8 +2979,12 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t315 = t208 * t313 - t207 * t314;
         const gic_real t316 = t212 * t314 - t208 * t228;
         const gic_real t317 = t207 * t228 - t212 * t313;
-        const gic_real t318 = m[353] * t228 + m[352] * t313 + (m[350] * t315 + (m[349] * t316 + m[348] * t317));
-        const gic_real t319 = m[114] * t312 - (x[2] - R(0.33757)) * R(369167.2) + t318 - (n[90] + n[200]);
+        const gic_real t318 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] * t228 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] * t313 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t315 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t316 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t317));
+        const gic_real t319 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t312 - (x[HMMWV14_X_SPRING_R_L] -
+            R(0.33757)) * R(369167.2) + t318 - (n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_COORDINATE + 6]);
         const gic_real t320 = t300 * t303;
         const gic_real t321 = t297 * t320 - t299 * t304;
         const gic_real t322 = t197 * t205;
@@ -2386,8 +2992,12 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t324 = t177 * t322 - t176 * t323;
         const gic_real t325 = t183 * t323 - t177 * t206;
         const gic_real t326 = t176 * t206 - t183 * t322;
-        const gic_real t327 = m[413] * t206 + m[412] * t322 + (m[410] * t324 + (m[409] * t325 + m[408] * t326));
-        const gic_real t328 = m[144] * t321 - R(369167.2) * (x[3] - R(0.33757)) + t327 - (n[113] + n[223]);
+        const gic_real t327 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] * t206 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] * t322 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t324 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t325 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t326));
+        const gic_real t328 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t321 - R(369167.2) *
+            (x[HMMWV14_X_SPRING_R_R] - R(0.33757)) + t327 - (n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_COORDINATE + 6]);
         const gic_real t329 = t276 * t279;
         const gic_real t330 = t273 * t329 - t275 * t280;
         const gic_real t331 = t197 * t271;
@@ -2395,24 +3005,41 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t333 = t252 * t331 - t251 * t332;
         const gic_real t334 = t256 * t332 - t252 * t272;
         const gic_real t335 = t251 * t272 - t256 * t331;
-        const gic_real t336 = m[221] * t272 + m[220] * t331 + (m[218] * t333 + (m[217] * t334 + m[216] * t335));
-        const gic_real t337 = m[54] * t330 - (x[0] - R(0.31945)) * R(167070.9) + t336 - (n[44] + n[143]);
+        const gic_real t336 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] * t272 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] * t331 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t333 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t334 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t335));
+        const gic_real t337 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t330 - (x[HMMWV14_X_SPRING_F_L] -
+            R(0.31945)) * R(167070.9) + t336 - (n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 13]);
+        /* accelerations */
         const gic_real t338 = t310 - t319 * t146 - t328 * t147 - t337 * t91;
         const gic_real t339 = t197 * t249;
         const gic_real t340 = t229 * t250 - t234 * t339;
         const gic_real t341 = t284 * t287;
         const gic_real t342 = t281 * t341 - t283 * t288;
-        const gic_real t343 = R(0.4977892) * t280 - R(0.32313880000000006) * t329 + (R(-0.4977892) * t288 - R(0.32313880000000006) * t341);
-        const gic_real t344 = t343 + (R(0.4977892) * t296 - R(0.32313880000000006) * t311) + (R(-0.4977892) * t304 - R(0.32313880000000006) * t320);
+        const gic_real t343 = R(0.4977892) * t280 - R(0.32313880000000006) * t329 + (R(-0.4977892) * t288 -
+            R(0.32313880000000006) * t341);
+        const gic_real t344 = t343 + (R(0.4977892) * t296 - R(0.32313880000000006) * t311) + (R(-0.4977892) * t304 -
+            R(0.32313880000000006) * t320);
         const gic_real t345 = t342 + (t330 + (t344 - R(0.307086) * t280) - R(-0.307086) * t288);
-        const gic_real t346 = t335 + (t345 + (m[187] * t272 - m[188] * t331)) + (m[259] * t250 - m[260] * t339);
+        const gic_real t346 = t335 + (t345 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t272 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t331)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t250 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t339);
         const gic_real t347 = t312 + (t340 + t346 - R(0.307086) * t296) - R(-0.307086) * t304;
-        const gic_real t348 = t317 + (t321 + t347 + (m[325] * t228 - m[326] * t313));
-        const gic_real t349 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t350 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t351 = y[16] * R(3056.8666525999997);
-        const gic_real t352 = t349 + n[191] + n[214] + (y[16] * t350 - y[17] * t351);
-        const gic_real t353 = t326 + (t348 + (m[385] * t206 - m[386] * t322)) - t352;
+        const gic_real t348 = t317 + (t321 + t347 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t228 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t313));
+        const gic_real t349 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_MOMENT_X] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_MOMENT_X] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_MOMENT_X] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_MOMENT_X] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_MOMENT_X] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_MOMENT_X] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_MOMENT_X];
+        const gic_real t350 = y[HMMWV14_STATE_OMEGA_Z] * R(3576.74332672) + y[HMMWV14_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t351 = y[HMMWV14_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t352 = t349 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_MOMENT_X] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_MOMENT_X] + (y[HMMWV14_STATE_OMEGA_Y] * t350 -
+            y[HMMWV14_STATE_OMEGA_Z] * t351);
+        const gic_real t353 = t326 + (t348 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t206 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t322)) - t352;
         const gic_real t354 = t353 - t319 * t8 - t328 * t11 - t337 * t14;
         const gic_real t355 = R(0.006807199999999902) * t303;
         const gic_real t356 = R(0.006807199999999902) * t295;
@@ -2420,115 +3047,161 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
         const gic_real t358 = t234 * t357 - t230 * t250;
         const gic_real t359 = R(-0.006807199999999902) * t287;
         const gic_real t360 = R(-0.006807199999999902) * t279;
-        const gic_real t361 = t279 * R(-0.002199670439359969) - R(1.792978) * t280 + (R(-0.002199670439359969) * t287 - R(1.792978) * t288);
-        const gic_real t362 = t361 + (t295 * R(0.002199670439359969) - R(-1.792978) * t296) + (R(0.002199670439359969) * t303 - R(-1.792978) * t304);
+        const gic_real t361 = t279 * R(-0.002199670439359969) - R(1.792978) * t280 + (R(-0.002199670439359969) * t287 -
+            R(1.792978) * t288);
+        const gic_real t362 = t361 + (t295 * R(0.002199670439359969) - R(-1.792978) * t296) + (R(0.002199670439359969) *
+            t303 - R(-1.792978) * t304);
         const gic_real t363 = R(0.09720579999999998) * t280 - t273 * t360 + (t362 + R(1.688965) * t280);
         const gic_real t364 = R(0.09720579999999998) * t288 - t281 * t359 + (t363 + R(1.688965) * t288);
-        const gic_real t365 = t334 + (t364 + (m[188] * t332 - m[186] * t272)) + (m[260] * t357 - m[258] * t250);
+        const gic_real t365 = t334 + (t364 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t332 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t272)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t357 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t250);
         const gic_real t366 = R(-0.09720579999999998) * t296 - t289 * t356 + (t358 + t365 + R(-1.688965) * t296);
         const gic_real t367 = R(-0.09720579999999998) * t304 - t297 * t355 + (t366 + R(-1.688965) * t304);
-        const gic_real t368 = t316 + (t367 + (m[326] * t314 - m[324] * t228)) + (m[386] * t323 - m[384] * t206);
-        const gic_real t369 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t370 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t371 = t369 + n[192] + n[215] + (y[17] * t370 - y[15] * t350);
+        const gic_real t368 = t316 + (t367 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t314 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t228)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t323 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t206);
+        const gic_real t369 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_MOMENT_Y] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_MOMENT_Y] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_MOMENT_Y] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_MOMENT_Y] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_MOMENT_Y] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_MOMENT_Y] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_MOMENT_Y];
+        const gic_real t370 = y[HMMWV14_STATE_OMEGA_Z] * R(-24.88801056000001) + y[HMMWV14_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t371 = t369 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_MOMENT_Y] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_MOMENT_Y] + (y[HMMWV14_STATE_OMEGA_Z] * t370 -
+            y[HMMWV14_STATE_OMEGA_X] * t350);
         const gic_real t372 = t325 + t368 - t371 - t319 * t19 - t328 * t21;
         const gic_real t373 = t372 - t337 * t23 - t29 * t354;
         const gic_real t374 = t230 * t339 - t229 * t357;
-        const gic_real t375 = R(1.792978) * t329 - t279 * R(-0.003388550642239951) + (R(1.792978) * t341 - t287 * R(0.003388550642239951));
-        const gic_real t376 = t375 + (R(-1.792978) * t311 - R(0.003388550642239951) * t295) + (R(-1.792978) * t320 - R(-0.003388550642239951) * t303);
-        const gic_real t377 = t275 * t360 - R(0.09720579999999998) * t329 + (t376 + (t279 * R(-0.00209039581919997) - R(1.688965) * t329));
-        const gic_real t378 = t283 * t359 - R(0.09720579999999998) * t341 + (t377 + (t287 * R(0.00209039581919997) - R(1.688965) * t341));
-        const gic_real t379 = t333 + (t378 + (m[186] * t331 - m[187] * t332)) + (m[258] * t339 - m[259] * t357);
-        const gic_real t380 = t291 * t356 - R(-0.09720579999999998) * t311 + (t374 + t379 + (t295 * R(0.00209039581919997) - R(-1.688965) * t311));
-        const gic_real t381 = t299 * t355 - R(-0.09720579999999998) * t320 + (t380 + (t303 * R(-0.00209039581919997) - R(-1.688965) * t320));
-        const gic_real t382 = t315 + (t381 + (m[324] * t313 - m[325] * t314)) + (m[384] * t322 - m[385] * t323);
-        const gic_real t383 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t384 = t383 + n[193] + n[216] + (y[15] * t351 - y[16] * t370);
+        const gic_real t375 = R(1.792978) * t329 - t279 * R(-0.003388550642239951) + (R(1.792978) * t341 - t287 *
+            R(0.003388550642239951));
+        const gic_real t376 = t375 + (R(-1.792978) * t311 - R(0.003388550642239951) * t295) + (R(-1.792978) * t320 -
+            R(-0.003388550642239951) * t303);
+        const gic_real t377 = t275 * t360 - R(0.09720579999999998) * t329 + (t376 + (t279 * R(-0.00209039581919997) -
+            R(1.688965) * t329));
+        const gic_real t378 = t283 * t359 - R(0.09720579999999998) * t341 + (t377 + (t287 * R(0.00209039581919997) -
+            R(1.688965) * t341));
+        const gic_real t379 = t333 + (t378 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t331 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t332)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t339 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t357);
+        const gic_real t380 = t291 * t356 - R(-0.09720579999999998) * t311 + (t374 + t379 + (t295 *
+            R(0.00209039581919997) - R(-1.688965) * t311));
+        const gic_real t381 = t299 * t355 - R(-0.09720579999999998) * t320 + (t380 + (t303 * R(-0.00209039581919997) -
+            R(-1.688965) * t320));
+        const gic_real t382 = t315 + (t381 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t313 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t314)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t322 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t323);
+        const gic_real t383 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_MOMENT_Z] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_MOMENT_Z] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_MOMENT_Z] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_MOMENT_Z] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_MOMENT_Z] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_MOMENT_Z] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_MOMENT_Z];
+        const gic_real t384 = t383 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_MOMENT_Z] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_MOMENT_Z] + (y[HMMWV14_STATE_OMEGA_X] * t351 -
+            y[HMMWV14_STATE_OMEGA_Y] * t370);
         const gic_real t385 = t324 + t382 - t384 - t319 * t34 - t328 * t36;
         const gic_real t386 = t385 - t337 * t38 - t43 * t354 - t48 * t373;
         const gic_real t387 = t332 + (t360 + t359 + t356 + t355 - t360 - t359);
-        const gic_real t388 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t389 = y[16] * R(0.056);
-        const gic_real t390 = t388 + n[188] + n[211] - R(2086.52) * (y[17] * t307 + y[16] * t389);
+        const gic_real t388 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_FORCE_X] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_FORCE_X] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_FORCE_X] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_FORCE_X] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_FORCE_X] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FORCE_X] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FORCE_X];
+        const gic_real t389 = y[HMMWV14_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t390 = t388 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FORCE_X] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FORCE_X] - R(2086.52) * (y[HMMWV14_STATE_OMEGA_Z] * t307 +
+            y[HMMWV14_STATE_OMEGA_Y] * t389);
         const gic_real t391 = t323 + (t314 + (t357 + t387 - t356 - t355)) - t390;
         const gic_real t392 = t391 - t319 * t50 - t328 * t51 - t337 * t52;
         const gic_real t393 = t392 + t55 * t354 - t60 * t373;
         const gic_real t394 = t331 + (t329 + t341 + t311 + t320 - t329 - t341);
-        const gic_real t395 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t396 = t395 + n[189] + n[212] + R(2086.52) * (y[15] * t389 + y[17] * t308);
+        const gic_real t395 = n[HMMWV14_INERTIA_RACK + HMMWV14_I_FORCE_Y] +
+            n[HMMWV14_INERTIA_LCA_F_L + HMMWV14_I_FORCE_Y] + n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_FORCE_Y] +
+            n[HMMWV14_INERTIA_LCA_R_L + HMMWV14_I_FORCE_Y] + n[HMMWV14_INERTIA_LCA_R_R + HMMWV14_I_FORCE_Y] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_FORCE_Y] + n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_FORCE_Y];
+        const gic_real t396 = t395 + n[HMMWV14_INERTIA_UCA_R_L + HMMWV14_I_FORCE_Y] +
+            n[HMMWV14_INERTIA_UCA_R_R + HMMWV14_I_FORCE_Y] + R(2086.52) * (y[HMMWV14_STATE_OMEGA_X] * t389 +
+            y[HMMWV14_STATE_OMEGA_Z] * t308);
         const gic_real t397 = t322 + (t313 + (t339 + t394 - t311 - t320)) - t396;
         const gic_real t398 = t397 - t319 * t63 - t328 * t65 - t337 * t67;
         const gic_real t399 = t398 + t70 * t354 - t72 * t373;
         const gic_real t400 = t102 * (t149 * t386 + t150 * t393 + t151 * t399);
         const gic_real t401 = t338 - t96 * t354 + t100 * t373 - t400;
-        const gic_real t402 = m[293] * t250 + m[292] * t339 + (m[290] * t374 + (m[289] * t358 + m[288] * t340));
-        const gic_real t403 = m[84] * t342 - R(167070.9) * (x[1] - R(0.31945)) + t402 - (n[67] + n[175]);
+        const gic_real t402 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] * t250 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] * t339 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t374 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t358 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t340));
+        const gic_real t403 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t342 - R(167070.9) *
+            (x[HMMWV14_X_SPRING_F_R] - R(0.31945)) + t402 - (n[HMMWV14_INERTIA_LCA_F_R + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 13]);
         const gic_real t404 = t102 * (t125 * t386 + t126 * t393 + t127 * t399);
         const gic_real t405 = t403 - t130 * t354 - t131 * t373 - t404;
-        const gic_real t406 = m[212] * t333 + (m[211] * t334 + m[210] * t335) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t407 = t406 + (m[284] * t374 + (m[283] * t358 + m[282] * t340));
-        const gic_real t408 = t407 - (n[21] + n[136] + n[168]) - t337 * t139 - t140 * t354;
+        const gic_real t406 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t333 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t334 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t335) -
+            (x[HMMWV14_X_RACK] * R(100000.0) + xd[HMMWV14_X_RACK] * R(12000.0));
+        const gic_real t407 = t406 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t374 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t358 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t340));
+        const gic_real t408 = t407 - (n[HMMWV14_INERTIA_RACK + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_F_L + HMMWV14_I_COORDINATE + 6] +
+            n[HMMWV14_INERTIA_UCA_F_R + HMMWV14_I_COORDINATE + 6]) - t337 * t139 - t140 * t354;
         const gic_real t409 = t102 * (t110 * t386 + t114 * t393 + t117 * t399);
         const gic_real t410 = t408 - t141 * t373 - t409;
         const gic_real t411 = t168 * (t154 * t401 + t145 * t405 + t137 * t410);
         const gic_real t412 = t113 * t393 - t85 * t386 + t88 * t399 - t151 * t411;
         const gic_real t413 = t129 * t119 - t153 * t133;
-        const gic_real t414 = t168 * (t145 * t401 + t158 * t405 + t413 * t410);
-        const gic_real t415 = t168 * (t137 * t401 + t413 * t405 + t157 * t410);
-        const gic_real t416 = t102 * (t412 - t127 * t414 - t117 * t415);
+        const gic_real rate_of_spring_f_r_rate = t168 * (t145 * t401 + t158 * t405 + t413 * t410);
+        const gic_real rate_of_rack_rate = t168 * (t137 * t401 + t413 * t405 + t157 * t410);
+        const gic_real t416 = t102 * (t412 - t127 * rate_of_spring_f_r_rate - t117 * rate_of_rack_rate);
         const gic_real t417 = t89 * t393 - t84 * t386 + t113 * t399 - t150 * t411;
-        const gic_real t418 = t102 * (t417 - t126 * t414 - t114 * t415);
+        const gic_real t418 = t102 * (t417 - t126 * rate_of_spring_f_r_rate - t114 * rate_of_rack_rate);
         const gic_real t419 = t76 * t386 - t84 * t393 - t85 * t399 - t149 * t411;
-        const gic_real t420 = t102 * (t419 - t125 * t414 - t110 * t415);
-        const gic_real t421 = t47 * t373 - t48 * t420 - t60 * t418 - t72 * t416;
-        const gic_real t422 = t421 + t100 * t411 - t131 * t414 - t141 * t415;
-        const gic_real t423 = t28 * t354 - t29 * t422 - t43 * t420 + t55 * t418;
-        const gic_real t424 = t423 + t70 * t416 - t96 * t411 - t130 * t414;
-        const gic_real t425 = t424 - t140 * t415;
-        const gic_real t426 = R(-9.81) + (t172 * t411 + (t197 * t416 + t198 * t418));
-        const gic_real t427 = t337 * t13 - t14 * t425 - t23 * t422 - t38 * t420;
+        const gic_real rate_of_omega_z = t102 * (t419 - t125 * rate_of_spring_f_r_rate - t110 * rate_of_rack_rate);
+        const gic_real t421 = t47 * t373 - t48 * rate_of_omega_z - t60 * t418 - t72 * t416;
+        const gic_real rate_of_omega_y = t421 + t100 * t411 - t131 * rate_of_spring_f_r_rate - t141 * rate_of_rack_rate;
+        const gic_real t423 = t28 * t354 - t29 * rate_of_omega_y - t43 * rate_of_omega_z + t55 * t418;
+        const gic_real t424 = t423 + t70 * t416 - t96 * t411 - t130 * rate_of_spring_f_r_rate;
+        const gic_real rate_of_omega_x = t424 - t140 * rate_of_rack_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t172 * t411 + (t197 * t416 + t198 * t418));
+        const gic_real t427 = t337 * t13 - t14 * rate_of_omega_x - t23 * rate_of_omega_y - t38 * rate_of_omega_z;
         const gic_real t428 = t427 - t52 * t418 - t67 * t416 - t91 * t411;
-        const gic_real t429 = t319 * t7 - t8 * t425 - t19 * t422 - t34 * t420;
-        const gic_real t430 = t429 - t50 * t418 - t63 * t416 - t146 * t411;
-        const gic_real t431 = t328 * t10 - t11 * t425 - t21 * t422 - t36 * t420;
-        const gic_real t432 = t431 - t51 * t418 - t65 * t416 - t147 * t411;
-        const gic_real t433 = y[12];
-        const gic_real t434 = y[13];
-        const gic_real t435 = y[14];
-        const gic_real t436 = e[2] * t159 - e[3] * t160 + e[0] * t161;
-        const gic_real t437 = e[3] * t161 - e[1] * t159 + e[0] * t160;
-        const gic_real t438 = e[1] * t160 - e[2] * t161 + e[0] * t159;
-        const gic_real t439 = t167 * t411 + (t191 * t416 + t192 * t418);
-        const gic_real t440 = t175 * t411 + (t182 * t416 + t188 * t418);
-        const gic_real t441 = xd[0];
-        const gic_real t442 = t428 - t139 * t415;
-        const gic_real t443 = xd[1];
-        const gic_real t444 = xd[2];
-        const gic_real t445 = xd[3];
-        const gic_real t446 = xd[4];
-        rate[0] = t433;
-        rate[1] = t434;
-        rate[2] = t435;
-        rate[3] = t162;
-        rate[4] = t436;
-        rate[5] = t437;
-        rate[6] = t438;
-        rate[12] = t439;
-        rate[15] = t425;
-        rate[13] = t440;
-        rate[16] = t422;
-        rate[14] = t426;
-        rate[17] = t420;
-        rate[7] = t441;
-        rate[18] = t442;
-        rate[8] = t443;
-        rate[19] = t414;
-        rate[9] = t444;
-        rate[20] = t430;
-        rate[10] = t445;
-        rate[21] = t432;
-        rate[11] = t446;
-        rate[22] = t415;
+        const gic_real t429 = t319 * t7 - t8 * rate_of_omega_x - t19 * rate_of_omega_y - t34 * rate_of_omega_z;
+        const gic_real rate_of_spring_r_l_rate = t429 - t50 * t418 - t63 * t416 - t146 * t411;
+        const gic_real t431 = t328 * t10 - t11 * rate_of_omega_x - t21 * rate_of_omega_y - t36 * rate_of_omega_z;
+        const gic_real rate_of_spring_r_r_rate = t431 - t51 * t418 - t65 * t416 - t147 * t411;
+        const gic_real rate_of_r_x = y[HMMWV14_STATE_V_X];
+        const gic_real rate_of_r_y = y[HMMWV14_STATE_V_Y];
+        const gic_real rate_of_r_z = y[HMMWV14_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t159 - e[3] * t160 + e[0] * t161;
+        const gic_real rate_of_e2 = e[3] * t161 - e[1] * t159 + e[0] * t160;
+        const gic_real rate_of_e3 = e[1] * t160 - e[2] * t161 + e[0] * t159;
+        const gic_real rate_of_v_x = t167 * t411 + (t191 * t416 + t192 * t418);
+        const gic_real rate_of_v_y = t175 * t411 + (t182 * t416 + t188 * t418);
+        const gic_real rate_of_spring_f_l = xd[HMMWV14_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_l_rate = t428 - t139 * rate_of_rack_rate;
+        const gic_real rate_of_spring_f_r = xd[HMMWV14_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[HMMWV14_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_r = xd[HMMWV14_X_SPRING_R_R];
+        const gic_real rate_of_rack = xd[HMMWV14_X_RACK];
+        rate[HMMWV14_STATE_R_X] = rate_of_r_x;
+        rate[HMMWV14_STATE_R_Y] = rate_of_r_y;
+        rate[HMMWV14_STATE_R_Z] = rate_of_r_z;
+        rate[HMMWV14_STATE_E0] = rate_of_e0;
+        rate[HMMWV14_STATE_E1] = rate_of_e1;
+        rate[HMMWV14_STATE_E2] = rate_of_e2;
+        rate[HMMWV14_STATE_E3] = rate_of_e3;
+        rate[HMMWV14_STATE_V_X] = rate_of_v_x;
+        rate[HMMWV14_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[HMMWV14_STATE_V_Y] = rate_of_v_y;
+        rate[HMMWV14_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[HMMWV14_STATE_V_Z] = rate_of_v_z;
+        rate[HMMWV14_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[HMMWV14_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[HMMWV14_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[HMMWV14_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[HMMWV14_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[HMMWV14_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[HMMWV14_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[HMMWV14_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[HMMWV14_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
+        rate[HMMWV14_STATE_RACK] = rate_of_rack;
+        rate[HMMWV14_STATE_RACK_RATE] = rate_of_rack_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -2540,8 +3213,8 @@ static GIC_APART int hmmwv14_dynamics(hmmwv14 *self, gic_real time, const gic_re
     return GIC_OK;
 }
 
-static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2558,663 +3231,917 @@ static int hmmwv14_measure(const hmmwv14 *self, gic_real time, const gic_real *y
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[14] - R(-9.81);
+        const gic_real t10 = rate[HMMWV14_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[13] + t5 * rate[12]));
+        /* output chassis_acceleration */
+        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[HMMWV14_STATE_V_Y] + t5 *
+            rate[HMMWV14_STATE_V_X]));
         const gic_real t15 = e[2] * t6;
         const gic_real t16 = e[0] * t1;
         const gic_real t17 = t15 - t16;
         const gic_real t18 = t11 + t12;
         const gic_real t19 = e[3] * t1;
         const gic_real t20 = R(1.0) - (t7 + t19);
-        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[13] + t17 * rate[12]));
+        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[HMMWV14_STATE_V_Y] + t17 *
+            rate[HMMWV14_STATE_V_X]));
         const gic_real t22 = R(1.0) - (t8 + t19);
         const gic_real t23 = t2 - t4;
         const gic_real t24 = t15 + t16;
-        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[13] + t22 * rate[12]));
-        const gic_real t26 = m[197] * R(0.09182100000000004);
-        const gic_real t27 = m[195] * R(-0.004825999999999997);
-        const gic_real t28 = t26 + (m[196] * R(0.12319000000000002) + t27);
-        const gic_real t29 = m[188] + t28;
-        const gic_real t30 = m[194] * R(0.09182100000000004);
-        const gic_real t31 = m[192] * R(-0.004825999999999997);
-        const gic_real t32 = t30 + (m[193] * R(0.12319000000000002) + t31);
-        const gic_real t33 = m[187] + t32;
-        const gic_real t34 = m[191] * R(0.09182100000000004);
-        const gic_real t35 = m[189] * R(-0.004825999999999997);
-        const gic_real t36 = t34 + (m[190] * R(0.12319000000000002) + t35);
-        const gic_real t37 = m[186] + t36;
-        const gic_real t38 = y[0] + (t5 * t29 + (t17 * t33 + t22 * t37));
-        const gic_real t39 = y[1] + (t13 * t29 + (t20 * t33 + t24 * t37));
-        const gic_real t40 = y[2] + (t9 * t29 + (t18 * t33 + t23 * t37));
-        const gic_real t41 = m[269] * R(0.09182100000000004);
-        const gic_real t42 = m[267] * R(-0.004825999999999997);
-        const gic_real t43 = t41 + (m[268] * R(-0.12319000000000002) + t42);
-        const gic_real t44 = m[260] + t43;
-        const gic_real t45 = m[266] * R(0.09182100000000004);
-        const gic_real t46 = m[264] * R(-0.004825999999999997);
-        const gic_real t47 = t45 + (m[265] * R(-0.12319000000000002) + t46);
-        const gic_real t48 = m[259] + t47;
-        const gic_real t49 = m[263] * R(0.09182100000000004);
-        const gic_real t50 = m[261] * R(-0.004825999999999997);
-        const gic_real t51 = t49 + (m[262] * R(-0.12319000000000002) + t50);
-        const gic_real t52 = m[258] + t51;
-        const gic_real t53 = y[0] + (t5 * t44 + (t17 * t48 + t22 * t52));
-        const gic_real t54 = y[1] + (t13 * t44 + (t20 * t48 + t24 * t52));
-        const gic_real t55 = y[2] + (t9 * t44 + (t18 * t48 + t23 * t52));
-        const gic_real t56 = m[335] * R(0.09182100000000004);
-        const gic_real t57 = t56 + m[334] * R(0.12319000000000002);
-        const gic_real t58 = m[326] + t57;
-        const gic_real t59 = m[332] * R(0.09182100000000004);
-        const gic_real t60 = t59 + m[331] * R(0.12319000000000002);
-        const gic_real t61 = m[325] + t60;
-        const gic_real t62 = m[329] * R(0.09182100000000004);
-        const gic_real t63 = t62 + m[328] * R(0.12319000000000002);
-        const gic_real t64 = m[324] + t63;
-        const gic_real t65 = y[0] + (t5 * t58 + (t17 * t61 + t22 * t64));
-        const gic_real t66 = y[1] + (t13 * t58 + (t20 * t61 + t24 * t64));
-        const gic_real t67 = y[2] + (t9 * t58 + (t18 * t61 + t23 * t64));
-        const gic_real t68 = m[395] * R(0.09182100000000004);
-        const gic_real t69 = t68 + m[394] * R(-0.12319000000000002);
-        const gic_real t70 = m[386] + t69;
-        const gic_real t71 = m[392] * R(0.09182100000000004);
-        const gic_real t72 = t71 + m[391] * R(-0.12319000000000002);
-        const gic_real t73 = m[385] + t72;
-        const gic_real t74 = m[389] * R(0.09182100000000004);
-        const gic_real t75 = t74 + m[388] * R(-0.12319000000000002);
-        const gic_real t76 = m[384] + t75;
-        const gic_real t77 = y[0] + (t5 * t70 + (t17 * t73 + t22 * t76));
-        const gic_real t78 = y[1] + (t13 * t70 + (t20 * t73 + t24 * t76));
-        const gic_real t79 = y[2] + (t9 * t70 + (t18 * t73 + t23 * t76));
-        const gic_real t80 = GIC_ATAN2(m[196] * t9 + (m[193] * t18 + m[190] * t23), m[197] * t9 + (m[194] * t18 + m[191] * t23));
-        const gic_real t81 = -(m[195] * t9 + (m[192] * t18 + m[189] * t23));
-        const gic_real t82 = GIC_ATAN2(m[195] * t13 + (m[192] * t20 + m[189] * t24), m[195] * t5 + (m[192] * t17 + m[189] * t22));
-        const gic_real t83 = GIC_ATAN2(m[268] * t9 + (m[265] * t18 + m[262] * t23), m[269] * t9 + (m[266] * t18 + m[263] * t23));
-        const gic_real t84 = -(m[267] * t9 + (m[264] * t18 + m[261] * t23));
-        const gic_real t85 = GIC_ATAN2(m[267] * t13 + (m[264] * t20 + m[261] * t24), m[267] * t5 + (m[264] * t17 + m[261] * t22));
-        const gic_real t86 = GIC_ATAN2(m[334] * t9 + (m[331] * t18 + m[328] * t23), m[335] * t9 + (m[332] * t18 + m[329] * t23));
-        const gic_real t87 = -(m[333] * t9 + (m[330] * t18 + m[327] * t23));
-        const gic_real t88 = GIC_ATAN2(m[333] * t13 + (m[330] * t20 + m[327] * t24), m[333] * t5 + (m[330] * t17 + m[327] * t22));
-        const gic_real t89 = GIC_ATAN2(m[394] * t9 + (m[391] * t18 + m[388] * t23), m[395] * t9 + (m[392] * t18 + m[389] * t23));
-        const gic_real t90 = -(m[393] * t9 + (m[390] * t18 + m[387] * t23));
-        const gic_real t91 = GIC_ATAN2(m[393] * t13 + (m[390] * t20 + m[387] * t24), m[393] * t5 + (m[390] * t17 + m[387] * t22));
-        const gic_real t92 = x[0] - R(0.31945);
+        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[HMMWV14_STATE_V_Y] + t22 *
+            rate[HMMWV14_STATE_V_X]));
+        /* wheel tire_f_l */
+        const gic_real t26 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t27 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t28 = t26 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) + t27);
+        const gic_real t29 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t28;
+        const gic_real t30 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t31 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t32 = t30 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) + t31);
+        const gic_real t33 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t32;
+        const gic_real t34 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t35 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = t34 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) + t35);
+        const gic_real t37 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t36;
+        const gic_real output_wheel_f_l_x = y[HMMWV14_STATE_R_X] + (t5 * t29 + (t17 * t33 + t22 * t37));
+        const gic_real output_wheel_f_l_y = y[HMMWV14_STATE_R_Y] + (t13 * t29 + (t20 * t33 + t24 * t37));
+        const gic_real output_wheel_f_l_z = y[HMMWV14_STATE_R_Z] + (t9 * t29 + (t18 * t33 + t23 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t42 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t43 = t41 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) + t42);
+        const gic_real t44 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t43;
+        const gic_real t45 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t46 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t47 = t45 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) + t46);
+        const gic_real t48 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t47;
+        const gic_real t49 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t50 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t51 = t49 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) + t50);
+        const gic_real t52 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t51;
+        const gic_real output_wheel_f_r_x = y[HMMWV14_STATE_R_X] + (t5 * t44 + (t17 * t48 + t22 * t52));
+        const gic_real output_wheel_f_r_y = y[HMMWV14_STATE_R_Y] + (t13 * t44 + (t20 * t48 + t24 * t52));
+        const gic_real output_wheel_f_r_z = y[HMMWV14_STATE_R_Z] + (t9 * t44 + (t18 * t48 + t23 * t52));
+        /* wheel tire_r_l */
+        const gic_real t56 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t57 = t56 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t58 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t57;
+        const gic_real t59 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t60 = t59 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t61 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t60;
+        const gic_real t62 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t63 = t62 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t64 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t63;
+        const gic_real output_wheel_r_l_x = y[HMMWV14_STATE_R_X] + (t5 * t58 + (t17 * t61 + t22 * t64));
+        const gic_real output_wheel_r_l_y = y[HMMWV14_STATE_R_Y] + (t13 * t58 + (t20 * t61 + t24 * t64));
+        const gic_real output_wheel_r_l_z = y[HMMWV14_STATE_R_Z] + (t9 * t58 + (t18 * t61 + t23 * t64));
+        /* wheel tire_r_r */
+        const gic_real t68 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t69 = t68 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t70 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t69;
+        const gic_real t71 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t72 = t71 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
+        const gic_real t73 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t72;
+        const gic_real t74 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t75 = t74 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t76 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t75;
+        const gic_real output_wheel_r_r_x = y[HMMWV14_STATE_R_X] + (t5 * t70 + (t17 * t73 + t22 * t76));
+        const gic_real output_wheel_r_r_y = y[HMMWV14_STATE_R_Y] + (t13 * t70 + (t20 * t73 + t24 * t76));
+        const gic_real output_wheel_r_r_z = y[HMMWV14_STATE_R_Z] + (t9 * t70 + (t18 * t73 + t23 * t76));
+        /* output attitude_f_l */
+        const gic_real output_attitude_f_l_roll = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t18 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * t23),
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t9 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t18 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * t23));
+        const gic_real t81 = -(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t18 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t23));
+        const gic_real output_attitude_f_l_yaw = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t13 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t20 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t24),
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t5 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t17 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t22));
+        /* output attitude_f_r */
+        const gic_real output_attitude_f_r_roll = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t18 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * t23),
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t9 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t18 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * t23));
+        const gic_real t84 = -(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t18 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t23));
+        const gic_real output_attitude_f_r_yaw = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t13 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t20 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t24),
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t5 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t17 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t22));
+        /* output attitude_r_l */
+        const gic_real output_attitude_r_l_roll = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t18 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * t23),
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t9 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t18 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * t23));
+        const gic_real t87 = -(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t18 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t23));
+        const gic_real output_attitude_r_l_yaw = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t13 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t20 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t24),
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t5 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t17 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t22));
+        /* output attitude_r_r */
+        const gic_real output_attitude_r_r_roll = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t18 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * t23),
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t9 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t18 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * t23));
+        const gic_real t90 = -(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t9 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t18 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t23));
+        const gic_real output_attitude_r_r_yaw = GIC_ATAN2(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t13 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t20 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t24),
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t5 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t17 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t22));
+        /* force spring_f_l */
+        const gic_real t92 = x[HMMWV14_X_SPRING_F_L] - R(0.31945);
         const gic_real t93 = t92 * R(167070.9);
-        const gic_real t94 = x[1] - R(0.31945);
+        /* force spring_f_r */
+        const gic_real t94 = x[HMMWV14_X_SPRING_F_R] - R(0.31945);
         const gic_real t95 = R(167070.9) * t94;
-        const gic_real t96 = x[2] - R(0.33757);
+        /* force spring_r_l */
+        const gic_real t96 = x[HMMWV14_X_SPRING_R_L] - R(0.33757);
         const gic_real t97 = t96 * R(369167.2);
-        const gic_real t98 = x[3] - R(0.33757);
+        /* force spring_r_r */
+        const gic_real t98 = x[HMMWV14_X_SPRING_R_R] - R(0.33757);
         const gic_real t99 = R(369167.2) * t98;
-        const gic_real t100 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t100 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.2403881036540444);
         const gic_real t101 = t100 - R(0.32313880000000006);
-        const gic_real t102 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t102 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.2403881036540444);
         const gic_real t103 = R(0.307086) + t102 - R(0.4977892);
         const gic_real t104 = R(1.0) / GIC_SQRT(t101 * t101 + (t103 * t103 + R(4.633797183999867e-05)));
-        const gic_real t105 = t104 * (m[42] * t102 * t101 - m[42] * t100 * t103);
-        const gic_real t106 = t105 * R(17490.8);
-        const gic_real t107 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t105 = t104 * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t102 * t101 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t100 * t103);
+        const gic_real force_shock_f_l = t105 * R(17490.8);
+        /* force shock_f_r */
+        const gic_real t107 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.2403881036540444);
         const gic_real t108 = t107 - R(0.32313880000000006);
-        const gic_real t109 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t109 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.2403881036540444);
         const gic_real t110 = R(-0.307086) + t109 - R(-0.4977892);
         const gic_real t111 = R(1.0) / GIC_SQRT(t108 * t108 + (R(4.633797183999867e-05) + t110 * t110));
-        const gic_real t112 = t111 * (m[72] * t109 * t108 - m[72] * t107 * t110);
-        const gic_real t113 = R(17490.8) * t112;
-        const gic_real t114 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
+        const gic_real t112 = t111 * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t109 * t108 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t107 * t110);
+        const gic_real force_shock_f_r = R(17490.8) * t112;
+        /* force shock_r_l */
+        const gic_real t114 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.23915941563573181);
         const gic_real t115 = t114 - R(0.32313880000000006);
-        const gic_real t116 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        const gic_real t116 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.23915941563573181);
         const gic_real t117 = R(0.307086) + t116 - R(0.4977892);
         const gic_real t118 = R(1.0) / GIC_SQRT(t115 * t115 + (R(4.633797183999867e-05) + t117 * t117));
-        const gic_real t119 = t118 * (m[102] * t116 * t115 - m[102] * t114 * t117);
-        const gic_real t120 = t119 * R(24780.4);
-        const gic_real t121 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
+        const gic_real t119 = t118 * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t116 * t115 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t114 * t117);
+        const gic_real force_shock_r_l = t119 * R(24780.4);
+        /* force shock_r_r */
+        const gic_real t121 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.23915941563573181);
         const gic_real t122 = t121 - R(0.32313880000000006);
-        const gic_real t123 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        const gic_real t123 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.23915941563573181);
         const gic_real t124 = R(-0.307086) + t123 - R(-0.4977892);
         const gic_real t125 = R(1.0) / GIC_SQRT(t122 * t122 + (R(4.633797183999867e-05) + t124 * t124));
-        const gic_real t126 = t125 * (m[132] * t123 * t122 - m[132] * t121 * t124);
-        const gic_real t127 = R(24780.4) * t126;
-        const gic_real t128 = m[203] + (m[198] * t32 - m[199] * t36) + (y[15] * t33 - y[16] * t37);
-        const gic_real t129 = m[202] + (m[200] * t36 - m[198] * t28) + (y[17] * t37 - y[15] * t29);
-        const gic_real t130 = m[199] * t28 - m[200] * t32 + (y[16] * t29 - y[17] * t33);
-        const gic_real t131 = y[13] + (t13 * t128 + (t20 * t129 + t24 * t130));
+        const gic_real t126 = t125 * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t123 * t122 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t121 * t124);
+        const gic_real force_shock_r_r = R(24780.4) * t126;
+        const gic_real t128 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t32 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t36) + (y[HMMWV14_STATE_OMEGA_X] * t33 - y[HMMWV14_STATE_OMEGA_Y] * t37);
+        const gic_real t129 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t36 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t28) + (y[HMMWV14_STATE_OMEGA_Z] * t37 - y[HMMWV14_STATE_OMEGA_X] * t29);
+        const gic_real t130 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t28 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t32 + (y[HMMWV14_STATE_OMEGA_Y] * t29 -
+            y[HMMWV14_STATE_OMEGA_Z] * t33);
+        const gic_real t131 = y[HMMWV14_STATE_V_Y] + (t13 * t128 + (t20 * t129 + t24 * t130));
         gic_real road132[3];
-        if (!hmmwv14_road_height(self, time, t38, t39, road132))
+        if (!hmmwv14_road_height(self, time, output_wheel_f_l_x, output_wheel_f_l_y, road132))
             return GIC_ERROR_ROAD;
-        const gic_real t133 = y[12] + (t5 * t128 + (t17 * t129 + t22 * t130));
-        const gic_real t134 = y[14] + (t9 * t128 + (t18 * t129 + t23 * t130));
-        const gic_real t135 = t131 * road132[2] + t133 * road132[1] - t134;
-        const gic_real t136 = road132[0] + R(0.4699) - t40;
-        const gic_real t137 = GIC_MIN(GIC_MAX(t136 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t138 = t135 * ((R(3.0) - (t137 + t137)) * (t137 * t137) * R(500.0));
-        const gic_real t139 = GIC_MAX(t138 + t136 * R(283000.0), R(0.0));
-        const gic_real t140 = m[275] + (m[270] * t47 - m[271] * t51) + (y[15] * t48 - y[16] * t52);
-        const gic_real t141 = m[274] + (m[272] * t51 - m[270] * t43) + (y[17] * t52 - y[15] * t44);
-        const gic_real t142 = m[271] * t43 - m[272] * t47 + (y[16] * t44 - y[17] * t48);
-        const gic_real t143 = y[13] + (t13 * t140 + (t20 * t141 + t24 * t142));
+        const gic_real t133 = y[HMMWV14_STATE_V_X] + (t5 * t128 + (t17 * t129 + t22 * t130));
+        const gic_real t134 = y[HMMWV14_STATE_V_Z] + (t9 * t128 + (t18 * t129 + t23 * t130));
+        const gic_real output_tire_f_l_deflection_rate = t131 * road132[2] + t133 * road132[1] - t134;
+        const gic_real output_tire_f_l_deflection = road132[0] + R(0.4699) - output_wheel_f_l_z;
+        const gic_real t137 = GIC_MIN(GIC_MAX(output_tire_f_l_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t138 = output_tire_f_l_deflection_rate * ((R(3.0) - (t137 + t137)) * (t137 * t137) * R(500.0));
+        const gic_real output_tire_f_l_fz = GIC_MAX(t138 + output_tire_f_l_deflection * R(283000.0), R(0.0));
+        const gic_real t140 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t47 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t51) + (y[HMMWV14_STATE_OMEGA_X] * t48 - y[HMMWV14_STATE_OMEGA_Y] * t52);
+        const gic_real t141 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t51 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t43) + (y[HMMWV14_STATE_OMEGA_Z] * t52 - y[HMMWV14_STATE_OMEGA_X] * t44);
+        const gic_real t142 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t43 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t47 + (y[HMMWV14_STATE_OMEGA_Y] * t44 -
+            y[HMMWV14_STATE_OMEGA_Z] * t48);
+        const gic_real t143 = y[HMMWV14_STATE_V_Y] + (t13 * t140 + (t20 * t141 + t24 * t142));
         gic_real road144[3];
-        if (!hmmwv14_road_height(self, time, t53, t54, road144))
+        if (!hmmwv14_road_height(self, time, output_wheel_f_r_x, output_wheel_f_r_y, road144))
             return GIC_ERROR_ROAD;
-        const gic_real t145 = y[12] + (t5 * t140 + (t17 * t141 + t22 * t142));
-        const gic_real t146 = y[14] + (t9 * t140 + (t18 * t141 + t23 * t142));
-        const gic_real t147 = t143 * road144[2] + t145 * road144[1] - t146;
-        const gic_real t148 = R(0.4699) + road144[0] - t55;
-        const gic_real t149 = GIC_MIN(GIC_MAX(R(100.0) * t148, R(0.0)), R(1.0));
-        const gic_real t150 = t147 * (R(500.0) * ((R(3.0) - (t149 + t149)) * (t149 * t149)));
-        const gic_real t151 = GIC_MAX(t150 + R(283000.0) * t148, R(0.0));
-        const gic_real t152 = m[341] + (m[336] * t60 - m[337] * t63) + (y[15] * t61 - y[16] * t64);
-        const gic_real t153 = m[340] + (m[338] * t63 - m[336] * t57) + (y[17] * t64 - y[15] * t58);
-        const gic_real t154 = m[337] * t57 - m[338] * t60 + (y[16] * t58 - y[17] * t61);
-        const gic_real t155 = y[13] + (t13 * t152 + (t20 * t153 + t24 * t154));
+        const gic_real t145 = y[HMMWV14_STATE_V_X] + (t5 * t140 + (t17 * t141 + t22 * t142));
+        const gic_real t146 = y[HMMWV14_STATE_V_Z] + (t9 * t140 + (t18 * t141 + t23 * t142));
+        const gic_real output_tire_f_r_deflection_rate = t143 * road144[2] + t145 * road144[1] - t146;
+        const gic_real output_tire_f_r_deflection = R(0.4699) + road144[0] - output_wheel_f_r_z;
+        const gic_real t149 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_f_r_deflection, R(0.0)), R(1.0));
+        const gic_real t150 = output_tire_f_r_deflection_rate * (R(500.0) * ((R(3.0) - (t149 + t149)) * (t149 * t149)));
+        const gic_real output_tire_f_r_fz = GIC_MAX(t150 + R(283000.0) * output_tire_f_r_deflection, R(0.0));
+        const gic_real t152 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t60 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t63) + (y[HMMWV14_STATE_OMEGA_X] * t61 - y[HMMWV14_STATE_OMEGA_Y] * t64);
+        const gic_real t153 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t63 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t57) + (y[HMMWV14_STATE_OMEGA_Z] * t64 - y[HMMWV14_STATE_OMEGA_X] * t58);
+        const gic_real t154 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t57 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t60 + (y[HMMWV14_STATE_OMEGA_Y] * t58 -
+            y[HMMWV14_STATE_OMEGA_Z] * t61);
+        const gic_real t155 = y[HMMWV14_STATE_V_Y] + (t13 * t152 + (t20 * t153 + t24 * t154));
         gic_real road156[3];
-        if (!hmmwv14_road_height(self, time, t65, t66, road156))
+        if (!hmmwv14_road_height(self, time, output_wheel_r_l_x, output_wheel_r_l_y, road156))
             return GIC_ERROR_ROAD;
-        const gic_real t157 = y[12] + (t5 * t152 + (t17 * t153 + t22 * t154));
-        const gic_real t158 = y[14] + (t9 * t152 + (t18 * t153 + t23 * t154));
-        const gic_real t159 = t155 * road156[2] + t157 * road156[1] - t158;
-        const gic_real t160 = R(0.4699) + road156[0] - t67;
-        const gic_real t161 = GIC_MIN(GIC_MAX(R(100.0) * t160, R(0.0)), R(1.0));
-        const gic_real t162 = t159 * (R(500.0) * ((R(3.0) - (t161 + t161)) * (t161 * t161)));
-        const gic_real t163 = GIC_MAX(t162 + R(283000.0) * t160, R(0.0));
-        const gic_real t164 = m[401] + (m[396] * t72 - m[397] * t75) + (y[15] * t73 - y[16] * t76);
-        const gic_real t165 = m[400] + (m[398] * t75 - m[396] * t69) + (y[17] * t76 - y[15] * t70);
-        const gic_real t166 = m[397] * t69 - m[398] * t72 + (y[16] * t70 - y[17] * t73);
-        const gic_real t167 = y[13] + (t13 * t164 + (t20 * t165 + t24 * t166));
+        const gic_real t157 = y[HMMWV14_STATE_V_X] + (t5 * t152 + (t17 * t153 + t22 * t154));
+        const gic_real t158 = y[HMMWV14_STATE_V_Z] + (t9 * t152 + (t18 * t153 + t23 * t154));
+        const gic_real output_tire_r_l_deflection_rate = t155 * road156[2] + t157 * road156[1] - t158;
+        const gic_real output_tire_r_l_deflection = R(0.4699) + road156[0] - output_wheel_r_l_z;
+        const gic_real t161 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_l_deflection, R(0.0)), R(1.0));
+        const gic_real t162 = output_tire_r_l_deflection_rate * (R(500.0) * ((R(3.0) - (t161 + t161)) * (t161 * t161)));
+        const gic_real output_tire_r_l_fz = GIC_MAX(t162 + R(283000.0) * output_tire_r_l_deflection, R(0.0));
+        const gic_real t164 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t72 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t75) + (y[HMMWV14_STATE_OMEGA_X] * t73 - y[HMMWV14_STATE_OMEGA_Y] * t76);
+        const gic_real t165 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t75 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t69) + (y[HMMWV14_STATE_OMEGA_Z] * t76 - y[HMMWV14_STATE_OMEGA_X] * t70);
+        const gic_real t166 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t69 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t72 + (y[HMMWV14_STATE_OMEGA_Y] * t70 -
+            y[HMMWV14_STATE_OMEGA_Z] * t73);
+        const gic_real t167 = y[HMMWV14_STATE_V_Y] + (t13 * t164 + (t20 * t165 + t24 * t166));
         gic_real road168[3];
-        if (!hmmwv14_road_height(self, time, t77, t78, road168))
+        if (!hmmwv14_road_height(self, time, output_wheel_r_r_x, output_wheel_r_r_y, road168))
             return GIC_ERROR_ROAD;
-        const gic_real t169 = y[12] + (t5 * t164 + (t17 * t165 + t22 * t166));
-        const gic_real t170 = y[14] + (t9 * t164 + (t18 * t165 + t23 * t166));
-        const gic_real t171 = t167 * road168[2] + t169 * road168[1] - t170;
-        const gic_real t172 = R(0.4699) + road168[0] - t79;
-        const gic_real t173 = GIC_MIN(GIC_MAX(R(100.0) * t172, R(0.0)), R(1.0));
-        const gic_real t174 = t171 * (R(500.0) * ((R(3.0) - (t173 + t173)) * (t173 * t173)));
-        const gic_real t175 = GIC_MAX(t174 + R(283000.0) * t172, R(0.0));
-        const gic_real t176 = y[17] * (y[17] * R(3570.2)) + (y[16] * (y[16] * R(2955.66)) + y[15] * (y[15] * R(1078.52)));
-        const gic_real t177 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t178 = y[16] * R(0.21300000000000008);
-        const gic_real t179 = y[16] * R(0.056);
-        const gic_real t180 = y[14] + (t18 * t177 + t23 * t178 - t9 * t179);
-        const gic_real t181 = y[13] + (t20 * t177 + t24 * t178 - t13 * t179);
-        const gic_real t182 = y[12] + (t17 * t177 + t22 * t178 - t5 * t179);
+        const gic_real t169 = y[HMMWV14_STATE_V_X] + (t5 * t164 + (t17 * t165 + t22 * t166));
+        const gic_real t170 = y[HMMWV14_STATE_V_Z] + (t9 * t164 + (t18 * t165 + t23 * t166));
+        const gic_real output_tire_r_r_deflection_rate = t167 * road168[2] + t169 * road168[1] - t170;
+        const gic_real output_tire_r_r_deflection = R(0.4699) + road168[0] - output_wheel_r_r_z;
+        const gic_real t173 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_r_deflection, R(0.0)), R(1.0));
+        const gic_real t174 = output_tire_r_r_deflection_rate * (R(500.0) * ((R(3.0) - (t173 + t173)) * (t173 * t173)));
+        const gic_real output_tire_r_r_fz = GIC_MAX(t174 + R(283000.0) * output_tire_r_r_deflection, R(0.0));
+        /* output energy */
+        const gic_real t176 = y[HMMWV14_STATE_OMEGA_Z] * (y[HMMWV14_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV14_STATE_OMEGA_Y] * (y[HMMWV14_STATE_OMEGA_Y] * R(2955.66)) + y[HMMWV14_STATE_OMEGA_X] *
+            (y[HMMWV14_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t177 = y[HMMWV14_STATE_OMEGA_Z] * R(0.056) - y[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t178 = y[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t179 = y[HMMWV14_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t180 = y[HMMWV14_STATE_V_Z] + (t18 * t177 + t23 * t178 - t9 * t179);
+        const gic_real t181 = y[HMMWV14_STATE_V_Y] + (t20 * t177 + t24 * t178 - t13 * t179);
+        const gic_real t182 = y[HMMWV14_STATE_V_X] + (t17 * t177 + t22 * t178 - t5 * t179);
         const gic_real t183 = R(2086.52) * (t180 * t180 + (t181 * t181 + t182 * t182));
-        const gic_real t184 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t185 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t186 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t187 = y[14] + (t9 * t184 + (t18 * t185 + t23 * t186));
-        const gic_real t188 = y[13] + (t13 * t184 + (t20 * t185 + t24 * t186));
-        const gic_real t189 = y[12] + (t5 * t184 + (t17 * t185 + t22 * t186));
+        const gic_real t184 = m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * y[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t185 = m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] + (R(1.438648) * y[HMMWV14_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t186 = R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t187 = y[HMMWV14_STATE_V_Z] + (t9 * t184 + (t18 * t185 + t23 * t186));
+        const gic_real t188 = y[HMMWV14_STATE_V_Y] + (t13 * t184 + (t20 * t185 + t24 * t186));
+        const gic_real t189 = y[HMMWV14_STATE_V_X] + (t5 * t184 + (t17 * t185 + t22 * t186));
         const gic_real t190 = R(9.072) * (t187 * t187 + (t188 * t188 + t189 * t189));
-        const gic_real t191 = y[17] * y[17] + (y[16] * y[16] + y[15] * y[15]) + t190;
-        const gic_real t192 = y[17] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t193 = m[38] * R(0.8938);
-        const gic_real t194 = m[37] * R(0.4469);
-        const gic_real t195 = m[41] * t193 + m[40] * t194;
-        const gic_real t196 = y[17] * t195 + y[16] * (m[38] * t193 + m[37] * t194);
-        const gic_real t197 = m[42] + y[15];
-        const gic_real t198 = y[17] * (t192 + y[16] * t195) + (y[16] * t196 + t197 * (t197 * R(0.4469)));
-        const gic_real t199 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t191 = y[HMMWV14_STATE_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Z] + (y[HMMWV14_STATE_OMEGA_Y] *
+            y[HMMWV14_STATE_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_X] * y[HMMWV14_STATE_OMEGA_X]) + t190;
+        const gic_real t192 = y[HMMWV14_STATE_OMEGA_Z] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.8938)) + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.4469)));
+        const gic_real t193 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t194 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t195 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * t193 +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * t194;
+        const gic_real t196 = y[HMMWV14_STATE_OMEGA_Z] * t195 + y[HMMWV14_STATE_OMEGA_Y] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * t193 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * t194);
+        const gic_real t197 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t198 = y[HMMWV14_STATE_OMEGA_Z] * (t192 + y[HMMWV14_STATE_OMEGA_Y] * t195) +
+            (y[HMMWV14_STATE_OMEGA_Y] * t196 + t197 * (t197 * R(0.4469)));
+        const gic_real t199 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.24689200985615367);
         const gic_real t200 = R(0.307086) + t199;
-        const gic_real t201 = R(1.688965) * y[16];
-        const gic_real t202 = m[42] * t199 + (y[15] * t200 - t201);
-        const gic_real t203 = R(1.688965) * y[17];
-        const gic_real t204 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t205 = t203 - y[15] * t204 - m[42] * t204;
-        const gic_real t206 = y[16] * t204 - y[17] * t200;
-        const gic_real t207 = y[14] + (t9 * t202 + (t18 * t205 + t23 * t206));
-        const gic_real t208 = y[13] + (t13 * t202 + (t20 * t205 + t24 * t206));
-        const gic_real t209 = y[12] + (t5 * t202 + (t17 * t205 + t22 * t206));
+        const gic_real t201 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t202 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t199 + (y[HMMWV14_STATE_OMEGA_X] * t200 -
+            t201);
+        const gic_real t203 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t204 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.24689200985615367);
+        const gic_real t205 = t203 - y[HMMWV14_STATE_OMEGA_X] * t204 - m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            t204;
+        const gic_real t206 = y[HMMWV14_STATE_OMEGA_Y] * t204 - y[HMMWV14_STATE_OMEGA_Z] * t200;
+        const gic_real t207 = y[HMMWV14_STATE_V_Z] + (t9 * t202 + (t18 * t205 + t23 * t206));
+        const gic_real t208 = y[HMMWV14_STATE_V_Y] + (t13 * t202 + (t20 * t205 + t24 * t206));
+        const gic_real t209 = y[HMMWV14_STATE_V_X] + (t5 * t202 + (t17 * t205 + t22 * t206));
         const gic_real t210 = R(23.965) * (t207 * t207 + (t208 * t208 + t209 * t209));
         const gic_real t211 = R(0.5) * (t176 + t183) + R(0.5) * t191 + R(0.5) * (t198 + t210);
-        const gic_real t212 = y[17] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t213 = m[68] * R(0.8938);
-        const gic_real t214 = m[67] * R(0.4469);
-        const gic_real t215 = m[71] * t213 + m[70] * t214;
-        const gic_real t216 = y[17] * t215 + y[16] * (m[68] * t213 + m[67] * t214);
-        const gic_real t217 = m[72] + y[15];
-        const gic_real t218 = y[17] * (t212 + y[16] * t215) + (y[16] * t216 + t217 * (R(0.4469) * t217));
-        const gic_real t219 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t212 = y[HMMWV14_STATE_OMEGA_Z] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.8938)) + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(0.4469)));
+        const gic_real t213 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t214 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t215 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * t213 +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * t214;
+        const gic_real t216 = y[HMMWV14_STATE_OMEGA_Z] * t215 + y[HMMWV14_STATE_OMEGA_Y] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * t213 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * t214);
+        const gic_real t217 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t218 = y[HMMWV14_STATE_OMEGA_Z] * (t212 + y[HMMWV14_STATE_OMEGA_Y] * t215) +
+            (y[HMMWV14_STATE_OMEGA_Y] * t216 + t217 * (R(0.4469) * t217));
+        const gic_real t219 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.24689200985615367);
         const gic_real t220 = R(-0.307086) + t219;
-        const gic_real t221 = m[72] * t219 + (y[15] * t220 - t201);
-        const gic_real t222 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t223 = t203 - y[15] * t222 - m[72] * t222;
-        const gic_real t224 = y[16] * t222 - y[17] * t220;
-        const gic_real t225 = y[14] + (t9 * t221 + (t18 * t223 + t23 * t224));
-        const gic_real t226 = y[13] + (t13 * t221 + (t20 * t223 + t24 * t224));
-        const gic_real t227 = y[12] + (t5 * t221 + (t17 * t223 + t22 * t224));
+        const gic_real t221 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t219 + (y[HMMWV14_STATE_OMEGA_X] * t220 -
+            t201);
+        const gic_real t222 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.24689200985615367);
+        const gic_real t223 = t203 - y[HMMWV14_STATE_OMEGA_X] * t222 - m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            t222;
+        const gic_real t224 = y[HMMWV14_STATE_OMEGA_Y] * t222 - y[HMMWV14_STATE_OMEGA_Z] * t220;
+        const gic_real t225 = y[HMMWV14_STATE_V_Z] + (t9 * t221 + (t18 * t223 + t23 * t224));
+        const gic_real t226 = y[HMMWV14_STATE_V_Y] + (t13 * t221 + (t20 * t223 + t24 * t224));
+        const gic_real t227 = y[HMMWV14_STATE_V_X] + (t5 * t221 + (t17 * t223 + t22 * t224));
         const gic_real t228 = R(23.965) * (t225 * t225 + (t226 * t226 + t227 * t227));
-        const gic_real t229 = m[200] + y[17];
-        const gic_real t230 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t231 = m[199] + y[16];
-        const gic_real t232 = m[194] * R(4.7728205);
-        const gic_real t233 = m[193] * R(7.58122);
-        const gic_real t234 = m[192] * R(4.8947505);
-        const gic_real t235 = m[197] * t232 + (m[196] * t233 + m[195] * t234);
-        const gic_real t236 = m[198] + y[15];
-        const gic_real t237 = m[191] * R(4.7728205);
-        const gic_real t238 = m[190] * R(7.58122);
-        const gic_real t239 = m[189] * R(4.8947505);
-        const gic_real t240 = m[197] * t237 + (m[196] * t238 + m[195] * t239);
+        const gic_real t229 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t230 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t231 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t232 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t233 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t234 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t235 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t232 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t233 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t234);
+        const gic_real t236 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t237 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t238 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t239 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t240 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t237 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t238 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t239);
         const gic_real t241 = t229 * (t229 * t230 + (t231 * t235 + t236 * t240));
-        const gic_real t242 = t231 * (m[194] * t232 + (m[193] * t233 + m[192] * t234));
-        const gic_real t243 = m[194] * t237 + (m[193] * t238 + m[192] * t239);
-        const gic_real t244 = t236 * (m[191] * t237 + (m[190] * t238 + m[189] * t239));
+        const gic_real t242 = t231 * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t232 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t233 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t234));
+        const gic_real t243 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t237 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t238 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t239);
+        const gic_real t244 = t236 * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * t237 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * t238 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t239));
         const gic_real t245 = t231 * (t229 * t235 + (t242 + t236 * t243)) + t236 * (t229 * t240 + (t231 * t243 + t244));
-        const gic_real t246 = t30 + (t31 + m[193] * R(0.08910630000000008));
-        const gic_real t247 = t34 + (t35 + m[190] * R(0.08910630000000008));
-        const gic_real t248 = m[187] + t246;
-        const gic_real t249 = m[186] + t247;
-        const gic_real t250 = m[203] + (m[198] * t246 - m[199] * t247) + (y[15] * t248 - y[16] * t249);
-        const gic_real t251 = t26 + (t27 + m[196] * R(0.08910630000000008));
-        const gic_real t252 = m[188] + t251;
-        const gic_real t253 = m[202] + (m[200] * t247 - m[198] * t251) + (y[17] * t249 - y[15] * t252);
-        const gic_real t254 = m[199] * t251 - m[200] * t246 + (y[16] * t252 - y[17] * t248);
-        const gic_real t255 = y[14] + (t9 * t250 + (t18 * t253 + t23 * t254));
-        const gic_real t256 = y[13] + (t13 * t250 + (t20 * t253 + t24 * t254));
-        const gic_real t257 = y[12] + (t5 * t250 + (t17 * t253 + t22 * t254));
+        const gic_real t246 = t30 + (t31 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.08910630000000008));
+        const gic_real t247 = t34 + (t35 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.08910630000000008));
+        const gic_real t248 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t246;
+        const gic_real t249 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t247;
+        const gic_real t250 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t246 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t247) + (y[HMMWV14_STATE_OMEGA_X] * t248 - y[HMMWV14_STATE_OMEGA_Y] * t249);
+        const gic_real t251 = t26 + (t27 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.08910630000000008));
+        const gic_real t252 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t251;
+        const gic_real t253 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t247 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t251) + (y[HMMWV14_STATE_OMEGA_Z] * t249 - y[HMMWV14_STATE_OMEGA_X] * t252);
+        const gic_real t254 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t251 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t246 + (y[HMMWV14_STATE_OMEGA_Y] * t252 -
+            y[HMMWV14_STATE_OMEGA_Z] * t248);
+        const gic_real t255 = y[HMMWV14_STATE_V_Z] + (t9 * t250 + (t18 * t253 + t23 * t254));
+        const gic_real t256 = y[HMMWV14_STATE_V_Y] + (t13 * t250 + (t20 * t253 + t24 * t254));
+        const gic_real t257 = y[HMMWV14_STATE_V_X] + (t5 * t250 + (t17 * t253 + t22 * t254));
         const gic_real t258 = R(90.555) * (t255 * t255 + (t256 * t256 + t257 * t257));
         const gic_real t259 = t211 + R(0.5) * (t218 + t228) + R(0.5) * (t241 + t245 + t258);
-        const gic_real t260 = m[272] + y[17];
-        const gic_real t261 = m[269] * (m[269] * R(4.7728205)) + (m[268] * (m[268] * R(7.58122)) + m[267] * (m[267] * R(4.8947505)));
-        const gic_real t262 = m[271] + y[16];
-        const gic_real t263 = m[266] * R(4.7728205);
-        const gic_real t264 = m[265] * R(7.58122);
-        const gic_real t265 = m[264] * R(4.8947505);
-        const gic_real t266 = m[269] * t263 + (m[268] * t264 + m[267] * t265);
-        const gic_real t267 = m[270] + y[15];
-        const gic_real t268 = m[263] * R(4.7728205);
-        const gic_real t269 = m[262] * R(7.58122);
-        const gic_real t270 = m[261] * R(4.8947505);
-        const gic_real t271 = m[269] * t268 + (m[268] * t269 + m[267] * t270);
+        const gic_real t260 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t261 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t262 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t263 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t264 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t265 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t266 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t263 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t264 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t265);
+        const gic_real t267 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t268 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t269 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t270 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t271 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t268 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t269 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t270);
         const gic_real t272 = t260 * (t260 * t261 + (t262 * t266 + t267 * t271));
-        const gic_real t273 = t262 * (m[266] * t263 + (m[265] * t264 + m[264] * t265));
-        const gic_real t274 = m[266] * t268 + (m[265] * t269 + m[264] * t270);
-        const gic_real t275 = t267 * (m[263] * t268 + (m[262] * t269 + m[261] * t270));
+        const gic_real t273 = t262 * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t263 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t264 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t265));
+        const gic_real t274 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t268 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t269 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t270);
+        const gic_real t275 = t267 * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * t268 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * t269 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t270));
         const gic_real t276 = t262 * (t260 * t266 + (t273 + t267 * t274)) + t267 * (t260 * t271 + (t262 * t274 + t275));
-        const gic_real t277 = t45 + (t46 + m[265] * R(-0.08910630000000008));
-        const gic_real t278 = t49 + (t50 + m[262] * R(-0.08910630000000008));
-        const gic_real t279 = m[259] + t277;
-        const gic_real t280 = m[258] + t278;
-        const gic_real t281 = m[275] + (m[270] * t277 - m[271] * t278) + (y[15] * t279 - y[16] * t280);
-        const gic_real t282 = t41 + (t42 + m[268] * R(-0.08910630000000008));
-        const gic_real t283 = m[260] + t282;
-        const gic_real t284 = m[274] + (m[272] * t278 - m[270] * t282) + (y[17] * t280 - y[15] * t283);
-        const gic_real t285 = m[271] * t282 - m[272] * t277 + (y[16] * t283 - y[17] * t279);
-        const gic_real t286 = y[14] + (t9 * t281 + (t18 * t284 + t23 * t285));
-        const gic_real t287 = y[13] + (t13 * t281 + (t20 * t284 + t24 * t285));
-        const gic_real t288 = y[12] + (t5 * t281 + (t17 * t284 + t22 * t285));
+        const gic_real t277 = t45 + (t46 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.08910630000000008));
+        const gic_real t278 = t49 + (t50 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.08910630000000008));
+        const gic_real t279 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t277;
+        const gic_real t280 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t278;
+        const gic_real t281 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t277 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t278) + (y[HMMWV14_STATE_OMEGA_X] * t279 - y[HMMWV14_STATE_OMEGA_Y] * t280);
+        const gic_real t282 = t41 + (t42 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.08910630000000008));
+        const gic_real t283 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t282;
+        const gic_real t284 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t278 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t282) + (y[HMMWV14_STATE_OMEGA_Z] * t280 - y[HMMWV14_STATE_OMEGA_X] * t283);
+        const gic_real t285 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t282 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t277 + (y[HMMWV14_STATE_OMEGA_Y] * t283 -
+            y[HMMWV14_STATE_OMEGA_Z] * t279);
+        const gic_real t286 = y[HMMWV14_STATE_V_Z] + (t9 * t281 + (t18 * t284 + t23 * t285));
+        const gic_real t287 = y[HMMWV14_STATE_V_Y] + (t13 * t281 + (t20 * t284 + t24 * t285));
+        const gic_real t288 = y[HMMWV14_STATE_V_X] + (t5 * t281 + (t17 * t284 + t22 * t285));
         const gic_real t289 = R(90.555) * (t286 * t286 + (t287 * t287 + t288 * t288));
-        const gic_real t290 = y[17] * (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469)));
-        const gic_real t291 = m[98] * R(0.8938);
-        const gic_real t292 = m[97] * R(0.4469);
-        const gic_real t293 = m[101] * t291 + m[100] * t292;
-        const gic_real t294 = y[17] * t293 + y[16] * (m[98] * t291 + m[97] * t292);
-        const gic_real t295 = m[102] + y[15];
-        const gic_real t296 = y[17] * (t290 + y[16] * t293) + (y[16] * t294 + t295 * (R(0.4469) * t295));
-        const gic_real t297 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        const gic_real t290 = y[HMMWV14_STATE_OMEGA_Z] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.8938)) + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.4469)));
+        const gic_real t291 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t292 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t293 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * t291 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * t292;
+        const gic_real t294 = y[HMMWV14_STATE_OMEGA_Z] * t293 + y[HMMWV14_STATE_OMEGA_Y] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * t291 + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * t292);
+        const gic_real t295 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t296 = y[HMMWV14_STATE_OMEGA_Z] * (t290 + y[HMMWV14_STATE_OMEGA_Y] * t293) +
+            (y[HMMWV14_STATE_OMEGA_Y] * t294 + t295 * (R(0.4469) * t295));
+        const gic_real t297 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.246867347245056);
         const gic_real t298 = R(0.307086) + t297;
-        const gic_real t299 = R(-1.688965) * y[16];
-        const gic_real t300 = m[102] * t297 + (y[15] * t298 - t299);
-        const gic_real t301 = R(-1.688965) * y[17];
-        const gic_real t302 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t303 = t301 - y[15] * t302 - m[102] * t302;
-        const gic_real t304 = y[16] * t302 - y[17] * t298;
-        const gic_real t305 = y[14] + (t9 * t300 + (t18 * t303 + t23 * t304));
-        const gic_real t306 = y[13] + (t13 * t300 + (t20 * t303 + t24 * t304));
-        const gic_real t307 = y[12] + (t5 * t300 + (t17 * t303 + t22 * t304));
+        const gic_real t299 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t300 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t297 + (y[HMMWV14_STATE_OMEGA_X] * t298 -
+            t299);
+        const gic_real t301 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t302 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.246867347245056);
+        const gic_real t303 = t301 - y[HMMWV14_STATE_OMEGA_X] * t302 - m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            t302;
+        const gic_real t304 = y[HMMWV14_STATE_OMEGA_Y] * t302 - y[HMMWV14_STATE_OMEGA_Z] * t298;
+        const gic_real t305 = y[HMMWV14_STATE_V_Z] + (t9 * t300 + (t18 * t303 + t23 * t304));
+        const gic_real t306 = y[HMMWV14_STATE_V_Y] + (t13 * t300 + (t20 * t303 + t24 * t304));
+        const gic_real t307 = y[HMMWV14_STATE_V_X] + (t5 * t300 + (t17 * t303 + t22 * t304));
         const gic_real t308 = R(23.965) * (t305 * t305 + (t306 * t306 + t307 * t307));
         const gic_real t309 = t259 + R(0.5) * (t272 + t276 + t289) + R(0.5) * (t296 + t308);
-        const gic_real t310 = y[17] * (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469)));
-        const gic_real t311 = m[128] * R(0.8938);
-        const gic_real t312 = m[127] * R(0.4469);
-        const gic_real t313 = m[131] * t311 + m[130] * t312;
-        const gic_real t314 = y[17] * t313 + y[16] * (m[128] * t311 + m[127] * t312);
-        const gic_real t315 = m[132] + y[15];
-        const gic_real t316 = y[17] * (t310 + y[16] * t313) + (y[16] * t314 + t315 * (R(0.4469) * t315));
-        const gic_real t317 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        const gic_real t310 = y[HMMWV14_STATE_OMEGA_Z] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.8938)) + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(0.4469)));
+        const gic_real t311 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t312 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t313 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * t311 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * t312;
+        const gic_real t314 = y[HMMWV14_STATE_OMEGA_Z] * t313 + y[HMMWV14_STATE_OMEGA_Y] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * t311 + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * t312);
+        const gic_real t315 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t316 = y[HMMWV14_STATE_OMEGA_Z] * (t310 + y[HMMWV14_STATE_OMEGA_Y] * t313) +
+            (y[HMMWV14_STATE_OMEGA_Y] * t314 + t315 * (R(0.4469) * t315));
+        const gic_real t317 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.246867347245056);
         const gic_real t318 = R(-0.307086) + t317;
-        const gic_real t319 = m[132] * t317 + (y[15] * t318 - t299);
-        const gic_real t320 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t321 = t301 - y[15] * t320 - m[132] * t320;
-        const gic_real t322 = y[16] * t320 - y[17] * t318;
-        const gic_real t323 = y[14] + (t9 * t319 + (t18 * t321 + t23 * t322));
-        const gic_real t324 = y[13] + (t13 * t319 + (t20 * t321 + t24 * t322));
-        const gic_real t325 = y[12] + (t5 * t319 + (t17 * t321 + t22 * t322));
+        const gic_real t319 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t317 + (y[HMMWV14_STATE_OMEGA_X] * t318 -
+            t299);
+        const gic_real t320 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.246867347245056);
+        const gic_real t321 = t301 - y[HMMWV14_STATE_OMEGA_X] * t320 - m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            t320;
+        const gic_real t322 = y[HMMWV14_STATE_OMEGA_Y] * t320 - y[HMMWV14_STATE_OMEGA_Z] * t318;
+        const gic_real t323 = y[HMMWV14_STATE_V_Z] + (t9 * t319 + (t18 * t321 + t23 * t322));
+        const gic_real t324 = y[HMMWV14_STATE_V_Y] + (t13 * t319 + (t20 * t321 + t24 * t322));
+        const gic_real t325 = y[HMMWV14_STATE_V_X] + (t5 * t319 + (t17 * t321 + t22 * t322));
         const gic_real t326 = R(23.965) * (t323 * t323 + (t324 * t324 + t325 * t325));
-        const gic_real t327 = m[338] + y[17];
-        const gic_real t328 = m[335] * (m[335] * R(4.7728205)) + (m[334] * (m[334] * R(7.58122)) + m[333] * (m[333] * R(4.8947505)));
-        const gic_real t329 = m[337] + y[16];
-        const gic_real t330 = m[332] * R(4.7728205);
-        const gic_real t331 = m[331] * R(7.58122);
-        const gic_real t332 = m[330] * R(4.8947505);
-        const gic_real t333 = m[335] * t330 + (m[334] * t331 + m[333] * t332);
-        const gic_real t334 = m[336] + y[15];
-        const gic_real t335 = m[329] * R(4.7728205);
-        const gic_real t336 = m[328] * R(7.58122);
-        const gic_real t337 = m[327] * R(4.8947505);
-        const gic_real t338 = m[335] * t335 + (m[334] * t336 + m[333] * t337);
+        const gic_real t327 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t328 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t329 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t330 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t331 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t332 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t333 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t330 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t331 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t332);
+        const gic_real t334 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t335 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t336 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t337 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t338 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t335 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t336 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t337);
         const gic_real t339 = t327 * (t327 * t328 + (t329 * t333 + t334 * t338));
-        const gic_real t340 = t329 * (m[332] * t330 + (m[331] * t331 + m[330] * t332));
-        const gic_real t341 = m[332] * t335 + (m[331] * t336 + m[330] * t337);
-        const gic_real t342 = t334 * (m[329] * t335 + (m[328] * t336 + m[327] * t337));
+        const gic_real t340 = t329 * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t330 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t331 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t332));
+        const gic_real t341 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t335 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t336 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t337);
+        const gic_real t342 = t334 * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * t335 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * t336 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t337));
         const gic_real t343 = t329 * (t327 * t333 + (t340 + t334 * t341)) + t334 * (t327 * t338 + (t329 * t341 + t342));
-        const gic_real t344 = t59 + m[331] * R(0.08910630000000008);
-        const gic_real t345 = t62 + m[328] * R(0.08910630000000008);
-        const gic_real t346 = m[325] + t344;
-        const gic_real t347 = m[324] + t345;
-        const gic_real t348 = m[341] + (m[336] * t344 - m[337] * t345) + (y[15] * t346 - y[16] * t347);
-        const gic_real t349 = t56 + m[334] * R(0.08910630000000008);
-        const gic_real t350 = m[326] + t349;
-        const gic_real t351 = m[340] + (m[338] * t345 - m[336] * t349) + (y[17] * t347 - y[15] * t350);
-        const gic_real t352 = m[337] * t349 - m[338] * t344 + (y[16] * t350 - y[17] * t346);
-        const gic_real t353 = y[14] + (t9 * t348 + (t18 * t351 + t23 * t352));
-        const gic_real t354 = y[13] + (t13 * t348 + (t20 * t351 + t24 * t352));
-        const gic_real t355 = y[12] + (t5 * t348 + (t17 * t351 + t22 * t352));
+        const gic_real t344 = t59 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.08910630000000008);
+        const gic_real t345 = t62 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.08910630000000008);
+        const gic_real t346 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t344;
+        const gic_real t347 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t345;
+        const gic_real t348 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t344 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t345) + (y[HMMWV14_STATE_OMEGA_X] * t346 - y[HMMWV14_STATE_OMEGA_Y] * t347);
+        const gic_real t349 = t56 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.08910630000000008);
+        const gic_real t350 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t349;
+        const gic_real t351 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t345 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t349) + (y[HMMWV14_STATE_OMEGA_Z] * t347 - y[HMMWV14_STATE_OMEGA_X] * t350);
+        const gic_real t352 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t349 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t344 + (y[HMMWV14_STATE_OMEGA_Y] * t350 -
+            y[HMMWV14_STATE_OMEGA_Z] * t346);
+        const gic_real t353 = y[HMMWV14_STATE_V_Z] + (t9 * t348 + (t18 * t351 + t23 * t352));
+        const gic_real t354 = y[HMMWV14_STATE_V_Y] + (t13 * t348 + (t20 * t351 + t24 * t352));
+        const gic_real t355 = y[HMMWV14_STATE_V_X] + (t5 * t348 + (t17 * t351 + t22 * t352));
         const gic_real t356 = R(90.555) * (t353 * t353 + (t354 * t354 + t355 * t355));
         const gic_real t357 = t309 + R(0.5) * (t316 + t326) + R(0.5) * (t339 + t343 + t356);
-        const gic_real t358 = m[398] + y[17];
-        const gic_real t359 = m[395] * (m[395] * R(4.7728205)) + (m[394] * (m[394] * R(7.58122)) + m[393] * (m[393] * R(4.8947505)));
-        const gic_real t360 = m[397] + y[16];
-        const gic_real t361 = m[392] * R(4.7728205);
-        const gic_real t362 = m[391] * R(7.58122);
-        const gic_real t363 = m[390] * R(4.8947505);
-        const gic_real t364 = m[395] * t361 + (m[394] * t362 + m[393] * t363);
-        const gic_real t365 = m[396] + y[15];
-        const gic_real t366 = m[389] * R(4.7728205);
-        const gic_real t367 = m[388] * R(7.58122);
-        const gic_real t368 = m[387] * R(4.8947505);
-        const gic_real t369 = m[395] * t366 + (m[394] * t367 + m[393] * t368);
+        const gic_real t358 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t359 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t360 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t361 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t362 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t363 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t364 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t361 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t362 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t363);
+        const gic_real t365 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t366 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t367 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t368 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t369 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t366 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t367 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t368);
         const gic_real t370 = t358 * (t358 * t359 + (t360 * t364 + t365 * t369));
-        const gic_real t371 = t360 * (m[392] * t361 + (m[391] * t362 + m[390] * t363));
-        const gic_real t372 = m[392] * t366 + (m[391] * t367 + m[390] * t368);
-        const gic_real t373 = t365 * (m[389] * t366 + (m[388] * t367 + m[387] * t368));
+        const gic_real t371 = t360 * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t361 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t362 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t363));
+        const gic_real t372 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t366 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t367 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t368);
+        const gic_real t373 = t365 * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * t366 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * t367 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t368));
         const gic_real t374 = t360 * (t358 * t364 + (t371 + t365 * t372)) + t365 * (t358 * t369 + (t360 * t372 + t373));
-        const gic_real t375 = t71 + m[391] * R(-0.08910630000000008);
-        const gic_real t376 = t74 + m[388] * R(-0.08910630000000008);
-        const gic_real t377 = m[385] + t375;
-        const gic_real t378 = m[384] + t376;
-        const gic_real t379 = m[401] + (m[396] * t375 - m[397] * t376) + (y[15] * t377 - y[16] * t378);
-        const gic_real t380 = t68 + m[394] * R(-0.08910630000000008);
-        const gic_real t381 = m[386] + t380;
-        const gic_real t382 = m[400] + (m[398] * t376 - m[396] * t380) + (y[17] * t378 - y[15] * t381);
-        const gic_real t383 = m[397] * t380 - m[398] * t375 + (y[16] * t381 - y[17] * t377);
-        const gic_real t384 = y[14] + (t9 * t379 + (t18 * t382 + t23 * t383));
-        const gic_real t385 = y[13] + (t13 * t379 + (t20 * t382 + t24 * t383));
-        const gic_real t386 = y[12] + (t5 * t379 + (t17 * t382 + t22 * t383));
+        const gic_real t375 = t71 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.08910630000000008);
+        const gic_real t376 = t74 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.08910630000000008);
+        const gic_real t377 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t375;
+        const gic_real t378 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t376;
+        const gic_real t379 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t375 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t376) + (y[HMMWV14_STATE_OMEGA_X] * t377 - y[HMMWV14_STATE_OMEGA_Y] * t378);
+        const gic_real t380 = t68 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.08910630000000008);
+        const gic_real t381 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t380;
+        const gic_real t382 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t376 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t380) + (y[HMMWV14_STATE_OMEGA_Z] * t378 - y[HMMWV14_STATE_OMEGA_X] * t381);
+        const gic_real t383 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t380 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t375 + (y[HMMWV14_STATE_OMEGA_Y] * t381 -
+            y[HMMWV14_STATE_OMEGA_Z] * t377);
+        const gic_real t384 = y[HMMWV14_STATE_V_Z] + (t9 * t379 + (t18 * t382 + t23 * t383));
+        const gic_real t385 = y[HMMWV14_STATE_V_Y] + (t13 * t379 + (t20 * t382 + t24 * t383));
+        const gic_real t386 = y[HMMWV14_STATE_V_X] + (t5 * t379 + (t17 * t382 + t22 * t383));
         const gic_real t387 = R(90.555) * (t384 * t384 + (t385 * t385 + t386 * t386));
-        const gic_real t388 = m[164] + y[17];
-        const gic_real t389 = m[161] * (m[161] * R(0.06276)) + (m[160] * (m[160] * R(0.03138)) + R(0.0014540542454566034));
-        const gic_real t390 = m[163] + y[16];
-        const gic_real t391 = m[158] * R(0.06276);
-        const gic_real t392 = m[157] * R(0.03138);
-        const gic_real t393 = m[161] * t391 + (m[160] * t392 + R(-0.0009417184427870059));
-        const gic_real t394 = m[162] + y[15];
-        const gic_real t395 = m[155] * R(0.06276);
-        const gic_real t396 = m[154] * R(0.03138);
-        const gic_real t397 = m[161] * t395 + (m[160] * t396 + R(0.0065289443900383055));
+        const gic_real t388 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t389 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(0.0014540542454566034));
+        const gic_real t390 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t391 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t392 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t393 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t391 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t392 + R(-0.0009417184427870059));
+        const gic_real t394 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t395 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t396 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t397 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t395 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t396 + R(0.0065289443900383055));
         const gic_real t398 = t388 * (t388 * t389 + (t390 * t393 + t394 * t397));
-        const gic_real t399 = m[158] * t395 + (m[157] * t396 + R(-0.004228471780362703));
-        const gic_real t400 = t390 * (m[158] * t391 + (m[157] * t392 + R(0.0006099040859419237))) + t394 * t399;
-        const gic_real t401 = t390 * t399 + t394 * (m[155] * t395 + (m[154] * t396 + R(0.029316041668601474)));
+        const gic_real t399 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t395 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t396 + R(-0.004228471780362703));
+        const gic_real t400 = t390 * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t391 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t392 + R(0.0006099040859419237))) + t394 * t399;
+        const gic_real t401 = t390 * t399 + t394 * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * t395 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * t396 + R(0.029316041668601474)));
         const gic_real t402 = t390 * (t388 * t393 + t400) + t394 * (t388 * t397 + t401);
-        const gic_real t403 = m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648));
-        const gic_real t404 = m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016));
+        const gic_real t403 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.1333626625632361) + R(-0.004544539087734648));
+        const gic_real t404 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.1333626625632361) + R(0.031507339809937016));
         const gic_real t405 = R(0.4618482) + t403;
         const gic_real t406 = R(1.5309008) + t404;
-        const gic_real t407 = m[162] * t403 - m[163] * t404 + (y[15] * t405 - y[16] * t406);
-        const gic_real t408 = m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429));
+        const gic_real t407 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t403 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t404 + (y[HMMWV14_STATE_OMEGA_X] * t405 -
+            y[HMMWV14_STATE_OMEGA_Y] * t406);
+        const gic_real t408 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * R(0.1333626625632361) + R(0.007016966063240429));
         const gic_real t409 = R(0.22009100000000004) + t408;
-        const gic_real t410 = m[164] * t404 - m[162] * t408 + (y[17] * t406 - y[15] * t409);
-        const gic_real t411 = m[163] * t408 - m[164] * t403 + (y[16] * t409 - y[17] * t405);
-        const gic_real t412 = y[14] + (t9 * t407 + (t18 * t410 + t23 * t411));
-        const gic_real t413 = y[13] + (t13 * t407 + (t20 * t410 + t24 * t411));
-        const gic_real t414 = y[12] + (t5 * t407 + (t17 * t410 + t22 * t411));
+        const gic_real t410 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t404 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t408 + (y[HMMWV14_STATE_OMEGA_Z] * t406 -
+            y[HMMWV14_STATE_OMEGA_X] * t409);
+        const gic_real t411 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t408 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t403 + (y[HMMWV14_STATE_OMEGA_Y] * t409 -
+            y[HMMWV14_STATE_OMEGA_Z] * t405);
+        const gic_real t412 = y[HMMWV14_STATE_V_Z] + (t9 * t407 + (t18 * t410 + t23 * t411));
+        const gic_real t413 = y[HMMWV14_STATE_V_Y] + (t13 * t407 + (t20 * t410 + t24 * t411));
+        const gic_real t414 = y[HMMWV14_STATE_V_X] + (t5 * t407 + (t17 * t410 + t22 * t411));
         const gic_real t415 = R(5.813) * (t412 * t412 + (t413 * t413 + t414 * t414));
         const gic_real t416 = t357 + R(0.5) * (t370 + t374 + t387) + R(0.5) * (t398 + t402 + t415);
-        const gic_real t417 = m[236] + y[17];
-        const gic_real t418 = m[233] * (m[233] * R(0.06276)) + (R(0.0014540542454566034) + m[232] * (m[232] * R(0.03138)));
-        const gic_real t419 = m[235] + y[16];
-        const gic_real t420 = m[230] * R(0.06276);
-        const gic_real t421 = m[229] * R(0.03138);
-        const gic_real t422 = m[233] * t420 + (m[232] * t421 + R(0.0009417184427870059));
-        const gic_real t423 = m[234] + y[15];
-        const gic_real t424 = m[227] * R(0.06276);
-        const gic_real t425 = m[226] * R(0.03138);
-        const gic_real t426 = m[233] * t424 + (R(0.0065289443900383055) + m[232] * t425);
+        const gic_real t417 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t418 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(0.0014540542454566034) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t419 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t420 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t421 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t422 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t420 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t421 + R(0.0009417184427870059));
+        const gic_real t423 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t424 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t425 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t426 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t424 + (R(0.0065289443900383055) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t425);
         const gic_real t427 = t417 * (t417 * t418 + (t419 * t422 + t423 * t426));
-        const gic_real t428 = m[230] * t424 + (m[229] * t425 + R(0.004228471780362703));
-        const gic_real t429 = t419 * (m[230] * t420 + (R(0.0006099040859419237) + m[229] * t421)) + t423 * t428;
-        const gic_real t430 = t419 * t428 + t423 * (m[227] * t424 + (R(0.029316041668601474) + m[226] * t425));
+        const gic_real t428 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t424 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t425 + R(0.004228471780362703));
+        const gic_real t429 = t419 * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t420 + (R(0.0006099040859419237) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t421)) + t423 * t428;
+        const gic_real t430 = t419 * t428 + t423 * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * t424 +
+            (R(0.029316041668601474) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * t425));
         const gic_real t431 = t419 * (t417 * t422 + t429) + t423 * (t417 * t426 + t430);
-        const gic_real t432 = m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648));
-        const gic_real t433 = m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361));
+        const gic_real t432 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(-0.1333626625632361) + R(0.004544539087734648));
+        const gic_real t433 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (R(0.031507339809937016) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(-0.1333626625632361));
         const gic_real t434 = R(-0.4618482) + t432;
         const gic_real t435 = R(1.5309008) + t433;
-        const gic_real t436 = m[234] * t432 - m[235] * t433 + (y[15] * t434 - y[16] * t435);
-        const gic_real t437 = m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361));
+        const gic_real t436 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t432 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t433 + (y[HMMWV14_STATE_OMEGA_X] * t434 -
+            y[HMMWV14_STATE_OMEGA_Y] * t435);
+        const gic_real t437 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (R(0.007016966063240429) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(-0.1333626625632361));
         const gic_real t438 = R(0.22009100000000004) + t437;
-        const gic_real t439 = m[236] * t433 - m[234] * t437 + (y[17] * t435 - y[15] * t438);
-        const gic_real t440 = m[235] * t437 - m[236] * t432 + (y[16] * t438 - y[17] * t434);
-        const gic_real t441 = y[14] + (t9 * t436 + (t18 * t439 + t23 * t440));
-        const gic_real t442 = y[13] + (t13 * t436 + (t20 * t439 + t24 * t440));
-        const gic_real t443 = y[12] + (t5 * t436 + (t17 * t439 + t22 * t440));
+        const gic_real t439 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t433 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t437 + (y[HMMWV14_STATE_OMEGA_Z] * t435 -
+            y[HMMWV14_STATE_OMEGA_X] * t438);
+        const gic_real t440 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t437 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t432 + (y[HMMWV14_STATE_OMEGA_Y] * t438 -
+            y[HMMWV14_STATE_OMEGA_Z] * t434);
+        const gic_real t441 = y[HMMWV14_STATE_V_Z] + (t9 * t436 + (t18 * t439 + t23 * t440));
+        const gic_real t442 = y[HMMWV14_STATE_V_Y] + (t13 * t436 + (t20 * t439 + t24 * t440));
+        const gic_real t443 = y[HMMWV14_STATE_V_X] + (t5 * t436 + (t17 * t439 + t22 * t440));
         const gic_real t444 = R(5.813) * (t441 * t441 + (t442 * t442 + t443 * t443));
-        const gic_real t445 = m[308] + y[17];
-        const gic_real t446 = m[305] * (m[305] * R(0.06276)) + (m[304] * (m[304] * R(0.03138)) + R(6.221420556416178e-06));
-        const gic_real t447 = m[307] + y[16];
-        const gic_real t448 = m[302] * R(0.06276);
-        const gic_real t449 = m[301] * R(0.03138);
-        const gic_real t450 = m[305] * t448 + (m[304] * t449 + R(3.3816305342675644e-07));
-        const gic_real t451 = m[306] + y[15];
-        const gic_real t452 = m[299] * R(0.06276);
-        const gic_real t453 = m[298] * R(0.03138);
-        const gic_real t454 = m[305] * t452 + (m[304] * t453 + R(0.00044180239545791184));
+        const gic_real t445 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t446 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(6.221420556416178e-06));
+        const gic_real t447 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t448 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t449 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t450 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t448 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t449 + R(3.3816305342675644e-07));
+        const gic_real t451 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t452 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t453 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t454 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t452 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t453 + R(0.00044180239545791184));
         const gic_real t455 = t445 * (t445 * t446 + (t447 * t450 + t451 * t454));
-        const gic_real t456 = m[302] * t452 + (m[301] * t453 + R(2.4014008650359553e-05));
-        const gic_real t457 = t447 * (m[302] * t448 + (m[301] * t449 + R(1.838072987767614e-08))) + t451 * t456;
-        const gic_real t458 = t447 * t456 + t451 * (m[299] * t452 + (m[298] * t453 + R(0.0313737601987137)));
+        const gic_real t456 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t452 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t453 + R(2.4014008650359553e-05));
+        const gic_real t457 = t447 * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t448 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t449 + R(1.838072987767614e-08))) + t451 * t456;
+        const gic_real t458 = t447 * t456 + t451 * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * t452 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * t453 + R(0.0313737601987137)));
         const gic_real t459 = t447 * (t445 * t450 + t457) + t451 * (t445 * t454 + t458);
-        const gic_real t460 = m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05));
-        const gic_real t461 = m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348));
+        const gic_real t460 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.1268157381236126) + R(-6.79134666217616e-05));
+        const gic_real t461 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.1268157381236126) + R(-0.0887274110323348));
         const gic_real t462 = R(0.462153) + t460;
         const gic_real t463 = R(-1.475859) + t461;
-        const gic_real t464 = m[306] * t460 - m[307] * t461 + (y[15] * t462 - y[16] * t463);
-        const gic_real t465 = m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036));
+        const gic_real t464 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t460 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t461 + (y[HMMWV14_STATE_OMEGA_X] * t462 -
+            y[HMMWV14_STATE_OMEGA_Y] * t463);
+        const gic_real t465 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * R(0.1268157381236126) + R(-0.0012494512130067036));
         const gic_real t466 = R(0.22567900000000007) + t465;
-        const gic_real t467 = m[308] * t461 - m[306] * t465 + (y[17] * t463 - y[15] * t466);
-        const gic_real t468 = m[307] * t465 - m[308] * t460 + (y[16] * t466 - y[17] * t462);
-        const gic_real t469 = y[14] + (t9 * t464 + (t18 * t467 + t23 * t468));
-        const gic_real t470 = y[13] + (t13 * t464 + (t20 * t467 + t24 * t468));
-        const gic_real t471 = y[12] + (t5 * t464 + (t17 * t467 + t22 * t468));
+        const gic_real t467 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t461 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t465 + (y[HMMWV14_STATE_OMEGA_Z] * t463 -
+            y[HMMWV14_STATE_OMEGA_X] * t466);
+        const gic_real t468 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t465 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t460 + (y[HMMWV14_STATE_OMEGA_Y] * t466 -
+            y[HMMWV14_STATE_OMEGA_Z] * t462);
+        const gic_real t469 = y[HMMWV14_STATE_V_Z] + (t9 * t464 + (t18 * t467 + t23 * t468));
+        const gic_real t470 = y[HMMWV14_STATE_V_Y] + (t13 * t464 + (t20 * t467 + t24 * t468));
+        const gic_real t471 = y[HMMWV14_STATE_V_X] + (t5 * t464 + (t17 * t467 + t22 * t468));
         const gic_real t472 = R(5.813) * (t469 * t469 + (t470 * t470 + t471 * t471));
         const gic_real t473 = t416 + R(0.5) * (t427 + t431 + t444) + R(0.5) * (t455 + t459 + t472);
-        const gic_real t474 = m[368] + y[17];
-        const gic_real t475 = m[365] * (m[365] * R(0.06276)) + (R(6.221420556416178e-06) + m[364] * (m[364] * R(0.03138)));
-        const gic_real t476 = m[367] + y[16];
-        const gic_real t477 = m[362] * R(0.06276);
-        const gic_real t478 = m[361] * R(0.03138);
-        const gic_real t479 = m[365] * t477 + (m[364] * t478 + R(-3.3816305342675644e-07));
-        const gic_real t480 = m[366] + y[15];
-        const gic_real t481 = m[359] * R(0.06276);
-        const gic_real t482 = m[358] * R(0.03138);
-        const gic_real t483 = m[365] * t481 + (R(0.00044180239545791184) + m[364] * t482);
+        const gic_real t474 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t475 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(6.221420556416178e-06) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t476 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t477 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t478 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t479 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t477 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t478 + R(-3.3816305342675644e-07));
+        const gic_real t480 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
+        const gic_real t481 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t482 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t483 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t481 + (R(0.00044180239545791184) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t482);
         const gic_real t484 = t474 * (t474 * t475 + (t476 * t479 + t480 * t483));
-        const gic_real t485 = m[362] * t481 + (m[361] * t482 + R(-2.4014008650359553e-05));
-        const gic_real t486 = t476 * (m[362] * t477 + (R(1.838072987767614e-08) + m[361] * t478)) + t480 * t485;
-        const gic_real t487 = t476 * t485 + t480 * (m[359] * t481 + (R(0.0313737601987137) + m[358] * t482));
+        const gic_real t485 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t481 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t482 + R(-2.4014008650359553e-05));
+        const gic_real t486 = t476 * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t477 + (R(1.838072987767614e-08) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t478)) + t480 * t485;
+        const gic_real t487 = t476 * t485 + t480 * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * t481 +
+            (R(0.0313737601987137) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * t482));
         const gic_real t488 = t476 * (t474 * t479 + t486) + t480 * (t474 * t483 + t487);
-        const gic_real t489 = m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05));
-        const gic_real t490 = m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126));
+        const gic_real t489 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(-0.1268157381236126) + R(6.79134666217616e-05));
+        const gic_real t490 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (R(-0.0887274110323348) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(-0.1268157381236126));
         const gic_real t491 = R(-0.462153) + t489;
         const gic_real t492 = R(-1.475859) + t490;
-        const gic_real t493 = m[366] * t489 - m[367] * t490 + (y[15] * t491 - y[16] * t492);
-        const gic_real t494 = m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126));
+        const gic_real t493 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t489 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t490 + (y[HMMWV14_STATE_OMEGA_X] * t491 -
+            y[HMMWV14_STATE_OMEGA_Y] * t492);
+        const gic_real t494 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (R(-0.0012494512130067036) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(-0.1268157381236126));
         const gic_real t495 = R(0.22567900000000007) + t494;
-        const gic_real t496 = m[368] * t490 - m[366] * t494 + (y[17] * t492 - y[15] * t495);
-        const gic_real t497 = m[367] * t494 - m[368] * t489 + (y[16] * t495 - y[17] * t491);
-        const gic_real t498 = y[14] + (t9 * t493 + (t18 * t496 + t23 * t497));
-        const gic_real t499 = y[13] + (t13 * t493 + (t20 * t496 + t24 * t497));
-        const gic_real t500 = y[12] + (t5 * t493 + (t17 * t496 + t22 * t497));
+        const gic_real t496 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t490 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t494 + (y[HMMWV14_STATE_OMEGA_Z] * t492 -
+            y[HMMWV14_STATE_OMEGA_X] * t495);
+        const gic_real t497 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t494 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t489 + (y[HMMWV14_STATE_OMEGA_Y] * t495 -
+            y[HMMWV14_STATE_OMEGA_Z] * t491);
+        const gic_real t498 = y[HMMWV14_STATE_V_Z] + (t9 * t493 + (t18 * t496 + t23 * t497));
+        const gic_real t499 = y[HMMWV14_STATE_V_Y] + (t13 * t493 + (t20 * t496 + t24 * t497));
+        const gic_real t500 = y[HMMWV14_STATE_V_X] + (t5 * t493 + (t17 * t496 + t22 * t497));
         const gic_real t501 = R(5.813) * (t498 * t498 + (t499 * t499 + t500 * t500));
         const gic_real t502 = t92 * t93 * R(0.5) + R(0.5) * (t94 * t95) + R(0.5) * (t96 * t97);
-        const gic_real t503 = t502 + R(0.5) * (t98 * t99) + R(0.5) * (x[4] * (x[4] * R(100000.0)));
-        const gic_real t504 = t503 - (y[2] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) * R(-20468.7612);
-        const gic_real t505 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t18 + R(1.438648) * t23));
+        /* force rack */
+        const gic_real t503 = t502 + R(0.5) * (t98 * t99) + R(0.5) * (x[HMMWV14_X_RACK] * (x[HMMWV14_X_RACK] *
+            R(100000.0)));
+        const gic_real t504 = t503 - (y[HMMWV14_STATE_R_Z] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) *
+            R(-20468.7612);
+        const gic_real t505 = y[HMMWV14_STATE_R_Z] + (R(0.05422899999999997) * t9 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t18 + R(1.438648) * t23));
         const gic_real t506 = R(1.688965) * t23;
-        const gic_real t507 = (y[2] + (t9 * t204 + (t18 * t200 + t506))) * R(-235.09665);
-        const gic_real t508 = R(-235.09665) * (y[2] + (t9 * t222 + (t506 + t18 * t220)));
-        const gic_real t509 = y[2] + (t9 * t252 + (t18 * t248 + t23 * t249));
+        const gic_real t507 = (y[HMMWV14_STATE_R_Z] + (t9 * t204 + (t18 * t200 + t506))) * R(-235.09665);
+        const gic_real t508 = R(-235.09665) * (y[HMMWV14_STATE_R_Z] + (t9 * t222 + (t506 + t18 * t220)));
+        const gic_real t509 = y[HMMWV14_STATE_R_Z] + (t9 * t252 + (t18 * t248 + t23 * t249));
         const gic_real t510 = t504 - t505 * R(-88.99632) - t507 - t508 - t509 * R(-888.3445500000001);
-        const gic_real t511 = y[2] + (t9 * t283 + (t18 * t279 + t23 * t280));
+        const gic_real t511 = y[HMMWV14_STATE_R_Z] + (t9 * t283 + (t18 * t279 + t23 * t280));
         const gic_real t512 = R(-1.688965) * t23;
-        const gic_real t513 = R(-235.09665) * (y[2] + (t9 * t302 + (t18 * t298 + t512)));
-        const gic_real t514 = R(-235.09665) * (y[2] + (t9 * t320 + (t512 + t18 * t318)));
-        const gic_real t515 = y[2] + (t9 * t350 + (t18 * t346 + t23 * t347));
+        const gic_real t513 = R(-235.09665) * (y[HMMWV14_STATE_R_Z] + (t9 * t302 + (t18 * t298 + t512)));
+        const gic_real t514 = R(-235.09665) * (y[HMMWV14_STATE_R_Z] + (t9 * t320 + (t512 + t18 * t318)));
+        const gic_real t515 = y[HMMWV14_STATE_R_Z] + (t9 * t350 + (t18 * t346 + t23 * t347));
         const gic_real t516 = t510 - R(-888.3445500000001) * t511 - t513 - t514 - R(-888.3445500000001) * t515;
-        const gic_real t517 = y[2] + (t9 * t381 + (t18 * t377 + t23 * t378));
-        const gic_real t518 = y[2] + (t9 * t409 + (t18 * t405 + t23 * t406));
-        const gic_real t519 = y[2] + (t9 * t438 + (t18 * t434 + t23 * t435));
+        const gic_real t517 = y[HMMWV14_STATE_R_Z] + (t9 * t381 + (t18 * t377 + t23 * t378));
+        const gic_real t518 = y[HMMWV14_STATE_R_Z] + (t9 * t409 + (t18 * t405 + t23 * t406));
+        const gic_real t519 = y[HMMWV14_STATE_R_Z] + (t9 * t438 + (t18 * t434 + t23 * t435));
         const gic_real t520 = t516 - R(-888.3445500000001) * t517 - t518 * R(-57.02553) - R(-57.02553) * t519;
-        const gic_real t521 = y[2] + (t9 * t466 + (t18 * t462 + t23 * t463));
-        const gic_real t522 = y[2] + (t9 * t495 + (t18 * t491 + t23 * t492));
-        const gic_real t523 = t105 * t106 + t112 * t113 + t119 * t120 + t126 * t127;
-        const gic_real t524 = t134 * t139 - (t523 + xd[4] * (xd[4] * R(12000.0))) + t146 * t151;
-        const gic_real t525 = y[0];
-        const gic_real t526 = y[1];
-        const gic_real t527 = y[2];
-        const gic_real t528 = y[12];
-        const gic_real t529 = y[13];
-        const gic_real t530 = y[14];
-        const gic_real t531 = t5 * t14 + (t17 * t21 + t22 * t25);
-        const gic_real t532 = t13 * t14 + (t20 * t21 + t24 * t25);
-        const gic_real t533 = t9 * t14 + (t18 * t21 + t23 * t25);
-        const gic_real t534 = e[0];
-        const gic_real t535 = e[1];
-        const gic_real t536 = e[2];
-        const gic_real t537 = e[3];
-        const gic_real t538 = GIC_ATAN2(t18, t9);
-        const gic_real t539 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t540 = GIC_ATAN2(t24, t22);
-        const gic_real t541 = y[15];
-        const gic_real t542 = y[16];
-        const gic_real t543 = y[17];
-        const gic_real t544 = GIC_ASIN(GIC_MIN(GIC_MAX(t81, R(-1.0)), R(1.0)));
-        const gic_real t545 = GIC_ASIN(GIC_MIN(GIC_MAX(t84, R(-1.0)), R(1.0)));
-        const gic_real t546 = GIC_ASIN(GIC_MIN(GIC_MAX(t87, R(-1.0)), R(1.0)));
-        const gic_real t547 = GIC_ASIN(GIC_MIN(GIC_MAX(t90, R(-1.0)), R(1.0)));
-        const gic_real t548 = x[0];
-        const gic_real t549 = xd[0];
-        const gic_real t550 = rate[18];
-        const gic_real t551 = x[1];
-        const gic_real t552 = xd[1];
-        const gic_real t553 = rate[19];
-        const gic_real t554 = x[2];
-        const gic_real t555 = xd[2];
-        const gic_real t556 = rate[20];
-        const gic_real t557 = x[3];
-        const gic_real t558 = xd[3];
-        const gic_real t559 = rate[21];
-        const gic_real t560 = x[4];
-        const gic_real t561 = xd[4];
-        const gic_real t562 = rate[22];
-        const gic_real t563 = -t93;
-        const gic_real t564 = -t95;
-        const gic_real t565 = -t97;
-        const gic_real t566 = -t99;
-        const gic_real t567 = road132[0];
-        const gic_real t568 = road144[0];
-        const gic_real t569 = road156[0];
-        const gic_real t570 = road168[0];
-        const gic_real t571 = t473 + R(0.5) * (t484 + t488 + t501);
-        const gic_real t572 = t520 - R(-57.02553) * t521 - R(-57.02553) * t522;
-        const gic_real t573 = t524 + t158 * t163 + t170 * t175;
-        out[0] = t525;
-        out[1] = t526;
-        out[2] = t527;
-        out[3] = t528;
-        out[4] = t529;
-        out[5] = t530;
-        out[6] = t531;
-        out[7] = t532;
-        out[8] = t533;
-        out[9] = t534;
-        out[10] = t535;
-        out[11] = t536;
-        out[12] = t537;
-        out[13] = t538;
-        out[14] = t539;
-        out[15] = t540;
-        out[16] = t541;
-        out[17] = t542;
-        out[18] = t543;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t53;
-        out[23] = t54;
-        out[24] = t55;
-        out[25] = t65;
-        out[26] = t66;
-        out[27] = t67;
-        out[28] = t77;
-        out[29] = t78;
-        out[30] = t79;
-        out[31] = t80;
-        out[32] = t544;
-        out[33] = t82;
-        out[34] = t83;
-        out[35] = t545;
-        out[36] = t85;
-        out[37] = t86;
-        out[38] = t546;
-        out[39] = t88;
-        out[40] = t89;
-        out[41] = t547;
-        out[42] = t91;
-        out[43] = t548;
-        out[44] = t549;
-        out[45] = t550;
-        out[46] = t551;
-        out[47] = t552;
-        out[48] = t553;
-        out[49] = t554;
-        out[50] = t555;
-        out[51] = t556;
-        out[52] = t557;
-        out[53] = t558;
-        out[54] = t559;
-        out[55] = t560;
-        out[56] = t561;
-        out[57] = t562;
-        out[58] = t563;
-        out[59] = t564;
-        out[60] = t565;
-        out[61] = t566;
-        out[62] = t106;
-        out[63] = t113;
-        out[64] = t120;
-        out[65] = t127;
-        out[66] = t139;
-        out[67] = t136;
-        out[68] = t135;
-        out[69] = t567;
-        out[70] = t151;
-        out[71] = t148;
-        out[72] = t147;
-        out[73] = t568;
-        out[74] = t163;
-        out[75] = t160;
-        out[76] = t159;
-        out[77] = t569;
-        out[78] = t175;
-        out[79] = t172;
-        out[80] = t171;
-        out[81] = t570;
-        out[82] = t571;
-        out[83] = t572;
-        out[84] = t573;
+        const gic_real t521 = y[HMMWV14_STATE_R_Z] + (t9 * t466 + (t18 * t462 + t23 * t463));
+        const gic_real t522 = y[HMMWV14_STATE_R_Z] + (t9 * t495 + (t18 * t491 + t23 * t492));
+        const gic_real t523 = t105 * force_shock_f_l + t112 * force_shock_f_r + t119 * force_shock_r_l + t126 *
+            force_shock_r_r;
+        const gic_real t524 = t134 * output_tire_f_l_fz - (t523 + xd[HMMWV14_X_RACK] * (xd[HMMWV14_X_RACK] *
+            R(12000.0))) + t146 * output_tire_f_r_fz;
+        const gic_real output_chassis_x = y[HMMWV14_STATE_R_X];
+        const gic_real output_chassis_y = y[HMMWV14_STATE_R_Y];
+        const gic_real output_chassis_z = y[HMMWV14_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[HMMWV14_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[HMMWV14_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[HMMWV14_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t14 + (t17 * t21 + t22 * t25);
+        const gic_real output_chassis_acceleration_y = t13 * t14 + (t20 * t21 + t24 * t25);
+        const gic_real output_chassis_acceleration_z = t9 * t14 + (t18 * t21 + t23 * t25);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t18, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t24, t22);
+        const gic_real output_chassis_angular_velocity_x = y[HMMWV14_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real output_attitude_f_l_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t81, R(-1.0)), R(1.0)));
+        const gic_real output_attitude_f_r_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t84, R(-1.0)), R(1.0)));
+        const gic_real output_attitude_r_l_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t87, R(-1.0)), R(1.0)));
+        const gic_real output_attitude_r_r_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t90, R(-1.0)), R(1.0)));
+        const gic_real output_spring_f_l_value = x[HMMWV14_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[HMMWV14_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[HMMWV14_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[HMMWV14_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[HMMWV14_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[HMMWV14_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[HMMWV14_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[HMMWV14_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[HMMWV14_X_RACK];
+        const gic_real output_rack_rate = xd[HMMWV14_X_RACK];
+        const gic_real output_rack_acceleration = rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real force_spring_f_l = -t93;
+        const gic_real force_spring_f_r = -t95;
+        const gic_real force_spring_r_l = -t97;
+        const gic_real force_spring_r_r = -t99;
+        const gic_real output_tire_f_l_height = road132[0];
+        const gic_real output_tire_f_r_height = road144[0];
+        const gic_real output_tire_r_l_height = road156[0];
+        const gic_real output_tire_r_r_height = road168[0];
+        const gic_real output_energy_kinetic = t473 + R(0.5) * (t484 + t488 + t501);
+        const gic_real output_energy_potential = t520 - R(-57.02553) * t521 - R(-57.02553) * t522;
+        const gic_real output_energy_power = t524 + t158 * output_tire_r_l_fz + t170 * output_tire_r_r_fz;
+        out[HMMWV14_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[HMMWV14_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[HMMWV14_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[HMMWV14_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[HMMWV14_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[HMMWV14_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[HMMWV14_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[HMMWV14_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[HMMWV14_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[HMMWV14_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[HMMWV14_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[HMMWV14_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[HMMWV14_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[HMMWV14_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[HMMWV14_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[HMMWV14_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[HMMWV14_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[HMMWV14_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[HMMWV14_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[HMMWV14_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[HMMWV14_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[HMMWV14_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[HMMWV14_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[HMMWV14_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[HMMWV14_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[HMMWV14_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[HMMWV14_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[HMMWV14_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[HMMWV14_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[HMMWV14_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[HMMWV14_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_L_ROLL] = output_attitude_f_l_roll;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_L_PITCH] = output_attitude_f_l_pitch;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_L_YAW] = output_attitude_f_l_yaw;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_R_ROLL] = output_attitude_f_r_roll;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_R_PITCH] = output_attitude_f_r_pitch;
+        out[HMMWV14_OUTPUT_ATTITUDE_F_R_YAW] = output_attitude_f_r_yaw;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_L_ROLL] = output_attitude_r_l_roll;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_L_PITCH] = output_attitude_r_l_pitch;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_L_YAW] = output_attitude_r_l_yaw;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_R_ROLL] = output_attitude_r_r_roll;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_R_PITCH] = output_attitude_r_r_pitch;
+        out[HMMWV14_OUTPUT_ATTITUDE_R_R_YAW] = output_attitude_r_r_yaw;
+        out[HMMWV14_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[HMMWV14_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[HMMWV14_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[HMMWV14_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[HMMWV14_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[HMMWV14_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[HMMWV14_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[HMMWV14_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[HMMWV14_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[HMMWV14_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[HMMWV14_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[HMMWV14_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[HMMWV14_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[HMMWV14_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[HMMWV14_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[HMMWV14_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[HMMWV14_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[HMMWV14_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[HMMWV14_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[HMMWV14_OUTPUT_SHOCK_F_L] = force_shock_f_l;
+        out[HMMWV14_OUTPUT_SHOCK_F_R] = force_shock_f_r;
+        out[HMMWV14_OUTPUT_SHOCK_R_L] = force_shock_r_l;
+        out[HMMWV14_OUTPUT_SHOCK_R_R] = force_shock_r_r;
+        out[HMMWV14_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[HMMWV14_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[HMMWV14_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[HMMWV14_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[HMMWV14_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[HMMWV14_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[HMMWV14_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[HMMWV14_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[HMMWV14_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[HMMWV14_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[HMMWV14_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[HMMWV14_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[HMMWV14_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[HMMWV14_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[HMMWV14_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[HMMWV14_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[HMMWV14_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[HMMWV14_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[HMMWV14_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -3236,26 +4163,35 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[HMMWV14_STATE_R_X] + (R(0.05422899999999997) * t5 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[HMMWV14_STATE_R_Y] + (R(0.05422899999999997) * t16 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[HMMWV14_STATE_R_Z] + (R(0.05422899999999997) * t21 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY]));
+        const gic_real t31 = R(1.0) + (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ]));
+        const gic_real t32 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -3263,12 +4199,12 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -3279,11 +4215,16 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY]));
+        const gic_real t59 = R(1.0) + (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ]));
+        const gic_real t60 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -3291,12 +4232,12 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -3307,34 +4248,43 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t85 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t86 = m[186] + (m[191] * R(0.09182100000000004) + (m[190] * R(0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t91 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t92 = m[193] + m[197];
-        const gic_real t93 = R(1.0) + (m[189] - t92);
-        const gic_real t94 = R(1.0) + (m[189] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[HMMWV14_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[HMMWV14_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[HMMWV14_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY]));
+        const gic_real t91 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ]));
+        const gic_real t92 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[192] - m[190];
+        const gic_real t98 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[191] - m[195];
+        const gic_real t100 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[196] - m[194];
+        const gic_real t102 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[194] + m[196];
-        const gic_real t108 = m[191] + m[195];
+        const gic_real t107 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY];
+        const gic_real t108 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[190] + m[192];
+        const gic_real t111 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -3344,34 +4294,43 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[260] + (m[269] * R(0.09182100000000004) + (m[268] * R(-0.08910630000000008) + m[267] * R(-0.004825999999999997)));
-        const gic_real t122 = m[259] + (m[266] * R(0.09182100000000004) + (m[265] * R(-0.08910630000000008) + m[264] * R(-0.004825999999999997)));
-        const gic_real t123 = m[258] + (m[263] * R(0.09182100000000004) + (m[262] * R(-0.08910630000000008) + m[261] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[269] - (m[261] + m[265]));
-        const gic_real t128 = R(1.0) + (m[265] - (m[261] + m[269]));
-        const gic_real t129 = m[265] + m[269];
-        const gic_real t130 = R(1.0) + (m[261] - t129);
-        const gic_real t131 = R(1.0) + (m[261] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] *
+            R(0.09182100000000004) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.08910630000000008) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[HMMWV14_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[HMMWV14_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[HMMWV14_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY]));
+        const gic_real t128 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ]));
+        const gic_real t129 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[264] - m[262];
+        const gic_real t135 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[263] - m[267];
+        const gic_real t137 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[268] - m[266];
+        const gic_real t139 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[266] + m[268];
-        const gic_real t145 = m[263] + m[267];
+        const gic_real t144 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY];
+        const gic_real t145 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[262] + m[264];
+        const gic_real t148 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -3381,14 +4340,19 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t159 = R(0.307086) + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
+        /* pose of lca_r_l */
+        const gic_real t158 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.246867347245056);
+        const gic_real t159 = R(0.307086) + (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.246867347245056));
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
-        const gic_real t165 = m[97] + m[101];
+        const gic_real t163 = R(1.0) + (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY]));
+        const gic_real t164 = R(1.0) + (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ]));
+        const gic_real t165 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ];
         const gic_real t166 = R(1.0) + (R(1.0) - t165);
         const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
@@ -3396,12 +4360,12 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t170 = t163 - t169;
         const gic_real t171 = t164 - t168;
         const gic_real t172 = t166 - t167;
-        const gic_real t173 = m[100] - m[98];
+        const gic_real t173 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ];
         const gic_real t174 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? R(0.0) : (t172 > GIC_R(0) ? t173 : t167)));
         const gic_real t175 = R(0.5) / GIC_SQRT(GIC_MAX(t163, t169));
         const gic_real t176 = t174 * t175;
         const gic_real t177 = e[0] * t176;
-        const gic_real t178 = m[98] + m[100];
+        const gic_real t178 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY];
         const gic_real t179 = (t172 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t180 = (t170 > GIC_R(0) ? t163 : (t171 > GIC_R(0) ? t178 : t179)) * t175;
         const gic_real t181 = (t170 > GIC_R(0) ? t178 : (t171 > GIC_R(0) ? t164 : t179)) * t175;
@@ -3412,11 +4376,16 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t186 = e[2] * t180 - e[3] * t181 + (e[1] * t176 + e[0] * t183);
         const gic_real t187 = e[3] * t183 - e[1] * t180 + (e[2] * t176 + e[0] * t181);
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
-        const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
-        const gic_real t193 = m[127] + m[131];
+        /* pose of lca_r_r */
+        const gic_real t189 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.246867347245056);
+        const gic_real t190 = R(-0.307086) + (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.246867347245056));
+        const gic_real t191 = R(1.0) + (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY]));
+        const gic_real t192 = R(1.0) + (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] - (R(1.0) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ]));
+        const gic_real t193 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ];
         const gic_real t194 = R(1.0) + (R(1.0) - t193);
         const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
@@ -3424,12 +4393,12 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t198 = t191 - t197;
         const gic_real t199 = t192 - t196;
         const gic_real t200 = t194 - t195;
-        const gic_real t201 = m[130] - m[128];
+        const gic_real t201 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ];
         const gic_real t202 = (t198 > GIC_R(0) ? R(0.0) : (t199 > GIC_R(0) ? R(0.0) : (t200 > GIC_R(0) ? t201 : t195)));
         const gic_real t203 = R(0.5) / GIC_SQRT(GIC_MAX(t191, t197));
         const gic_real t204 = t202 * t203;
         const gic_real t205 = e[0] * t204;
-        const gic_real t206 = m[128] + m[130];
+        const gic_real t206 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY];
         const gic_real t207 = (t200 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t208 = (t198 > GIC_R(0) ? t191 : (t199 > GIC_R(0) ? t206 : t207)) * t203;
         const gic_real t209 = (t198 > GIC_R(0) ? t206 : (t199 > GIC_R(0) ? t192 : t207)) * t203;
@@ -3440,34 +4409,40 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t214 = e[2] * t208 - e[3] * t209 + (e[1] * t204 + e[0] * t211);
         const gic_real t215 = e[3] * t211 - e[1] * t208 + (e[2] * t204 + e[0] * t209);
         const gic_real t216 = e[1] * t209 - e[2] * t211 + (e[3] * t204 + e[0] * t208);
-        const gic_real t217 = m[326] + (m[335] * R(0.09182100000000004) + m[334] * R(0.08910630000000008));
-        const gic_real t218 = m[325] + (m[332] * R(0.09182100000000004) + m[331] * R(0.08910630000000008));
-        const gic_real t219 = m[324] + (m[329] * R(0.09182100000000004) + m[328] * R(0.08910630000000008));
-        const gic_real t220 = y[0] + (t5 * t217 + (t9 * t218 + t12 * t219));
-        const gic_real t221 = y[1] + (t16 * t217 + (t18 * t218 + t19 * t219));
-        const gic_real t222 = y[2] + (t21 * t217 + (t22 * t218 + t23 * t219));
-        const gic_real t223 = R(1.0) + (m[335] - (m[327] + m[331]));
-        const gic_real t224 = R(1.0) + (m[331] - (m[327] + m[335]));
-        const gic_real t225 = m[331] + m[335];
-        const gic_real t226 = R(1.0) + (m[327] - t225);
-        const gic_real t227 = R(1.0) + (m[327] + t225);
+        /* pose of wheel_r_l */
+        const gic_real t217 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.08910630000000008));
+        const gic_real t218 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.08910630000000008));
+        const gic_real t219 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.08910630000000008));
+        const gic_real t220 = y[HMMWV14_STATE_R_X] + (t5 * t217 + (t9 * t218 + t12 * t219));
+        const gic_real t221 = y[HMMWV14_STATE_R_Y] + (t16 * t217 + (t18 * t218 + t19 * t219));
+        const gic_real t222 = y[HMMWV14_STATE_R_Z] + (t21 * t217 + (t22 * t218 + t23 * t219));
+        const gic_real t223 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY]));
+        const gic_real t224 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ]));
+        const gic_real t225 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ];
+        const gic_real t226 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] - t225);
+        const gic_real t227 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] + t225);
         const gic_real t228 = GIC_MAX(t226, t227);
         const gic_real t229 = GIC_MAX(t224, t228);
         const gic_real t230 = t223 - t229;
-        const gic_real t231 = m[330] - m[328];
+        const gic_real t231 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY];
         const gic_real t232 = t224 - t228;
-        const gic_real t233 = m[329] - m[333];
+        const gic_real t233 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX];
         const gic_real t234 = t226 - t227;
-        const gic_real t235 = m[334] - m[332];
+        const gic_real t235 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ];
         const gic_real t236 = (t230 > GIC_R(0) ? t231 : (t232 > GIC_R(0) ? t233 : (t234 > GIC_R(0) ? t235 : t227)));
         const gic_real t237 = R(0.5) / GIC_SQRT(GIC_MAX(t223, t229));
         const gic_real t238 = t236 * t237;
         const gic_real t239 = e[0] * t238;
-        const gic_real t240 = m[332] + m[334];
-        const gic_real t241 = m[329] + m[333];
+        const gic_real t240 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY];
+        const gic_real t241 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX];
         const gic_real t242 = (t230 > GIC_R(0) ? t223 : (t232 > GIC_R(0) ? t240 : (t234 > GIC_R(0) ? t241 : t231)));
         const gic_real t243 = t242 * t237;
-        const gic_real t244 = m[328] + m[330];
+        const gic_real t244 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX];
         const gic_real t245 = (t230 > GIC_R(0) ? t240 : (t232 > GIC_R(0) ? t224 : (t234 > GIC_R(0) ? t244 : t233)));
         const gic_real t246 = t245 * t237;
         const gic_real t247 = (t230 > GIC_R(0) ? t241 : (t232 > GIC_R(0) ? t244 : (t234 > GIC_R(0) ? t226 : t235)));
@@ -3477,34 +4452,40 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t251 = e[2] * t243 - e[3] * t246 + (e[1] * t238 + e[0] * t248);
         const gic_real t252 = e[3] * t248 - e[1] * t243 + (e[2] * t238 + e[0] * t246);
         const gic_real t253 = e[1] * t246 - e[2] * t248 + (e[3] * t238 + e[0] * t243);
-        const gic_real t254 = m[386] + (m[395] * R(0.09182100000000004) + m[394] * R(-0.08910630000000008));
-        const gic_real t255 = m[385] + (m[392] * R(0.09182100000000004) + m[391] * R(-0.08910630000000008));
-        const gic_real t256 = m[384] + (m[389] * R(0.09182100000000004) + m[388] * R(-0.08910630000000008));
-        const gic_real t257 = y[0] + (t5 * t254 + (t9 * t255 + t12 * t256));
-        const gic_real t258 = y[1] + (t16 * t254 + (t18 * t255 + t19 * t256));
-        const gic_real t259 = y[2] + (t21 * t254 + (t22 * t255 + t23 * t256));
-        const gic_real t260 = R(1.0) + (m[395] - (m[387] + m[391]));
-        const gic_real t261 = R(1.0) + (m[391] - (m[387] + m[395]));
-        const gic_real t262 = m[391] + m[395];
-        const gic_real t263 = R(1.0) + (m[387] - t262);
-        const gic_real t264 = R(1.0) + (m[387] + t262);
+        /* pose of wheel_r_r */
+        const gic_real t254 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.08910630000000008));
+        const gic_real t255 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.08910630000000008));
+        const gic_real t256 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] *
+            R(0.09182100000000004) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.08910630000000008));
+        const gic_real t257 = y[HMMWV14_STATE_R_X] + (t5 * t254 + (t9 * t255 + t12 * t256));
+        const gic_real t258 = y[HMMWV14_STATE_R_Y] + (t16 * t254 + (t18 * t255 + t19 * t256));
+        const gic_real t259 = y[HMMWV14_STATE_R_Z] + (t21 * t254 + (t22 * t255 + t23 * t256));
+        const gic_real t260 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY]));
+        const gic_real t261 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ]));
+        const gic_real t262 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ];
+        const gic_real t263 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] - t262);
+        const gic_real t264 = R(1.0) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] + t262);
         const gic_real t265 = GIC_MAX(t263, t264);
         const gic_real t266 = GIC_MAX(t261, t265);
         const gic_real t267 = t260 - t266;
-        const gic_real t268 = m[390] - m[388];
+        const gic_real t268 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY];
         const gic_real t269 = t261 - t265;
-        const gic_real t270 = m[389] - m[393];
+        const gic_real t270 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX];
         const gic_real t271 = t263 - t264;
-        const gic_real t272 = m[394] - m[392];
+        const gic_real t272 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ];
         const gic_real t273 = (t267 > GIC_R(0) ? t268 : (t269 > GIC_R(0) ? t270 : (t271 > GIC_R(0) ? t272 : t264)));
         const gic_real t274 = R(0.5) / GIC_SQRT(GIC_MAX(t260, t266));
         const gic_real t275 = t273 * t274;
         const gic_real t276 = e[0] * t275;
-        const gic_real t277 = m[392] + m[394];
-        const gic_real t278 = m[389] + m[393];
+        const gic_real t277 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY];
+        const gic_real t278 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX];
         const gic_real t279 = (t267 > GIC_R(0) ? t260 : (t269 > GIC_R(0) ? t277 : (t271 > GIC_R(0) ? t278 : t268)));
         const gic_real t280 = t279 * t274;
-        const gic_real t281 = m[388] + m[390];
+        const gic_real t281 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX];
         const gic_real t282 = (t267 > GIC_R(0) ? t277 : (t269 > GIC_R(0) ? t261 : (t271 > GIC_R(0) ? t281 : t270)));
         const gic_real t283 = t282 * t274;
         const gic_real t284 = (t267 > GIC_R(0) ? t278 : (t269 > GIC_R(0) ? t281 : (t271 > GIC_R(0) ? t263 : t272)));
@@ -3514,34 +4495,41 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t288 = e[2] * t280 - e[3] * t283 + (e[1] * t275 + e[0] * t285);
         const gic_real t289 = e[3] * t285 - e[1] * t280 + (e[2] * t275 + e[0] * t283);
         const gic_real t290 = e[1] * t283 - e[2] * t285 + (e[3] * t275 + e[0] * t280);
-        const gic_real t291 = R(0.22009100000000004) + (m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429)));
-        const gic_real t292 = R(0.4618482) + (m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648)));
-        const gic_real t293 = R(1.5309008) + (m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016)));
-        const gic_real t294 = y[0] + (t5 * t291 + (t9 * t292 + t12 * t293));
-        const gic_real t295 = y[1] + (t16 * t291 + (t18 * t292 + t19 * t293));
-        const gic_real t296 = y[2] + (t21 * t291 + (t22 * t292 + t23 * t293));
-        const gic_real t297 = R(1.0) + (m[161] - (m[157] + R(0.9665541626242249)));
-        const gic_real t298 = R(1.0) + (m[157] - (m[161] + R(0.9665541626242249)));
-        const gic_real t299 = m[157] + m[161];
+        /* pose of uca_f_l */
+        const gic_real t291 = R(0.22009100000000004) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] *
+            R(8.518978193491379e-06) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * R(0.1333626625632361) +
+            R(0.007016966063240429)));
+        const gic_real t292 = R(0.4618482) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.1333626625632361) + R(-0.004544539087734648)));
+        const gic_real t293 = R(1.5309008) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.1333626625632361) + R(0.031507339809937016)));
+        const gic_real t294 = y[HMMWV14_STATE_R_X] + (t5 * t291 + (t9 * t292 + t12 * t293));
+        const gic_real t295 = y[HMMWV14_STATE_R_Y] + (t16 * t291 + (t18 * t292 + t19 * t293));
+        const gic_real t296 = y[HMMWV14_STATE_R_Z] + (t21 * t291 + (t22 * t292 + t23 * t293));
+        const gic_real t297 = R(1.0) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] + R(0.9665541626242249)));
+        const gic_real t298 = R(1.0) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] + R(0.9665541626242249)));
+        const gic_real t299 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ];
         const gic_real t300 = R(1.0) + (R(0.9665541626242249) - t299);
         const gic_real t301 = R(1.0) + (R(0.9665541626242249) + t299);
         const gic_real t302 = GIC_MAX(t300, t301);
         const gic_real t303 = GIC_MAX(t298, t302);
         const gic_real t304 = t297 - t303;
-        const gic_real t305 = R(-0.1394133303209898) - m[154];
+        const gic_real t305 = R(-0.1394133303209898) - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY];
         const gic_real t306 = t298 - t302;
-        const gic_real t307 = m[155] - R(0.21526024724178433);
+        const gic_real t307 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] - R(0.21526024724178433);
         const gic_real t308 = t300 - t301;
-        const gic_real t309 = m[160] - m[158];
+        const gic_real t309 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ];
         const gic_real t310 = (t304 > GIC_R(0) ? t305 : (t306 > GIC_R(0) ? t307 : (t308 > GIC_R(0) ? t309 : t301)));
         const gic_real t311 = R(0.5) / GIC_SQRT(GIC_MAX(t297, t303));
         const gic_real t312 = t310 * t311;
         const gic_real t313 = e[0] * t312;
-        const gic_real t314 = m[158] + m[160];
-        const gic_real t315 = m[155] + R(0.21526024724178433);
+        const gic_real t314 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY];
+        const gic_real t315 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] + R(0.21526024724178433);
         const gic_real t316 = (t304 > GIC_R(0) ? t297 : (t306 > GIC_R(0) ? t314 : (t308 > GIC_R(0) ? t315 : t305)));
         const gic_real t317 = t316 * t311;
-        const gic_real t318 = m[154] + R(-0.1394133303209898);
+        const gic_real t318 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] + R(-0.1394133303209898);
         const gic_real t319 = (t304 > GIC_R(0) ? t314 : (t306 > GIC_R(0) ? t298 : (t308 > GIC_R(0) ? t318 : t307)));
         const gic_real t320 = t319 * t311;
         const gic_real t321 = (t304 > GIC_R(0) ? t315 : (t306 > GIC_R(0) ? t318 : (t308 > GIC_R(0) ? t300 : t309)));
@@ -3551,34 +4539,41 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t325 = e[2] * t317 - e[3] * t320 + (e[1] * t312 + e[0] * t322);
         const gic_real t326 = e[3] * t322 - e[1] * t317 + (e[2] * t312 + e[0] * t320);
         const gic_real t327 = e[1] * t320 - e[2] * t322 + (e[3] * t312 + e[0] * t317);
-        const gic_real t328 = R(0.22009100000000004) + (m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361)));
-        const gic_real t329 = R(-0.4618482) + (m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648)));
-        const gic_real t330 = R(1.5309008) + (m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361)));
-        const gic_real t331 = y[0] + (t5 * t328 + (t9 * t329 + t12 * t330));
-        const gic_real t332 = y[1] + (t16 * t328 + (t18 * t329 + t19 * t330));
-        const gic_real t333 = y[2] + (t21 * t328 + (t22 * t329 + t23 * t330));
-        const gic_real t334 = R(1.0) + (m[233] - (R(0.9665541626242249) + m[229]));
-        const gic_real t335 = R(1.0) + (m[229] - (R(0.9665541626242249) + m[233]));
-        const gic_real t336 = m[229] + m[233];
+        /* pose of uca_f_r */
+        const gic_real t328 = R(0.22009100000000004) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] *
+            R(8.518978193491379e-06) + (R(0.007016966063240429) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] *
+            R(-0.1333626625632361)));
+        const gic_real t329 = R(-0.4618482) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(-0.1333626625632361) + R(0.004544539087734648)));
+        const gic_real t330 = R(1.5309008) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (R(0.031507339809937016) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(-0.1333626625632361)));
+        const gic_real t331 = y[HMMWV14_STATE_R_X] + (t5 * t328 + (t9 * t329 + t12 * t330));
+        const gic_real t332 = y[HMMWV14_STATE_R_Y] + (t16 * t328 + (t18 * t329 + t19 * t330));
+        const gic_real t333 = y[HMMWV14_STATE_R_Z] + (t21 * t328 + (t22 * t329 + t23 * t330));
+        const gic_real t334 = R(1.0) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] - (R(0.9665541626242249) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY]));
+        const gic_real t335 = R(1.0) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] - (R(0.9665541626242249) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ]));
+        const gic_real t336 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ];
         const gic_real t337 = R(1.0) + (R(0.9665541626242249) - t336);
         const gic_real t338 = R(1.0) + (R(0.9665541626242249) + t336);
         const gic_real t339 = GIC_MAX(t337, t338);
         const gic_real t340 = GIC_MAX(t335, t339);
         const gic_real t341 = t334 - t340;
-        const gic_real t342 = R(0.1394133303209898) - m[226];
+        const gic_real t342 = R(0.1394133303209898) - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY];
         const gic_real t343 = t335 - t339;
-        const gic_real t344 = m[227] - R(0.21526024724178433);
+        const gic_real t344 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] - R(0.21526024724178433);
         const gic_real t345 = t337 - t338;
-        const gic_real t346 = m[232] - m[230];
+        const gic_real t346 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ];
         const gic_real t347 = (t341 > GIC_R(0) ? t342 : (t343 > GIC_R(0) ? t344 : (t345 > GIC_R(0) ? t346 : t338)));
         const gic_real t348 = R(0.5) / GIC_SQRT(GIC_MAX(t334, t340));
         const gic_real t349 = t347 * t348;
         const gic_real t350 = e[0] * t349;
-        const gic_real t351 = m[230] + m[232];
-        const gic_real t352 = R(0.21526024724178433) + m[227];
+        const gic_real t351 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY];
+        const gic_real t352 = R(0.21526024724178433) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ];
         const gic_real t353 = (t341 > GIC_R(0) ? t334 : (t343 > GIC_R(0) ? t351 : (t345 > GIC_R(0) ? t352 : t342)));
         const gic_real t354 = t353 * t348;
-        const gic_real t355 = m[226] + R(0.1394133303209898);
+        const gic_real t355 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] + R(0.1394133303209898);
         const gic_real t356 = (t341 > GIC_R(0) ? t351 : (t343 > GIC_R(0) ? t335 : (t345 > GIC_R(0) ? t355 : t344)));
         const gic_real t357 = t356 * t348;
         const gic_real t358 = (t341 > GIC_R(0) ? t352 : (t343 > GIC_R(0) ? t355 : (t345 > GIC_R(0) ? t337 : t346)));
@@ -3588,34 +4583,41 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t362 = e[2] * t354 - e[3] * t357 + (e[1] * t349 + e[0] * t359);
         const gic_real t363 = e[3] * t359 - e[1] * t354 + (e[2] * t349 + e[0] * t357);
         const gic_real t364 = e[1] * t357 - e[2] * t359 + (e[3] * t349 + e[0] * t354);
-        const gic_real t365 = R(0.22567900000000007) + (m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036)));
-        const gic_real t366 = R(0.462153) + (m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05)));
-        const gic_real t367 = R(-1.475859) + (m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348)));
-        const gic_real t368 = y[0] + (t5 * t365 + (t9 * t366 + t12 * t367));
-        const gic_real t369 = y[1] + (t16 * t365 + (t18 * t366 + t19 * t367));
-        const gic_real t370 = y[2] + (t21 * t365 + (t22 * t366 + t23 * t367));
-        const gic_real t371 = R(1.0) + (m[305] - (m[301] + R(0.9999005718370345)));
-        const gic_real t372 = R(1.0) + (m[301] - (m[305] + R(0.9999005718370345)));
-        const gic_real t373 = m[301] + m[305];
+        /* pose of uca_r_l */
+        const gic_real t365 = R(0.22567900000000007) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] *
+            R(-1.232760342215547e-05) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * R(0.1268157381236126) +
+            R(-0.0012494512130067036)));
+        const gic_real t366 = R(0.462153) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.1268157381236126) + R(-6.79134666217616e-05)));
+        const gic_real t367 = R(-1.475859) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.1268157381236126) + R(-0.0887274110323348)));
+        const gic_real t368 = y[HMMWV14_STATE_R_X] + (t5 * t365 + (t9 * t366 + t12 * t367));
+        const gic_real t369 = y[HMMWV14_STATE_R_Y] + (t16 * t365 + (t18 * t366 + t19 * t367));
+        const gic_real t370 = y[HMMWV14_STATE_R_Z] + (t21 * t365 + (t22 * t366 + t23 * t367));
+        const gic_real t371 = R(1.0) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] -
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] + R(0.9999005718370345)));
+        const gic_real t372 = R(1.0) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] -
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] + R(0.9999005718370345)));
+        const gic_real t373 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] + m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ];
         const gic_real t374 = R(1.0) + (R(0.9999005718370345) - t373);
         const gic_real t375 = R(1.0) + (R(0.9999005718370345) + t373);
         const gic_real t376 = GIC_MAX(t374, t375);
         const gic_real t377 = GIC_MAX(t372, t376);
         const gic_real t378 = t371 - t377;
-        const gic_real t379 = R(0.0007653408717829899) - m[298];
+        const gic_real t379 = R(0.0007653408717829899) - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY];
         const gic_real t380 = t372 - t376;
-        const gic_real t381 = m[299] - R(0.014080507566174662);
+        const gic_real t381 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] - R(0.014080507566174662);
         const gic_real t382 = t374 - t375;
-        const gic_real t383 = m[304] - m[302];
+        const gic_real t383 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ];
         const gic_real t384 = (t378 > GIC_R(0) ? t379 : (t380 > GIC_R(0) ? t381 : (t382 > GIC_R(0) ? t383 : t375)));
         const gic_real t385 = R(0.5) / GIC_SQRT(GIC_MAX(t371, t377));
         const gic_real t386 = t384 * t385;
         const gic_real t387 = e[0] * t386;
-        const gic_real t388 = m[302] + m[304];
-        const gic_real t389 = m[299] + R(0.014080507566174662);
+        const gic_real t388 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] + m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY];
+        const gic_real t389 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] + R(0.014080507566174662);
         const gic_real t390 = (t378 > GIC_R(0) ? t371 : (t380 > GIC_R(0) ? t388 : (t382 > GIC_R(0) ? t389 : t379)));
         const gic_real t391 = t390 * t385;
-        const gic_real t392 = m[298] + R(0.0007653408717829899);
+        const gic_real t392 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] + R(0.0007653408717829899);
         const gic_real t393 = (t378 > GIC_R(0) ? t388 : (t380 > GIC_R(0) ? t372 : (t382 > GIC_R(0) ? t392 : t381)));
         const gic_real t394 = t393 * t385;
         const gic_real t395 = (t378 > GIC_R(0) ? t389 : (t380 > GIC_R(0) ? t392 : (t382 > GIC_R(0) ? t374 : t383)));
@@ -3625,34 +4627,41 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t399 = e[2] * t391 - e[3] * t394 + (e[1] * t386 + e[0] * t396);
         const gic_real t400 = e[3] * t396 - e[1] * t391 + (e[2] * t386 + e[0] * t394);
         const gic_real t401 = e[1] * t394 - e[2] * t396 + (e[3] * t386 + e[0] * t391);
-        const gic_real t402 = R(0.22567900000000007) + (m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126)));
-        const gic_real t403 = R(-0.462153) + (m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05)));
-        const gic_real t404 = R(-1.475859) + (m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126)));
-        const gic_real t405 = y[0] + (t5 * t402 + (t9 * t403 + t12 * t404));
-        const gic_real t406 = y[1] + (t16 * t402 + (t18 * t403 + t19 * t404));
-        const gic_real t407 = y[2] + (t21 * t402 + (t22 * t403 + t23 * t404));
-        const gic_real t408 = R(1.0) + (m[365] - (R(0.9999005718370345) + m[361]));
-        const gic_real t409 = R(1.0) + (m[361] - (R(0.9999005718370345) + m[365]));
-        const gic_real t410 = m[361] + m[365];
+        /* pose of uca_r_r */
+        const gic_real t402 = R(0.22567900000000007) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] *
+            R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] *
+            R(-0.1268157381236126)));
+        const gic_real t403 = R(-0.462153) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(-0.1268157381236126) + R(6.79134666217616e-05)));
+        const gic_real t404 = R(-1.475859) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (R(-0.0887274110323348) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(-0.1268157381236126)));
+        const gic_real t405 = y[HMMWV14_STATE_R_X] + (t5 * t402 + (t9 * t403 + t12 * t404));
+        const gic_real t406 = y[HMMWV14_STATE_R_Y] + (t16 * t402 + (t18 * t403 + t19 * t404));
+        const gic_real t407 = y[HMMWV14_STATE_R_Z] + (t21 * t402 + (t22 * t403 + t23 * t404));
+        const gic_real t408 = R(1.0) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] - (R(0.9999005718370345) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY]));
+        const gic_real t409 = R(1.0) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] - (R(0.9999005718370345) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ]));
+        const gic_real t410 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ];
         const gic_real t411 = R(1.0) + (R(0.9999005718370345) - t410);
         const gic_real t412 = R(1.0) + (R(0.9999005718370345) + t410);
         const gic_real t413 = GIC_MAX(t411, t412);
         const gic_real t414 = GIC_MAX(t409, t413);
         const gic_real t415 = t408 - t414;
-        const gic_real t416 = R(-0.0007653408717829899) - m[358];
+        const gic_real t416 = R(-0.0007653408717829899) - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY];
         const gic_real t417 = t409 - t413;
-        const gic_real t418 = m[359] - R(0.014080507566174662);
+        const gic_real t418 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] - R(0.014080507566174662);
         const gic_real t419 = t411 - t412;
-        const gic_real t420 = m[364] - m[362];
+        const gic_real t420 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ];
         const gic_real t421 = (t415 > GIC_R(0) ? t416 : (t417 > GIC_R(0) ? t418 : (t419 > GIC_R(0) ? t420 : t412)));
         const gic_real t422 = R(0.5) / GIC_SQRT(GIC_MAX(t408, t414));
         const gic_real t423 = t421 * t422;
         const gic_real t424 = e[0] * t423;
-        const gic_real t425 = m[362] + m[364];
-        const gic_real t426 = R(0.014080507566174662) + m[359];
+        const gic_real t425 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY];
+        const gic_real t426 = R(0.014080507566174662) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ];
         const gic_real t427 = (t415 > GIC_R(0) ? t408 : (t417 > GIC_R(0) ? t425 : (t419 > GIC_R(0) ? t426 : t416)));
         const gic_real t428 = t427 * t422;
-        const gic_real t429 = m[358] + R(-0.0007653408717829899);
+        const gic_real t429 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] + R(-0.0007653408717829899);
         const gic_real t430 = (t415 > GIC_R(0) ? t425 : (t417 > GIC_R(0) ? t409 : (t419 > GIC_R(0) ? t429 : t418)));
         const gic_real t431 = t430 * t422;
         const gic_real t432 = (t415 > GIC_R(0) ? t426 : (t417 > GIC_R(0) ? t429 : (t419 > GIC_R(0) ? t411 : t420)));
@@ -3662,9 +4671,9 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t436 = e[2] * t428 - e[3] * t431 + (e[1] * t423 + e[0] * t433);
         const gic_real t437 = e[3] * t433 - e[1] * t428 + (e[2] * t423 + e[0] * t431);
         const gic_real t438 = e[1] * t431 - e[2] * t433 + (e[3] * t423 + e[0] * t428);
-        const gic_real t439 = y[0];
-        const gic_real t440 = y[1];
-        const gic_real t441 = y[2];
+        const gic_real t439 = y[HMMWV14_STATE_R_X];
+        const gic_real t440 = y[HMMWV14_STATE_R_Y];
+        const gic_real t441 = y[HMMWV14_STATE_R_Z];
         const gic_real t442 = e[0];
         const gic_real t443 = e[1];
         const gic_real t444 = e[2];
@@ -3733,111 +4742,111 @@ static void hmmwv14_place(const hmmwv14 *self, const gic_real *y, const gic_real
         const gic_real t507 = (t435 > GIC_R(0) ? t436 : -t436);
         const gic_real t508 = (t435 > GIC_R(0) ? t437 : -t437);
         const gic_real t509 = (t435 > GIC_R(0) ? t438 : -t438);
-        pose[0] = t439;
-        pose[1] = t440;
-        pose[2] = t441;
-        pose[3] = t442;
-        pose[4] = t443;
-        pose[5] = t444;
-        pose[6] = t445;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t446;
-        pose[11] = t447;
-        pose[12] = t448;
-        pose[13] = t449;
-        pose[14] = t450;
-        pose[15] = t451;
-        pose[16] = t452;
-        pose[17] = t453;
-        pose[18] = t454;
-        pose[19] = t455;
-        pose[20] = t456;
-        pose[21] = t457;
-        pose[22] = t458;
-        pose[23] = t459;
-        pose[24] = t460;
-        pose[25] = t461;
-        pose[26] = t462;
-        pose[27] = t463;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t464;
-        pose[32] = t465;
-        pose[33] = t466;
-        pose[34] = t467;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t468;
-        pose[39] = t469;
-        pose[40] = t470;
-        pose[41] = t471;
-        pose[42] = t472;
-        pose[43] = t473;
-        pose[44] = t474;
-        pose[45] = t475;
-        pose[46] = t476;
-        pose[47] = t477;
-        pose[48] = t478;
-        pose[49] = t479;
-        pose[50] = t480;
-        pose[51] = t481;
-        pose[52] = t482;
-        pose[53] = t483;
-        pose[54] = t484;
-        pose[55] = t485;
-        pose[56] = t220;
-        pose[57] = t221;
-        pose[58] = t222;
-        pose[59] = t486;
-        pose[60] = t487;
-        pose[61] = t488;
-        pose[62] = t489;
-        pose[63] = t257;
-        pose[64] = t258;
-        pose[65] = t259;
-        pose[66] = t490;
-        pose[67] = t491;
-        pose[68] = t492;
-        pose[69] = t493;
-        pose[70] = t294;
-        pose[71] = t295;
-        pose[72] = t296;
-        pose[73] = t494;
-        pose[74] = t495;
-        pose[75] = t496;
-        pose[76] = t497;
-        pose[77] = t331;
-        pose[78] = t332;
-        pose[79] = t333;
-        pose[80] = t498;
-        pose[81] = t499;
-        pose[82] = t500;
-        pose[83] = t501;
-        pose[84] = t368;
-        pose[85] = t369;
-        pose[86] = t370;
-        pose[87] = t502;
-        pose[88] = t503;
-        pose[89] = t504;
-        pose[90] = t505;
-        pose[91] = t405;
-        pose[92] = t406;
-        pose[93] = t407;
-        pose[94] = t506;
-        pose[95] = t507;
-        pose[96] = t508;
-        pose[97] = t509;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_X] = t439;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_Y] = t440;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_Z] = t441;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_P0] = t442;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_P1] = t443;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_P2] = t444;
+        pose[HMMWV14_POSE_CHASSIS + HMMWV14_Q_P3] = t445;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_X] = t13;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_Y] = t20;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_Z] = t24;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_P0] = t446;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_P1] = t447;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_P2] = t448;
+        pose[HMMWV14_POSE_RACK + HMMWV14_Q_P3] = t449;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_X] = t450;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_Y] = t451;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_Z] = t452;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_P0] = t453;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_P1] = t454;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_P2] = t455;
+        pose[HMMWV14_POSE_LCA_F_L + HMMWV14_Q_P3] = t456;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_X] = t457;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_Y] = t458;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_Z] = t459;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_P0] = t460;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_P1] = t461;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_P2] = t462;
+        pose[HMMWV14_POSE_LCA_F_R + HMMWV14_Q_P3] = t463;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_X] = t87;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_Y] = t88;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_Z] = t89;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_P0] = t464;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_P1] = t465;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_P2] = t466;
+        pose[HMMWV14_POSE_WHEEL_F_L + HMMWV14_Q_P3] = t467;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_X] = t124;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_Y] = t125;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_Z] = t126;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_P0] = t468;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_P1] = t469;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_P2] = t470;
+        pose[HMMWV14_POSE_WHEEL_F_R + HMMWV14_Q_P3] = t471;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_X] = t472;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_Y] = t473;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_Z] = t474;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_P0] = t475;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_P1] = t476;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_P2] = t477;
+        pose[HMMWV14_POSE_LCA_R_L + HMMWV14_Q_P3] = t478;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_X] = t479;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_Y] = t480;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_Z] = t481;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_P0] = t482;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_P1] = t483;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_P2] = t484;
+        pose[HMMWV14_POSE_LCA_R_R + HMMWV14_Q_P3] = t485;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_X] = t220;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_Y] = t221;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_Z] = t222;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_P0] = t486;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_P1] = t487;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_P2] = t488;
+        pose[HMMWV14_POSE_WHEEL_R_L + HMMWV14_Q_P3] = t489;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_X] = t257;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_Y] = t258;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_Z] = t259;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_P0] = t490;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_P1] = t491;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_P2] = t492;
+        pose[HMMWV14_POSE_WHEEL_R_R + HMMWV14_Q_P3] = t493;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_X] = t294;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_Y] = t295;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_Z] = t296;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_P0] = t494;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_P1] = t495;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_P2] = t496;
+        pose[HMMWV14_POSE_UCA_F_L + HMMWV14_Q_P3] = t497;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_X] = t331;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_Y] = t332;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_Z] = t333;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_P0] = t498;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_P1] = t499;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_P2] = t500;
+        pose[HMMWV14_POSE_UCA_F_R + HMMWV14_Q_P3] = t501;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_X] = t368;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_Y] = t369;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_Z] = t370;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_P0] = t502;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_P1] = t503;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_P2] = t504;
+        pose[HMMWV14_POSE_UCA_R_L + HMMWV14_Q_P3] = t505;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_X] = t405;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_Y] = t406;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_Z] = t407;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_P0] = t506;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_P1] = t507;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_P2] = t508;
+        pose[HMMWV14_POSE_UCA_R_R + HMMWV14_Q_P3] = t509;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int hmmwv14_residual(const hmmwv14 *self, gic_real largest[2])
 {
     hmmwv14_links links;
@@ -3846,99 +4855,105 @@ static GIC_COLD GIC_APART int hmmwv14_residual(const hmmwv14 *self, gic_real lar
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[HMMWV14_X_RACK];
+    links.rate[0] = self->xd[HMMWV14_X_RACK];
+    hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + HMMWV14_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = HMMWV14_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[HMMWV14_X_SPRING_F_L];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_F_L];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[0], &links, self->motion + HMMWV14_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = HMMWV14_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[HMMWV14_X_SPRING_F_R];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_F_R];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[1], &links, self->motion + HMMWV14_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = HMMWV14_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[2], &links, self->motion + 90, one);
+    links.x[0] = self->x[HMMWV14_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_R_L];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[2], &links, self->motion + HMMWV14_MOTION_LCA_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = HMMWV14_SUBSET_LCA_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[3], &links, self->motion + 120, one);
+    links.x[0] = self->x[HMMWV14_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_R_R];
+    hmmwv14_residual_lca_f_l(hmmwv14_k_lca_f_l[3], &links, self->motion + HMMWV14_MOTION_LCA_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = HMMWV14_SUBSET_LCA_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + HMMWV14_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV14_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[HMMWV14_X_RACK];
+    links.rate[0] = self->xd[HMMWV14_X_RACK];
+    links.x[1] = self->x[HMMWV14_X_SPRING_F_L];
+    links.rate[1] = self->xd[HMMWV14_X_SPRING_F_L];
+    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[0], &links, self->motion + HMMWV14_MOTION_UCA_F_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = HMMWV14_SUBSET_UCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[1], &links, self->motion + 222, one);
+    links.known[0] = self->motion + HMMWV14_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV14_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[HMMWV14_X_RACK];
+    links.rate[0] = self->xd[HMMWV14_X_RACK];
+    links.x[1] = self->x[HMMWV14_X_SPRING_F_R];
+    links.rate[1] = self->xd[HMMWV14_X_SPRING_F_R];
+    hmmwv14_residual_uca_f_l_wheel_f_l(hmmwv14_k_uca_f_l_wheel_f_l[1], &links, self->motion + HMMWV14_MOTION_UCA_F_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = HMMWV14_SUBSET_UCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 90;
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[0], &links, self->motion + 294, one);
+    links.known[0] = self->motion + HMMWV14_MOTION_LCA_R_L; /* lca_r_l */
+    links.x[0] = self->x[HMMWV14_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_R_L];
+    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[0], &links, self->motion + HMMWV14_MOTION_UCA_R_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 8;
+        bad = HMMWV14_SUBSET_UCA_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 120;
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[1], &links, self->motion + 354, one);
+    links.known[0] = self->motion + HMMWV14_MOTION_LCA_R_R; /* lca_r_r */
+    links.x[0] = self->x[HMMWV14_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV14_X_SPRING_R_R];
+    hmmwv14_residual_uca_r_l_wheel_r_l(hmmwv14_k_uca_r_l_wheel_r_l[1], &links, self->motion + HMMWV14_MOTION_UCA_R_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 9;
+        bad = HMMWV14_SUBSET_UCA_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv14_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv14_dynamics. size: magnitudes
+ * of the terms that it is the sum of. */
 static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV14_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV14_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t8 = rate[HMMWV14_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -3946,545 +4961,888 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
-        const gic_real t17 = y[16] * R(0.056);
-        const gic_real t18 = y[16] * R(0.21300000000000008);
-        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[HMMWV14_STATE_V_Y] + t15 * rate[HMMWV14_STATE_V_X]);
+        const gic_real t17 = y[HMMWV14_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[HMMWV14_STATE_OMEGA_X] * t17 + y[HMMWV14_STATE_OMEGA_Z] * t18 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[HMMWV14_STATE_OMEGA_Y] * t1 - y[HMMWV14_STATE_OMEGA_Z] * t2 +
+            rate[HMMWV14_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[HMMWV14_STATE_V_Y] + t27 * rate[HMMWV14_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] + (R(1.438648) * y[HMMWV14_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t31 = y[HMMWV14_STATE_OMEGA_X] * t29 - y[HMMWV14_STATE_OMEGA_Y] * t30 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * rate[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV14_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t36 = rate[22] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[17] * t37 + y[16] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[17] * t40 + y[16] * t42;
-        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[17];
-        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t34 = m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * y[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t35 = y[HMMWV14_STATE_OMEGA_Z] * t30 - y[HMMWV14_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[HMMWV14_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t36 = rate[HMMWV14_STATE_RACK_RATE] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t38 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t39 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t40 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * t38 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            t39;
+        const gic_real t41 = y[HMMWV14_STATE_OMEGA_Z] * t37 + y[HMMWV14_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * t38 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] *
+            t39;
+        const gic_real t43 = y[HMMWV14_STATE_OMEGA_Z] * t40 + y[HMMWV14_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[HMMWV14_STATE_OMEGA_Y] * t41 - y[HMMWV14_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t46;
+        const gic_real t48 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t45 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t47;
+        const gic_real t49 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[HMMWV14_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[16] * t46 - y[17] * t51;
-        const gic_real t53 = R(1.688965) * rate[16];
-        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t52 = y[HMMWV14_STATE_OMEGA_Y] * t46 - y[HMMWV14_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t54 = y[HMMWV14_STATE_OMEGA_X] * t50 - y[HMMWV14_STATE_OMEGA_Y] * t52 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[16];
-        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[17];
-        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t57 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[HMMWV14_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t61 = y[HMMWV14_STATE_OMEGA_Z] * t52 - y[HMMWV14_STATE_OMEGA_X] * t59 + (t60 -
+            rate[HMMWV14_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t57 +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[17] * t67 + y[16] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[17] * t70 + y[16] * t72;
-        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[HMMWV14_STATE_OMEGA_X] + (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t33 - t36 *
+            R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t68 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t69 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t70 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * t68 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            t69;
+        const gic_real t71 = y[HMMWV14_STATE_OMEGA_Z] * t67 + y[HMMWV14_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * t68 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] *
+            t69;
+        const gic_real t73 = y[HMMWV14_STATE_OMEGA_Z] * t70 + y[HMMWV14_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[HMMWV14_STATE_OMEGA_Y] * t71 - y[HMMWV14_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t76;
+        const gic_real t78 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t75 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t77;
+        const gic_real t79 = t49 - y[HMMWV14_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[16] * t76 - y[17] * t80;
-        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t81 = y[HMMWV14_STATE_OMEGA_Y] * t76 - y[HMMWV14_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[HMMWV14_STATE_OMEGA_X] * t79 - y[HMMWV14_STATE_OMEGA_Y] * t81 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
-        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t85 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[HMMWV14_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[HMMWV14_STATE_OMEGA_Z] * t81 - y[HMMWV14_STATE_OMEGA_X] * t86 + (t60 -
+            rate[HMMWV14_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t85 +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[199] + y[16];
-        const gic_real t93 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t94 = m[200] + y[17];
-        const gic_real t95 = m[194] * R(4.7728205);
-        const gic_real t96 = m[193] * R(7.58122);
-        const gic_real t97 = m[192] * R(4.8947505);
-        const gic_real t98 = m[197] * t95 + (m[196] * t96 + m[195] * t97);
-        const gic_real t99 = m[191] * R(4.7728205);
-        const gic_real t100 = m[190] * R(7.58122);
-        const gic_real t101 = m[189] * R(4.8947505);
-        const gic_real t102 = m[197] * t99 + (m[196] * t100 + m[195] * t101);
-        const gic_real t103 = m[198] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t92 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t93 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t94 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t95 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t97 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t98 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t95 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t96 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t97);
+        const gic_real t99 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t100 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t101 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t102 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t99 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t100 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t101);
+        const gic_real t103 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
-        const gic_real t105 = m[194] * t95 + (m[193] * t96 + m[192] * t97);
-        const gic_real t106 = m[194] * t99 + (m[193] * t100 + m[192] * t101);
+        const gic_real t105 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t95 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t96 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t97);
+        const gic_real t106 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t99 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t100 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t101);
         const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
-        const gic_real t108 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t109 = t108 + m[218] * rate[18];
-        const gic_real t110 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t111 = t110 + m[217] * rate[18];
-        const gic_real t112 = m[191] * t99 + (m[190] * t100 + m[189] * t101);
-        const gic_real t113 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t114 = t113 + m[216] * rate[18];
+        const gic_real t108 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t109 = t108 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t111 = t110 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * t99 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * t100 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t101);
+        const gic_real t113 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t114 = t113 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[194] * R(0.09182100000000004);
-        const gic_real t117 = m[192] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[193] * R(0.08910630000000008));
-        const gic_real t119 = m[191] * R(0.09182100000000004);
-        const gic_real t120 = m[189] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[190] * R(0.08910630000000008));
-        const gic_real t122 = m[197] * R(0.09182100000000004);
-        const gic_real t123 = m[195] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[196] * R(0.08910630000000008));
-        const gic_real t125 = m[200] * t121 - m[198] * t124;
-        const gic_real t126 = m[199] * t124 - m[200] * t118;
-        const gic_real t127 = m[198] * t125 - m[199] * t126 + (m[204] * t118 - m[205] * t121);
-        const gic_real t128 = m[209] + t127;
-        const gic_real t129 = m[202] + t125;
-        const gic_real t130 = m[186] + t121;
-        const gic_real t131 = m[188] + t124;
-        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
-        const gic_real t133 = m[187] + t118;
-        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
-        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[210] * t118 - m[211] * t121);
-        const gic_real t137 = t136 + rate[18] * (m[221] + (m[216] * t118 - m[217] * t121));
+        /* wheel tire_f_l */
+        const gic_real t116 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.08910630000000008));
+        const gic_real t119 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.08910630000000008));
+        const gic_real t122 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.08910630000000008));
+        const gic_real t125 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t121 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t124;
+        const gic_real t126 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t124 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t118;
+        const gic_real t127 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t125 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t126 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] *
+            t118 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] * t121);
+        const gic_real t128 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] + t125;
+        const gic_real t130 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t121;
+        const gic_real t131 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[HMMWV14_STATE_OMEGA_Z] * t130 - y[HMMWV14_STATE_OMEGA_X] * t131));
+        const gic_real t133 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[HMMWV14_STATE_OMEGA_Y] * t131 - y[HMMWV14_STATE_OMEGA_Z] * t133));
+        const gic_real t135 = y[HMMWV14_STATE_OMEGA_X] * t132 - y[HMMWV14_STATE_OMEGA_Y] * t134 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t133 - rate[HMMWV14_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t118 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t121);
+        const gic_real t137 = t136 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t118 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[198] * t118 - m[199] * t121;
-        const gic_real t140 = m[200] * t126 - m[198] * t139 + (m[206] * t121 - m[204] * t124);
-        const gic_real t141 = m[208] + t140;
-        const gic_real t142 = m[203] + t139;
-        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
-        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[212] * t121 - m[210] * t124);
-        const gic_real t146 = t145 + rate[18] * (m[220] + (m[218] * t121 - m[216] * t124));
+        const gic_real t139 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t118 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t121;
+        const gic_real t140 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t126 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t139 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] *
+            t121 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] * t124);
+        const gic_real t141 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[HMMWV14_STATE_OMEGA_X] * t133 - y[HMMWV14_STATE_OMEGA_Y] * t130));
+        const gic_real t144 = y[HMMWV14_STATE_OMEGA_Z] * t134 - y[HMMWV14_STATE_OMEGA_X] * t143 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t130 - rate[HMMWV14_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t121 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t124);
+        const gic_real t146 = t145 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t121 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[187] * t138 - m[188] * t147));
-        const gic_real t150 = m[271] + y[16];
-        const gic_real t151 = m[269] * (m[269] * R(4.7728205)) + (m[268] * (m[268] * R(7.58122)) + m[267] * (m[267] * R(4.8947505)));
-        const gic_real t152 = m[272] + y[17];
-        const gic_real t153 = m[266] * R(4.7728205);
-        const gic_real t154 = m[265] * R(7.58122);
-        const gic_real t155 = m[264] * R(4.8947505);
-        const gic_real t156 = m[269] * t153 + (m[268] * t154 + m[267] * t155);
-        const gic_real t157 = m[263] * R(4.7728205);
-        const gic_real t158 = m[262] * R(7.58122);
-        const gic_real t159 = m[261] * R(4.8947505);
-        const gic_real t160 = m[269] * t157 + (m[268] * t158 + m[267] * t159);
-        const gic_real t161 = m[270] + y[15];
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t138 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t147));
+        /* inertia of wheel_f_r */
+        const gic_real t150 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t151 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t152 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t153 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t155 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t156 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t153 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t154 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t155);
+        const gic_real t157 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t159 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t160 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t157 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t158 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t159);
+        const gic_real t161 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
-        const gic_real t163 = m[266] * t153 + (m[265] * t154 + m[264] * t155);
-        const gic_real t164 = m[266] * t157 + (m[265] * t158 + m[264] * t159);
+        const gic_real t163 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t153 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t154 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t155);
+        const gic_real t164 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t157 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t158 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t159);
         const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
-        const gic_real t166 = m[278] + (rate[17] + (m[271] * y[15] - m[270] * y[16])) + m[284] * rate[22];
-        const gic_real t167 = t166 + m[290] * rate[19];
-        const gic_real t168 = m[277] + (rate[16] + (m[270] * y[17] - m[272] * y[15])) + m[283] * rate[22];
-        const gic_real t169 = t168 + m[289] * rate[19];
-        const gic_real t170 = m[263] * t157 + (m[262] * t158 + m[261] * t159);
-        const gic_real t171 = m[276] + (rate[15] + (m[272] * y[16] - m[271] * y[17])) + m[282] * rate[22];
-        const gic_real t172 = t171 + m[288] * rate[19];
+        const gic_real t166 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t167 = t166 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t169 = t168 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * t157 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * t158 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t159);
+        const gic_real t171 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t172 = t171 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
         const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[266] * R(0.09182100000000004);
-        const gic_real t175 = m[264] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[265] * R(-0.08910630000000008));
-        const gic_real t177 = m[263] * R(0.09182100000000004);
-        const gic_real t178 = m[261] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[262] * R(-0.08910630000000008));
-        const gic_real t180 = m[269] * R(0.09182100000000004);
-        const gic_real t181 = m[267] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[268] * R(-0.08910630000000008));
-        const gic_real t183 = m[272] * t179 - m[270] * t182;
-        const gic_real t184 = m[271] * t182 - m[272] * t176;
-        const gic_real t185 = m[270] * t183 - m[271] * t184 + (m[276] * t176 - m[277] * t179);
-        const gic_real t186 = m[281] + t185;
-        const gic_real t187 = m[274] + t183;
-        const gic_real t188 = m[258] + t179;
-        const gic_real t189 = m[260] + t182;
-        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
-        const gic_real t191 = m[259] + t176;
-        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
-        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[282] * t176 - m[283] * t179);
-        const gic_real t195 = t194 + rate[19] * (m[293] + (m[288] * t176 - m[289] * t179));
+        /* wheel tire_f_r */
+        const gic_real t174 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.08910630000000008));
+        const gic_real t180 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.08910630000000008));
+        const gic_real t183 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t179 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t182;
+        const gic_real t184 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t182 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t176;
+        const gic_real t185 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t183 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t184 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] *
+            t176 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] * t179);
+        const gic_real t186 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] + t183;
+        const gic_real t188 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t179;
+        const gic_real t189 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[HMMWV14_STATE_OMEGA_Z] * t188 - y[HMMWV14_STATE_OMEGA_X] * t189));
+        const gic_real t191 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[HMMWV14_STATE_OMEGA_Y] * t189 - y[HMMWV14_STATE_OMEGA_Z] * t191));
+        const gic_real t193 = y[HMMWV14_STATE_OMEGA_X] * t190 - y[HMMWV14_STATE_OMEGA_Y] * t192 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t191 - rate[HMMWV14_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t176 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t179);
+        const gic_real t195 = t194 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[270] * t176 - m[271] * t179;
-        const gic_real t198 = m[272] * t184 - m[270] * t197 + (m[278] * t179 - m[276] * t182);
-        const gic_real t199 = m[280] + t198;
-        const gic_real t200 = m[275] + t197;
-        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
-        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[284] * t179 - m[282] * t182);
-        const gic_real t204 = t203 + rate[19] * (m[292] + (m[290] * t179 - m[288] * t182));
+        const gic_real t197 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t179;
+        const gic_real t198 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t184 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t197 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] *
+            t179 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] * t182);
+        const gic_real t199 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[HMMWV14_STATE_OMEGA_X] * t191 - y[HMMWV14_STATE_OMEGA_Y] * t188));
+        const gic_real t202 = y[HMMWV14_STATE_OMEGA_Z] * t192 - y[HMMWV14_STATE_OMEGA_X] * t201 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t188 - rate[HMMWV14_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t179 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t182);
+        const gic_real t204 = t203 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t179 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t208 = m[98] * R(0.8938);
-        const gic_real t209 = m[97] * R(0.4469);
-        const gic_real t210 = m[101] * t208 + m[100] * t209;
-        const gic_real t211 = y[17] * t207 + y[16] * t210;
-        const gic_real t212 = m[98] * t208 + m[97] * t209;
-        const gic_real t213 = y[17] * t210 + y[16] * t212;
-        const gic_real t214 = y[16] * t211 - y[17] * t213 + R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]);
-        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t217 = m[102] * t216;
-        const gic_real t218 = m[108] * t215 - m[102] * t217;
-        const gic_real t219 = R(-1.688965) * y[17];
-        const gic_real t220 = t219 - y[15] * t216 - t217 - t217;
+        /* inertia of lca_r_l */
+        const gic_real t207 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t208 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t209 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t210 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * t208 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * t209;
+        const gic_real t211 = y[HMMWV14_STATE_OMEGA_Z] * t207 + y[HMMWV14_STATE_OMEGA_Y] * t210;
+        const gic_real t212 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * t208 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * t209;
+        const gic_real t213 = y[HMMWV14_STATE_OMEGA_Z] * t210 + y[HMMWV14_STATE_OMEGA_Y] * t212;
+        const gic_real t214 = y[HMMWV14_STATE_OMEGA_Y] * t211 - y[HMMWV14_STATE_OMEGA_Z] * t213 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE]);
+        const gic_real t215 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.246867347245056);
+        const gic_real t216 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.246867347245056);
+        const gic_real t217 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t216;
+        const gic_real t218 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t215 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t217;
+        const gic_real t219 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t220 = t219 - y[HMMWV14_STATE_OMEGA_X] * t216 - t217 - t217;
         const gic_real t221 = R(0.307086) + t215;
-        const gic_real t222 = y[16] * t216 - y[17] * t221;
-        const gic_real t223 = R(-1.688965) * rate[16];
-        const gic_real t224 = y[15] * t220 - y[16] * t222 + (rate[15] * t221 - t223);
-        const gic_real t225 = t218 + (t28 + t224) + rate[20] * (m[114] * t215);
+        const gic_real t222 = y[HMMWV14_STATE_OMEGA_Y] * t216 - y[HMMWV14_STATE_OMEGA_Z] * t221;
+        const gic_real t223 = R(-1.688965) * rate[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t224 = y[HMMWV14_STATE_OMEGA_X] * t220 - y[HMMWV14_STATE_OMEGA_Y] * t222 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t215);
         const gic_real t226 = R(23.965) * t225;
-        const gic_real t227 = m[102] * t215;
-        const gic_real t228 = R(-1.688965) * y[16];
-        const gic_real t229 = t227 + (t227 + (y[15] * t221 - t228));
-        const gic_real t230 = R(-1.688965) * rate[17];
-        const gic_real t231 = y[17] * t222 - y[15] * t229 + (t230 - rate[15] * t216);
-        const gic_real t232 = m[102] * t227 + m[108] * t216;
-        const gic_real t233 = t16 + t231 - t232 - rate[20] * (m[114] * t216);
+        const gic_real t227 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t215;
+        const gic_real t228 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t229 = t227 + (t227 + (y[HMMWV14_STATE_OMEGA_X] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t231 = y[HMMWV14_STATE_OMEGA_Z] * t222 - y[HMMWV14_STATE_OMEGA_X] * t229 + (t230 -
+            rate[HMMWV14_STATE_OMEGA_X] * t216);
+        const gic_real t232 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t227 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t216);
         const gic_real t234 = R(23.965) * t233;
         const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
-        const gic_real t236 = t149 + (t206 + (m[259] * t196 - m[260] * t205)) + (t235 + R(7.359315990000001) * t225);
-        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t238 = m[128] * R(0.8938);
-        const gic_real t239 = m[127] * R(0.4469);
-        const gic_real t240 = m[131] * t238 + m[130] * t239;
-        const gic_real t241 = y[17] * t237 + y[16] * t240;
-        const gic_real t242 = m[128] * t238 + m[127] * t239;
-        const gic_real t243 = y[17] * t240 + y[16] * t242;
-        const gic_real t244 = y[16] * t241 - y[17] * t243 + R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]);
-        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t247 = m[132] * t246;
-        const gic_real t248 = m[138] * t245 - m[132] * t247;
-        const gic_real t249 = t219 - y[15] * t246 - t247 - t247;
+        const gic_real t236 = t149 + (t206 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t196 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t205)) + (t235 + R(7.359315990000001) * t225);
+        /* inertia of lca_r_r */
+        const gic_real t237 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t238 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t239 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t240 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * t238 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * t239;
+        const gic_real t241 = y[HMMWV14_STATE_OMEGA_Z] * t237 + y[HMMWV14_STATE_OMEGA_Y] * t240;
+        const gic_real t242 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * t238 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * t239;
+        const gic_real t243 = y[HMMWV14_STATE_OMEGA_Z] * t240 + y[HMMWV14_STATE_OMEGA_Y] * t242;
+        const gic_real t244 = y[HMMWV14_STATE_OMEGA_Y] * t241 - y[HMMWV14_STATE_OMEGA_Z] * t243 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE]);
+        const gic_real t245 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.246867347245056);
+        const gic_real t246 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.246867347245056);
+        const gic_real t247 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t246;
+        const gic_real t248 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t245 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t247;
+        const gic_real t249 = t219 - y[HMMWV14_STATE_OMEGA_X] * t246 - t247 - t247;
         const gic_real t250 = R(-0.307086) + t245;
-        const gic_real t251 = y[16] * t246 - y[17] * t250;
-        const gic_real t252 = y[15] * t249 - y[16] * t251 + (rate[15] * t250 - t223);
-        const gic_real t253 = t248 + (t28 + t252) + rate[21] * (m[144] * t245);
+        const gic_real t251 = y[HMMWV14_STATE_OMEGA_Y] * t246 - y[HMMWV14_STATE_OMEGA_Z] * t250;
+        const gic_real t252 = y[HMMWV14_STATE_OMEGA_X] * t249 - y[HMMWV14_STATE_OMEGA_Y] * t251 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t245);
         const gic_real t254 = R(23.965) * t253;
-        const gic_real t255 = m[132] * t245;
-        const gic_real t256 = t255 + (t255 + (y[15] * t250 - t228));
-        const gic_real t257 = y[17] * t251 - y[15] * t256 + (t230 - rate[15] * t246);
-        const gic_real t258 = m[132] * t255 + m[138] * t246;
-        const gic_real t259 = t16 + t257 - t258 - rate[21] * (m[144] * t246);
+        const gic_real t255 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t245;
+        const gic_real t256 = t255 + (t255 + (y[HMMWV14_STATE_OMEGA_X] * t250 - t228));
+        const gic_real t257 = y[HMMWV14_STATE_OMEGA_Z] * t251 - y[HMMWV14_STATE_OMEGA_X] * t256 + (t230 -
+            rate[HMMWV14_STATE_OMEGA_X] * t246);
+        const gic_real t258 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t255 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t246);
         const gic_real t260 = R(23.965) * t259;
         const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
-        const gic_real t262 = m[337] + y[16];
-        const gic_real t263 = m[335] * (m[335] * R(4.7728205)) + (m[334] * (m[334] * R(7.58122)) + m[333] * (m[333] * R(4.8947505)));
-        const gic_real t264 = m[338] + y[17];
-        const gic_real t265 = m[332] * R(4.7728205);
-        const gic_real t266 = m[331] * R(7.58122);
-        const gic_real t267 = m[330] * R(4.8947505);
-        const gic_real t268 = m[335] * t265 + (m[334] * t266 + m[333] * t267);
-        const gic_real t269 = m[329] * R(4.7728205);
-        const gic_real t270 = m[328] * R(7.58122);
-        const gic_real t271 = m[327] * R(4.8947505);
-        const gic_real t272 = m[335] * t269 + (m[334] * t270 + m[333] * t271);
-        const gic_real t273 = m[336] + y[15];
+        /* inertia of wheel_r_l */
+        const gic_real t262 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t263 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t264 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t265 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t266 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t267 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t268 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t265 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t266 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t267);
+        const gic_real t269 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t270 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t271 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t272 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t269 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t270 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t271);
+        const gic_real t273 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t274 = t263 * t264 + (t268 * t262 + t272 * t273);
-        const gic_real t275 = m[332] * t265 + (m[331] * t266 + m[330] * t267);
-        const gic_real t276 = m[332] * t269 + (m[331] * t270 + m[330] * t271);
+        const gic_real t275 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t265 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t266 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t267);
+        const gic_real t276 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t269 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t270 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t271);
         const gic_real t277 = t268 * t264 + (t275 * t262 + t276 * t273);
-        const gic_real t278 = m[344] + (rate[17] + (m[337] * y[15] - m[336] * y[16])) + m[350] * rate[20];
-        const gic_real t279 = m[343] + (rate[16] + (m[336] * y[17] - m[338] * y[15])) + m[349] * rate[20];
-        const gic_real t280 = m[329] * t269 + (m[328] * t270 + m[327] * t271);
-        const gic_real t281 = m[342] + (rate[15] + (m[338] * y[16] - m[337] * y[17])) + m[348] * rate[20];
+        const gic_real t278 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t279 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t280 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * t269 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * t270 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t271);
+        const gic_real t281 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
         const gic_real t282 = t262 * t274 - t264 * t277 + (t272 * t278 + (t276 * t279 + t280 * t281));
-        const gic_real t283 = m[332] * R(0.09182100000000004);
-        const gic_real t284 = t283 + m[331] * R(0.08910630000000008);
-        const gic_real t285 = m[329] * R(0.09182100000000004);
-        const gic_real t286 = t285 + m[328] * R(0.08910630000000008);
-        const gic_real t287 = m[335] * R(0.09182100000000004);
-        const gic_real t288 = t287 + m[334] * R(0.08910630000000008);
-        const gic_real t289 = m[338] * t286 - m[336] * t288;
-        const gic_real t290 = m[337] * t288 - m[338] * t284;
-        const gic_real t291 = m[336] * t289 - m[337] * t290 + (m[342] * t284 - m[343] * t286);
-        const gic_real t292 = m[347] + t291;
-        const gic_real t293 = m[340] + t289;
-        const gic_real t294 = m[324] + t286;
-        const gic_real t295 = m[326] + t288;
-        const gic_real t296 = t293 + (t293 + (y[17] * t294 - y[15] * t295));
-        const gic_real t297 = m[325] + t284;
-        const gic_real t298 = t290 + (t290 + (y[16] * t295 - y[17] * t297));
-        const gic_real t299 = y[15] * t296 - y[16] * t298 + (rate[15] * t297 - rate[16] * t294);
-        const gic_real t300 = t292 + (t28 + t299) + rate[20] * (m[353] + (m[348] * t284 - m[349] * t286));
+        /* wheel tire_r_l */
+        const gic_real t283 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t284 = t283 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.08910630000000008);
+        const gic_real t285 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t286 = t285 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.08910630000000008);
+        const gic_real t287 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t288 = t287 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.08910630000000008);
+        const gic_real t289 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t286 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t288;
+        const gic_real t290 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t288 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t284;
+        const gic_real t291 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t289 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t290 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] *
+            t284 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] * t286);
+        const gic_real t292 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Z] + t291;
+        const gic_real t293 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] + t289;
+        const gic_real t294 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t286;
+        const gic_real t295 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t288;
+        const gic_real t296 = t293 + (t293 + (y[HMMWV14_STATE_OMEGA_Z] * t294 - y[HMMWV14_STATE_OMEGA_X] * t295));
+        const gic_real t297 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t284;
+        const gic_real t298 = t290 + (t290 + (y[HMMWV14_STATE_OMEGA_Y] * t295 - y[HMMWV14_STATE_OMEGA_Z] * t297));
+        const gic_real t299 = y[HMMWV14_STATE_OMEGA_X] * t296 - y[HMMWV14_STATE_OMEGA_Y] * t298 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t297 - rate[HMMWV14_STATE_OMEGA_Y] * t294);
+        const gic_real t300 = t292 + (t28 + t299) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t284 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t286));
         const gic_real t301 = R(90.555) * t300;
-        const gic_real t302 = m[336] * t284 - m[337] * t286;
-        const gic_real t303 = m[338] * t290 - m[336] * t302 + (m[344] * t286 - m[342] * t288);
-        const gic_real t304 = m[346] + t303;
-        const gic_real t305 = m[341] + t302;
-        const gic_real t306 = t305 + (t305 + (y[15] * t297 - y[16] * t294));
-        const gic_real t307 = y[17] * t298 - y[15] * t306 + (rate[17] * t294 - rate[15] * t295);
-        const gic_real t308 = t304 + (t16 + t307) + rate[20] * (m[352] + (m[350] * t286 - m[348] * t288));
+        const gic_real t302 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t284 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t286;
+        const gic_real t303 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t290 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t302 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] *
+            t286 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] * t288);
+        const gic_real t304 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Y] + t303;
+        const gic_real t305 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] + t302;
+        const gic_real t306 = t305 + (t305 + (y[HMMWV14_STATE_OMEGA_X] * t297 - y[HMMWV14_STATE_OMEGA_Y] * t294));
+        const gic_real t307 = y[HMMWV14_STATE_OMEGA_Z] * t298 - y[HMMWV14_STATE_OMEGA_X] * t306 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t294 - rate[HMMWV14_STATE_OMEGA_X] * t295);
+        const gic_real t308 = t304 + (t16 + t307) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t286 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t288));
         const gic_real t309 = R(90.555) * t308;
         const gic_real t310 = t282 + (t284 * t301 - t288 * t309);
-        const gic_real t311 = t236 + (t261 + R(-7.359315990000001) * t253) + (t310 + (m[325] * t301 - m[326] * t309));
-        const gic_real t312 = m[397] + y[16];
-        const gic_real t313 = m[395] * (m[395] * R(4.7728205)) + (m[394] * (m[394] * R(7.58122)) + m[393] * (m[393] * R(4.8947505)));
-        const gic_real t314 = m[398] + y[17];
-        const gic_real t315 = m[392] * R(4.7728205);
-        const gic_real t316 = m[391] * R(7.58122);
-        const gic_real t317 = m[390] * R(4.8947505);
-        const gic_real t318 = m[395] * t315 + (m[394] * t316 + m[393] * t317);
-        const gic_real t319 = m[389] * R(4.7728205);
-        const gic_real t320 = m[388] * R(7.58122);
-        const gic_real t321 = m[387] * R(4.8947505);
-        const gic_real t322 = m[395] * t319 + (m[394] * t320 + m[393] * t321);
-        const gic_real t323 = m[396] + y[15];
+        const gic_real t311 = t236 + (t261 + R(-7.359315990000001) * t253) + (t310 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t301 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t309));
+        /* inertia of wheel_r_r */
+        const gic_real t312 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t313 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t314 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t315 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t316 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t317 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t318 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t315 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t316 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t317);
+        const gic_real t319 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t320 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t321 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t322 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t319 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t320 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t321);
+        const gic_real t323 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t324 = t313 * t314 + (t318 * t312 + t322 * t323);
-        const gic_real t325 = m[392] * t315 + (m[391] * t316 + m[390] * t317);
-        const gic_real t326 = m[392] * t319 + (m[391] * t320 + m[390] * t321);
+        const gic_real t325 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t315 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t316 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t317);
+        const gic_real t326 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t319 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t320 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t321);
         const gic_real t327 = t318 * t314 + (t325 * t312 + t326 * t323);
-        const gic_real t328 = m[404] + (rate[17] + (m[397] * y[15] - m[396] * y[16])) + m[410] * rate[21];
-        const gic_real t329 = m[403] + (rate[16] + (m[396] * y[17] - m[398] * y[15])) + m[409] * rate[21];
-        const gic_real t330 = m[389] * t319 + (m[388] * t320 + m[387] * t321);
-        const gic_real t331 = m[402] + (rate[15] + (m[398] * y[16] - m[397] * y[17])) + m[408] * rate[21];
+        const gic_real t328 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t329 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t330 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * t319 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * t320 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t321);
+        const gic_real t331 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
         const gic_real t332 = t312 * t324 - t314 * t327 + (t322 * t328 + (t326 * t329 + t330 * t331));
-        const gic_real t333 = m[392] * R(0.09182100000000004);
-        const gic_real t334 = t333 + m[391] * R(-0.08910630000000008);
-        const gic_real t335 = m[389] * R(0.09182100000000004);
-        const gic_real t336 = t335 + m[388] * R(-0.08910630000000008);
-        const gic_real t337 = m[395] * R(0.09182100000000004);
-        const gic_real t338 = t337 + m[394] * R(-0.08910630000000008);
-        const gic_real t339 = m[398] * t336 - m[396] * t338;
-        const gic_real t340 = m[397] * t338 - m[398] * t334;
-        const gic_real t341 = m[396] * t339 - m[397] * t340 + (m[402] * t334 - m[403] * t336);
-        const gic_real t342 = m[407] + t341;
-        const gic_real t343 = m[400] + t339;
-        const gic_real t344 = m[384] + t336;
-        const gic_real t345 = m[386] + t338;
-        const gic_real t346 = t343 + (t343 + (y[17] * t344 - y[15] * t345));
-        const gic_real t347 = m[385] + t334;
-        const gic_real t348 = t340 + (t340 + (y[16] * t345 - y[17] * t347));
-        const gic_real t349 = y[15] * t346 - y[16] * t348 + (rate[15] * t347 - rate[16] * t344);
-        const gic_real t350 = t342 + (t28 + t349) + rate[21] * (m[413] + (m[408] * t334 - m[409] * t336));
+        /* wheel tire_r_r */
+        const gic_real t333 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t334 = t333 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.08910630000000008);
+        const gic_real t335 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t336 = t335 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.08910630000000008);
+        const gic_real t337 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t338 = t337 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.08910630000000008);
+        const gic_real t339 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t336 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t338;
+        const gic_real t340 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t338 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t334;
+        const gic_real t341 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t339 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t340 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] *
+            t334 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] * t336);
+        const gic_real t342 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Z] + t341;
+        const gic_real t343 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] + t339;
+        const gic_real t344 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t336;
+        const gic_real t345 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t338;
+        const gic_real t346 = t343 + (t343 + (y[HMMWV14_STATE_OMEGA_Z] * t344 - y[HMMWV14_STATE_OMEGA_X] * t345));
+        const gic_real t347 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t334;
+        const gic_real t348 = t340 + (t340 + (y[HMMWV14_STATE_OMEGA_Y] * t345 - y[HMMWV14_STATE_OMEGA_Z] * t347));
+        const gic_real t349 = y[HMMWV14_STATE_OMEGA_X] * t346 - y[HMMWV14_STATE_OMEGA_Y] * t348 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t347 - rate[HMMWV14_STATE_OMEGA_Y] * t344);
+        const gic_real t350 = t342 + (t28 + t349) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t334 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t336));
         const gic_real t351 = R(90.555) * t350;
-        const gic_real t352 = m[396] * t334 - m[397] * t336;
-        const gic_real t353 = m[398] * t340 - m[396] * t352 + (m[404] * t336 - m[402] * t338);
-        const gic_real t354 = m[406] + t353;
-        const gic_real t355 = m[401] + t352;
-        const gic_real t356 = t355 + (t355 + (y[15] * t347 - y[16] * t344));
-        const gic_real t357 = y[17] * t348 - y[15] * t356 + (rate[17] * t344 - rate[15] * t345);
-        const gic_real t358 = t354 + (t16 + t357) + rate[21] * (m[412] + (m[410] * t336 - m[408] * t338));
+        const gic_real t352 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t334 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t336;
+        const gic_real t353 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t340 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t352 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] *
+            t336 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] * t338);
+        const gic_real t354 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Y] + t353;
+        const gic_real t355 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] + t352;
+        const gic_real t356 = t355 + (t355 + (y[HMMWV14_STATE_OMEGA_X] * t347 - y[HMMWV14_STATE_OMEGA_Y] * t344));
+        const gic_real t357 = y[HMMWV14_STATE_OMEGA_Z] * t348 - y[HMMWV14_STATE_OMEGA_X] * t356 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t344 - rate[HMMWV14_STATE_OMEGA_X] * t345);
+        const gic_real t358 = t354 + (t16 + t357) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t336 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t338));
         const gic_real t359 = R(90.555) * t358;
         const gic_real t360 = t332 + (t334 * t351 - t338 * t359);
-        const gic_real t361 = m[163] + y[16];
-        const gic_real t362 = m[161] * (m[161] * R(0.06276)) + (m[160] * (m[160] * R(0.03138)) + R(0.0014540542454566034));
-        const gic_real t363 = m[164] + y[17];
-        const gic_real t364 = m[158] * R(0.06276);
-        const gic_real t365 = m[157] * R(0.03138);
-        const gic_real t366 = m[161] * t364 + (m[160] * t365 + R(-0.0009417184427870059));
-        const gic_real t367 = m[155] * R(0.06276);
-        const gic_real t368 = m[154] * R(0.03138);
-        const gic_real t369 = m[161] * t367 + (m[160] * t368 + R(0.0065289443900383055));
-        const gic_real t370 = m[162] + y[15];
+        /* inertia of uca_f_l */
+        const gic_real t361 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t362 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(0.0014540542454566034));
+        const gic_real t363 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t364 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t365 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t366 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t364 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t365 + R(-0.0009417184427870059));
+        const gic_real t367 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t368 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t369 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t367 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t368 + R(0.0065289443900383055));
+        const gic_real t370 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t371 = t362 * t363 + (t366 * t361 + t369 * t370);
-        const gic_real t372 = m[158] * t364 + (m[157] * t365 + R(0.0006099040859419237));
-        const gic_real t373 = m[158] * t367 + (m[157] * t368 + R(-0.004228471780362703));
+        const gic_real t372 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t364 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t365 + R(0.0006099040859419237));
+        const gic_real t373 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t367 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t368 + R(-0.004228471780362703));
         const gic_real t374 = t366 * t363 + (t372 * t361 + t373 * t370);
-        const gic_real t375 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t376 = t375 + m[182] * rate[18];
-        const gic_real t377 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t378 = t377 + m[181] * rate[18];
-        const gic_real t379 = m[155] * t367 + (m[154] * t368 + R(0.029316041668601474));
-        const gic_real t380 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t381 = t380 + m[180] * rate[18];
+        const gic_real t375 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t376 = t375 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t377 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t378 = t377 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t379 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * t367 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * t368 + R(0.029316041668601474));
+        const gic_real t380 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t381 = t380 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
         const gic_real t382 = t361 * t371 - t363 * t374 + (t369 * t376 + (t373 * t378 + t379 * t381));
-        const gic_real t383 = m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648));
-        const gic_real t384 = m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016));
-        const gic_real t385 = m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429));
-        const gic_real t386 = m[164] * t384 - m[162] * t385;
-        const gic_real t387 = m[163] * t385 - m[164] * t383;
-        const gic_real t388 = m[162] * t386 - m[163] * t387 + (m[168] * t383 - m[169] * t384);
+        const gic_real t383 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.1333626625632361) + R(-0.004544539087734648));
+        const gic_real t384 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.1333626625632361) + R(0.031507339809937016));
+        const gic_real t385 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * R(0.1333626625632361) + R(0.007016966063240429));
+        const gic_real t386 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t384 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t385;
+        const gic_real t387 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t385 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t383;
+        const gic_real t388 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t386 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t387 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t383 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t384);
         const gic_real t389 = R(1.5309008) + t384;
         const gic_real t390 = R(0.22009100000000004) + t385;
-        const gic_real t391 = t386 + (t386 + (y[17] * t389 - y[15] * t390));
+        const gic_real t391 = t386 + (t386 + (y[HMMWV14_STATE_OMEGA_Z] * t389 - y[HMMWV14_STATE_OMEGA_X] * t390));
         const gic_real t392 = R(0.4618482) + t383;
-        const gic_real t393 = t387 + (t387 + (y[16] * t390 - y[17] * t392));
-        const gic_real t394 = y[15] * t391 - y[16] * t393 + (rate[15] * t392 - rate[16] * t389);
-        const gic_real t395 = t388 + (t28 + t394) + rate[22] * (m[174] * t383 - m[175] * t384);
-        const gic_real t396 = t395 + rate[18] * (m[180] * t383 - m[181] * t384);
+        const gic_real t393 = t387 + (t387 + (y[HMMWV14_STATE_OMEGA_Y] * t390 - y[HMMWV14_STATE_OMEGA_Z] * t392));
+        const gic_real t394 = y[HMMWV14_STATE_OMEGA_X] * t391 - y[HMMWV14_STATE_OMEGA_Y] * t393 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t392 - rate[HMMWV14_STATE_OMEGA_Y] * t389);
+        const gic_real t395 = t388 + (t28 + t394) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t383 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t384);
+        const gic_real t396 = t395 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] *
+            t383 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * t384);
         const gic_real t397 = t396 * R(5.813);
-        const gic_real t398 = m[162] * t383 - m[163] * t384;
-        const gic_real t399 = m[164] * t387 - m[162] * t398 + (m[170] * t384 - m[168] * t385);
-        const gic_real t400 = t398 + (t398 + (y[15] * t392 - y[16] * t389));
-        const gic_real t401 = y[17] * t393 - y[15] * t400 + (rate[17] * t389 - rate[15] * t390);
-        const gic_real t402 = t399 + (t16 + t401) + rate[22] * (m[176] * t384 - m[174] * t385);
-        const gic_real t403 = t402 + rate[18] * (m[182] * t384 - m[180] * t385);
+        const gic_real t398 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t383 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t384;
+        const gic_real t399 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t387 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t398 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t384 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t385);
+        const gic_real t400 = t398 + (t398 + (y[HMMWV14_STATE_OMEGA_X] * t392 - y[HMMWV14_STATE_OMEGA_Y] * t389));
+        const gic_real t401 = y[HMMWV14_STATE_OMEGA_Z] * t393 - y[HMMWV14_STATE_OMEGA_X] * t400 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t389 - rate[HMMWV14_STATE_OMEGA_X] * t390);
+        const gic_real t402 = t399 + (t16 + t401) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t384 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t385);
+        const gic_real t403 = t402 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] *
+            t384 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * t385);
         const gic_real t404 = t403 * R(5.813);
         const gic_real t405 = t382 + (t383 * t397 - t385 * t404);
-        const gic_real t406 = t311 + (t360 + (m[385] * t351 - m[386] * t359)) + (t405 + (t396 * R(2.6847235865999997) - t403 * R(1.2793889830000003)));
-        const gic_real t407 = m[235] + y[16];
-        const gic_real t408 = m[233] * (m[233] * R(0.06276)) + (R(0.0014540542454566034) + m[232] * (m[232] * R(0.03138)));
-        const gic_real t409 = m[236] + y[17];
-        const gic_real t410 = m[230] * R(0.06276);
-        const gic_real t411 = m[229] * R(0.03138);
-        const gic_real t412 = m[233] * t410 + (m[232] * t411 + R(0.0009417184427870059));
-        const gic_real t413 = m[227] * R(0.06276);
-        const gic_real t414 = m[226] * R(0.03138);
-        const gic_real t415 = m[233] * t413 + (R(0.0065289443900383055) + m[232] * t414);
-        const gic_real t416 = m[234] + y[15];
+        const gic_real t406 = t311 + (t360 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t351 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t359)) + (t405 + (t396 * R(2.6847235865999997) - t403 *
+            R(1.2793889830000003)));
+        /* inertia of uca_f_r */
+        const gic_real t407 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t408 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(0.0014540542454566034) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t409 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t410 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t411 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t412 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t410 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t411 + R(0.0009417184427870059));
+        const gic_real t413 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t414 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t415 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t413 + (R(0.0065289443900383055) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t414);
+        const gic_real t416 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t417 = t408 * t409 + (t412 * t407 + t415 * t416);
-        const gic_real t418 = m[230] * t410 + (R(0.0006099040859419237) + m[229] * t411);
-        const gic_real t419 = m[230] * t413 + (m[229] * t414 + R(0.004228471780362703));
+        const gic_real t418 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t410 + (R(0.0006099040859419237) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t411);
+        const gic_real t419 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t413 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t414 + R(0.004228471780362703));
         const gic_real t420 = t412 * t409 + (t418 * t407 + t419 * t416);
-        const gic_real t421 = m[242] + (rate[17] + (m[235] * y[15] - m[234] * y[16])) + m[248] * rate[22];
-        const gic_real t422 = t421 + m[254] * rate[19];
-        const gic_real t423 = m[241] + (rate[16] + (m[234] * y[17] - m[236] * y[15])) + m[247] * rate[22];
-        const gic_real t424 = t423 + m[253] * rate[19];
-        const gic_real t425 = m[227] * t413 + (R(0.029316041668601474) + m[226] * t414);
-        const gic_real t426 = m[240] + (rate[15] + (m[236] * y[16] - m[235] * y[17])) + m[246] * rate[22];
-        const gic_real t427 = t426 + m[252] * rate[19];
+        const gic_real t421 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t422 = t421 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t423 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t424 = t423 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t425 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * t413 + (R(0.029316041668601474) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * t414);
+        const gic_real t426 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t427 = t426 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
         const gic_real t428 = t407 * t417 - t409 * t420 + (t415 * t422 + (t419 * t424 + t425 * t427));
-        const gic_real t429 = m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648));
-        const gic_real t430 = m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361));
-        const gic_real t431 = m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361));
-        const gic_real t432 = m[236] * t430 - m[234] * t431;
-        const gic_real t433 = m[235] * t431 - m[236] * t429;
-        const gic_real t434 = m[234] * t432 - m[235] * t433 + (m[240] * t429 - m[241] * t430);
+        const gic_real t429 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(-0.1333626625632361) + R(0.004544539087734648));
+        const gic_real t430 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (R(0.031507339809937016) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(-0.1333626625632361));
+        const gic_real t431 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (R(0.007016966063240429) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(-0.1333626625632361));
+        const gic_real t432 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t430 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t431;
+        const gic_real t433 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t431 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t429;
+        const gic_real t434 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t432 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t433 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t429 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t430);
         const gic_real t435 = R(1.5309008) + t430;
         const gic_real t436 = R(0.22009100000000004) + t431;
-        const gic_real t437 = t432 + (t432 + (y[17] * t435 - y[15] * t436));
+        const gic_real t437 = t432 + (t432 + (y[HMMWV14_STATE_OMEGA_Z] * t435 - y[HMMWV14_STATE_OMEGA_X] * t436));
         const gic_real t438 = R(-0.4618482) + t429;
-        const gic_real t439 = t433 + (t433 + (y[16] * t436 - y[17] * t438));
-        const gic_real t440 = y[15] * t437 - y[16] * t439 + (rate[15] * t438 - rate[16] * t435);
-        const gic_real t441 = t434 + (t28 + t440) + rate[22] * (m[246] * t429 - m[247] * t430);
-        const gic_real t442 = t441 + rate[19] * (m[252] * t429 - m[253] * t430);
+        const gic_real t439 = t433 + (t433 + (y[HMMWV14_STATE_OMEGA_Y] * t436 - y[HMMWV14_STATE_OMEGA_Z] * t438));
+        const gic_real t440 = y[HMMWV14_STATE_OMEGA_X] * t437 - y[HMMWV14_STATE_OMEGA_Y] * t439 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t438 - rate[HMMWV14_STATE_OMEGA_Y] * t435);
+        const gic_real t441 = t434 + (t28 + t440) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t429 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t430);
+        const gic_real t442 = t441 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] *
+            t429 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * t430);
         const gic_real t443 = R(5.813) * t442;
-        const gic_real t444 = m[234] * t429 - m[235] * t430;
-        const gic_real t445 = m[236] * t433 - m[234] * t444 + (m[242] * t430 - m[240] * t431);
-        const gic_real t446 = t444 + (t444 + (y[15] * t438 - y[16] * t435));
-        const gic_real t447 = y[17] * t439 - y[15] * t446 + (rate[17] * t435 - rate[15] * t436);
-        const gic_real t448 = t445 + (t16 + t447) + rate[22] * (m[248] * t430 - m[246] * t431);
-        const gic_real t449 = t448 + rate[19] * (m[254] * t430 - m[252] * t431);
+        const gic_real t444 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t429 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t430;
+        const gic_real t445 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t433 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t444 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t430 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t431);
+        const gic_real t446 = t444 + (t444 + (y[HMMWV14_STATE_OMEGA_X] * t438 - y[HMMWV14_STATE_OMEGA_Y] * t435));
+        const gic_real t447 = y[HMMWV14_STATE_OMEGA_Z] * t439 - y[HMMWV14_STATE_OMEGA_X] * t446 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t435 - rate[HMMWV14_STATE_OMEGA_X] * t436);
+        const gic_real t448 = t445 + (t16 + t447) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t430 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t431);
+        const gic_real t449 = t448 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] *
+            t430 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * t431);
         const gic_real t450 = R(5.813) * t449;
         const gic_real t451 = t428 + (t429 * t443 - t431 * t450);
-        const gic_real t452 = m[307] + y[16];
-        const gic_real t453 = m[305] * (m[305] * R(0.06276)) + (m[304] * (m[304] * R(0.03138)) + R(6.221420556416178e-06));
-        const gic_real t454 = m[308] + y[17];
-        const gic_real t455 = m[302] * R(0.06276);
-        const gic_real t456 = m[301] * R(0.03138);
-        const gic_real t457 = m[305] * t455 + (m[304] * t456 + R(3.3816305342675644e-07));
-        const gic_real t458 = m[299] * R(0.06276);
-        const gic_real t459 = m[298] * R(0.03138);
-        const gic_real t460 = m[305] * t458 + (m[304] * t459 + R(0.00044180239545791184));
-        const gic_real t461 = m[306] + y[15];
+        /* inertia of uca_r_l */
+        const gic_real t452 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t453 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(6.221420556416178e-06));
+        const gic_real t454 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t455 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t456 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t457 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t455 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t456 + R(3.3816305342675644e-07));
+        const gic_real t458 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t459 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t460 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t458 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t459 + R(0.00044180239545791184));
+        const gic_real t461 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t462 = t453 * t454 + (t457 * t452 + t460 * t461);
-        const gic_real t463 = m[302] * t455 + (m[301] * t456 + R(1.838072987767614e-08));
-        const gic_real t464 = m[302] * t458 + (m[301] * t459 + R(2.4014008650359553e-05));
+        const gic_real t463 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t455 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t456 + R(1.838072987767614e-08));
+        const gic_real t464 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t458 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t459 + R(2.4014008650359553e-05));
         const gic_real t465 = t457 * t454 + (t463 * t452 + t464 * t461);
-        const gic_real t466 = m[314] + (rate[17] + (m[307] * y[15] - m[306] * y[16])) + m[320] * rate[20];
-        const gic_real t467 = m[313] + (rate[16] + (m[306] * y[17] - m[308] * y[15])) + m[319] * rate[20];
-        const gic_real t468 = m[299] * t458 + (m[298] * t459 + R(0.0313737601987137));
-        const gic_real t469 = m[312] + (rate[15] + (m[308] * y[16] - m[307] * y[17])) + m[318] * rate[20];
+        const gic_real t466 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t467 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t468 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * t458 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * t459 + R(0.0313737601987137));
+        const gic_real t469 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
         const gic_real t470 = t452 * t462 - t454 * t465 + (t460 * t466 + (t464 * t467 + t468 * t469));
-        const gic_real t471 = m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05));
-        const gic_real t472 = m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348));
-        const gic_real t473 = m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036));
-        const gic_real t474 = m[308] * t472 - m[306] * t473;
-        const gic_real t475 = m[307] * t473 - m[308] * t471;
-        const gic_real t476 = m[306] * t474 - m[307] * t475 + (m[312] * t471 - m[313] * t472);
+        const gic_real t471 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.1268157381236126) + R(-6.79134666217616e-05));
+        const gic_real t472 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.1268157381236126) + R(-0.0887274110323348));
+        const gic_real t473 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * R(0.1268157381236126) + R(-0.0012494512130067036));
+        const gic_real t474 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t472 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t473;
+        const gic_real t475 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t473 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t471;
+        const gic_real t476 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t474 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t475 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t471 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t472);
         const gic_real t477 = R(-1.475859) + t472;
         const gic_real t478 = R(0.22567900000000007) + t473;
-        const gic_real t479 = t474 + (t474 + (y[17] * t477 - y[15] * t478));
+        const gic_real t479 = t474 + (t474 + (y[HMMWV14_STATE_OMEGA_Z] * t477 - y[HMMWV14_STATE_OMEGA_X] * t478));
         const gic_real t480 = R(0.462153) + t471;
-        const gic_real t481 = t475 + (t475 + (y[16] * t478 - y[17] * t480));
-        const gic_real t482 = y[15] * t479 - y[16] * t481 + (rate[15] * t480 - rate[16] * t477);
-        const gic_real t483 = t476 + (t28 + t482) + rate[20] * (m[318] * t471 - m[319] * t472);
+        const gic_real t481 = t475 + (t475 + (y[HMMWV14_STATE_OMEGA_Y] * t478 - y[HMMWV14_STATE_OMEGA_Z] * t480));
+        const gic_real t482 = y[HMMWV14_STATE_OMEGA_X] * t479 - y[HMMWV14_STATE_OMEGA_Y] * t481 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t480 - rate[HMMWV14_STATE_OMEGA_Y] * t477);
+        const gic_real t483 = t476 + (t28 + t482) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t471 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t472);
         const gic_real t484 = R(5.813) * t483;
-        const gic_real t485 = m[306] * t471 - m[307] * t472;
-        const gic_real t486 = m[308] * t475 - m[306] * t485 + (m[314] * t472 - m[312] * t473);
-        const gic_real t487 = t485 + (t485 + (y[15] * t480 - y[16] * t477));
-        const gic_real t488 = y[17] * t481 - y[15] * t487 + (rate[17] * t477 - rate[15] * t478);
-        const gic_real t489 = t486 + (t16 + t488) + rate[20] * (m[320] * t472 - m[318] * t473);
+        const gic_real t485 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t471 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t472;
+        const gic_real t486 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t475 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t485 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t472 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t473);
+        const gic_real t487 = t485 + (t485 + (y[HMMWV14_STATE_OMEGA_X] * t480 - y[HMMWV14_STATE_OMEGA_Y] * t477));
+        const gic_real t488 = y[HMMWV14_STATE_OMEGA_Z] * t481 - y[HMMWV14_STATE_OMEGA_X] * t487 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t477 - rate[HMMWV14_STATE_OMEGA_X] * t478);
+        const gic_real t489 = t486 + (t16 + t488) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t472 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t473);
         const gic_real t490 = R(5.813) * t489;
         const gic_real t491 = t470 + (t471 * t484 - t473 * t490);
-        const gic_real t492 = t406 + (t451 + (t442 * R(-2.6847235865999997) - R(1.2793889830000003) * t449)) + (t491 + (t483 * R(2.6864953889999996) - t489 * R(1.3118720270000004)));
-        const gic_real t493 = m[367] + y[16];
-        const gic_real t494 = m[365] * (m[365] * R(0.06276)) + (R(6.221420556416178e-06) + m[364] * (m[364] * R(0.03138)));
-        const gic_real t495 = m[368] + y[17];
-        const gic_real t496 = m[362] * R(0.06276);
-        const gic_real t497 = m[361] * R(0.03138);
-        const gic_real t498 = m[365] * t496 + (m[364] * t497 + R(-3.3816305342675644e-07));
-        const gic_real t499 = m[359] * R(0.06276);
-        const gic_real t500 = m[358] * R(0.03138);
-        const gic_real t501 = m[365] * t499 + (R(0.00044180239545791184) + m[364] * t500);
-        const gic_real t502 = m[366] + y[15];
+        const gic_real t492 = t406 + (t451 + (t442 * R(-2.6847235865999997) - R(1.2793889830000003) * t449)) + (t491 +
+            (t483 * R(2.6864953889999996) - t489 * R(1.3118720270000004)));
+        /* inertia of uca_r_r */
+        const gic_real t493 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t494 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(6.221420556416178e-06) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t495 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t496 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t497 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t498 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t496 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t497 + R(-3.3816305342675644e-07));
+        const gic_real t499 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t500 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t501 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t499 + (R(0.00044180239545791184) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t500);
+        const gic_real t502 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t503 = t494 * t495 + (t498 * t493 + t501 * t502);
-        const gic_real t504 = m[362] * t496 + (R(1.838072987767614e-08) + m[361] * t497);
-        const gic_real t505 = m[362] * t499 + (m[361] * t500 + R(-2.4014008650359553e-05));
+        const gic_real t504 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t496 + (R(1.838072987767614e-08) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t497);
+        const gic_real t505 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t499 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t500 + R(-2.4014008650359553e-05));
         const gic_real t506 = t498 * t495 + (t504 * t493 + t505 * t502);
-        const gic_real t507 = m[374] + (rate[17] + (m[367] * y[15] - m[366] * y[16])) + m[380] * rate[21];
-        const gic_real t508 = m[373] + (rate[16] + (m[366] * y[17] - m[368] * y[15])) + m[379] * rate[21];
-        const gic_real t509 = m[359] * t499 + (R(0.0313737601987137) + m[358] * t500);
-        const gic_real t510 = m[372] + (rate[15] + (m[368] * y[16] - m[367] * y[17])) + m[378] * rate[21];
+        const gic_real t507 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t508 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t509 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * t499 + (R(0.0313737601987137) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * t500);
+        const gic_real t510 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
         const gic_real t511 = t493 * t503 - t495 * t506 + (t501 * t507 + (t505 * t508 + t509 * t510));
-        const gic_real t512 = m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05));
-        const gic_real t513 = m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126));
-        const gic_real t514 = m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126));
-        const gic_real t515 = m[368] * t513 - m[366] * t514;
-        const gic_real t516 = m[367] * t514 - m[368] * t512;
-        const gic_real t517 = m[366] * t515 - m[367] * t516 + (m[372] * t512 - m[373] * t513);
+        const gic_real t512 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(-0.1268157381236126) + R(6.79134666217616e-05));
+        const gic_real t513 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (R(-0.0887274110323348) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(-0.1268157381236126));
+        const gic_real t514 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (R(-0.0012494512130067036) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(-0.1268157381236126));
+        const gic_real t515 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t513 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t514;
+        const gic_real t516 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t514 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t512;
+        const gic_real t517 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t515 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t516 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t512 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t513);
         const gic_real t518 = R(-1.475859) + t513;
         const gic_real t519 = R(0.22567900000000007) + t514;
-        const gic_real t520 = t515 + (t515 + (y[17] * t518 - y[15] * t519));
+        const gic_real t520 = t515 + (t515 + (y[HMMWV14_STATE_OMEGA_Z] * t518 - y[HMMWV14_STATE_OMEGA_X] * t519));
         const gic_real t521 = R(-0.462153) + t512;
-        const gic_real t522 = t516 + (t516 + (y[16] * t519 - y[17] * t521));
-        const gic_real t523 = y[15] * t520 - y[16] * t522 + (rate[15] * t521 - rate[16] * t518);
-        const gic_real t524 = t517 + (t28 + t523) + rate[21] * (m[378] * t512 - m[379] * t513);
+        const gic_real t522 = t516 + (t516 + (y[HMMWV14_STATE_OMEGA_Y] * t519 - y[HMMWV14_STATE_OMEGA_Z] * t521));
+        const gic_real t523 = y[HMMWV14_STATE_OMEGA_X] * t520 - y[HMMWV14_STATE_OMEGA_Y] * t522 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t521 - rate[HMMWV14_STATE_OMEGA_Y] * t518);
+        const gic_real t524 = t517 + (t28 + t523) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t512 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t513);
         const gic_real t525 = R(5.813) * t524;
-        const gic_real t526 = m[366] * t512 - m[367] * t513;
-        const gic_real t527 = m[368] * t516 - m[366] * t526 + (m[374] * t513 - m[372] * t514);
-        const gic_real t528 = t526 + (t526 + (y[15] * t521 - y[16] * t518));
-        const gic_real t529 = y[17] * t522 - y[15] * t528 + (rate[17] * t518 - rate[15] * t519);
-        const gic_real t530 = t527 + (t16 + t529) + rate[21] * (m[380] * t513 - m[378] * t514);
+        const gic_real t526 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t512 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t513;
+        const gic_real t527 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t516 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t526 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t513 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t514);
+        const gic_real t528 = t526 + (t526 + (y[HMMWV14_STATE_OMEGA_X] * t521 - y[HMMWV14_STATE_OMEGA_Y] * t518));
+        const gic_real t529 = y[HMMWV14_STATE_OMEGA_Z] * t522 - y[HMMWV14_STATE_OMEGA_X] * t528 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t518 - rate[HMMWV14_STATE_OMEGA_X] * t519);
+        const gic_real t530 = t527 + (t16 + t529) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t513 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t514);
         const gic_real t531 = R(5.813) * t530;
         const gic_real t532 = t511 + (t512 * t525 - t514 * t531);
-        const gic_real t533 = t333 + m[391] * R(-0.12319000000000002);
-        const gic_real t534 = t335 + m[388] * R(-0.12319000000000002);
-        const gic_real t535 = m[385] + t533;
-        const gic_real t536 = m[384] + t534;
-        const gic_real t537 = m[401] + (m[396] * t533 - m[397] * t534) + (y[15] * t535 - y[16] * t536);
-        const gic_real t538 = t337 + m[394] * R(-0.12319000000000002);
-        const gic_real t539 = m[386] + t538;
-        const gic_real t540 = m[400] + (m[398] * t534 - m[396] * t538) + (y[17] * t536 - y[15] * t539);
+        const gic_real t533 = t333 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
+        const gic_real t534 = t335 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t535 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t533;
+        const gic_real t536 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t534;
+        const gic_real t537 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t533 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t534) + (y[HMMWV14_STATE_OMEGA_X] * t535 - y[HMMWV14_STATE_OMEGA_Y] * t536);
+        const gic_real t538 = t337 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t539 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t538;
+        const gic_real t540 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t534 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t538) + (y[HMMWV14_STATE_OMEGA_Z] * t536 - y[HMMWV14_STATE_OMEGA_X] * t539);
         const gic_real t541 = t13 + t14;
-        const gic_real t542 = m[397] * t538 - m[398] * t533 + (y[16] * t539 - y[17] * t535);
-        const gic_real t543 = y[13] + (t24 * t537 + (t12 * t540 + t541 * t542));
+        const gic_real t542 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t538 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t533 + (y[HMMWV14_STATE_OMEGA_Y] * t539 -
+            y[HMMWV14_STATE_OMEGA_Z] * t535);
+        const gic_real t543 = y[HMMWV14_STATE_V_Y] + (t24 * t537 + (t12 * t540 + t541 * t542));
         const gic_real t544 = R(1.0) - (t22 + t11);
-        const gic_real t545 = y[0] + (t27 * t539 + (t15 * t535 + t544 * t536));
-        const gic_real t546 = y[1] + (t24 * t539 + (t12 * t535 + t541 * t536));
+        const gic_real t545 = y[HMMWV14_STATE_R_X] + (t27 * t539 + (t15 * t535 + t544 * t536));
+        const gic_real t546 = y[HMMWV14_STATE_R_Y] + (t24 * t539 + (t12 * t535 + t541 * t536));
         gic_real road547[3];
         if (!hmmwv14_road_height(self, time, t545, t546, road547))
             return GIC_ERROR_ROAD;
-        const gic_real t548 = y[12] + (t27 * t537 + (t15 * t540 + t544 * t542));
+        const gic_real t548 = y[HMMWV14_STATE_V_X] + (t27 * t537 + (t15 * t540 + t544 * t542));
         const gic_real t549 = t25 - t26;
-        const gic_real t550 = y[14] + (t23 * t537 + (t7 * t540 + t549 * t542));
+        const gic_real t550 = y[HMMWV14_STATE_V_Z] + (t23 * t537 + (t7 * t540 + t549 * t542));
         const gic_real t551 = t543 * road547[2] + t548 * road547[1] - t550;
-        const gic_real t552 = y[2] + (t23 * t539 + (t7 * t535 + t549 * t536));
+        const gic_real t552 = y[HMMWV14_STATE_R_Z] + (t23 * t539 + (t7 * t535 + t549 * t536));
         const gic_real t553 = R(0.4699) + road547[0] - t552;
         const gic_real t554 = GIC_MIN(GIC_MAX(R(100.0) * t553, R(0.0)), R(1.0));
         const gic_real t555 = t551 * (R(500.0) * ((R(3.0) - (t554 + t554)) * (t554 * t554)));
@@ -4492,25 +5850,31 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t557 = t23 * t556;
         const gic_real t558 = t7 * t556;
         const gic_real t559 = t533 * t557 - t538 * t558;
-        const gic_real t560 = t283 + m[331] * R(0.12319000000000002);
-        const gic_real t561 = t285 + m[328] * R(0.12319000000000002);
-        const gic_real t562 = m[325] + t560;
-        const gic_real t563 = m[324] + t561;
-        const gic_real t564 = m[341] + (m[336] * t560 - m[337] * t561) + (y[15] * t562 - y[16] * t563);
-        const gic_real t565 = t287 + m[334] * R(0.12319000000000002);
-        const gic_real t566 = m[326] + t565;
-        const gic_real t567 = m[340] + (m[338] * t561 - m[336] * t565) + (y[17] * t563 - y[15] * t566);
-        const gic_real t568 = m[337] * t565 - m[338] * t560 + (y[16] * t566 - y[17] * t562);
-        const gic_real t569 = y[13] + (t24 * t564 + (t12 * t567 + t541 * t568));
-        const gic_real t570 = y[0] + (t27 * t566 + (t15 * t562 + t544 * t563));
-        const gic_real t571 = y[1] + (t24 * t566 + (t12 * t562 + t541 * t563));
+        const gic_real t560 = t283 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t561 = t285 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t562 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t560;
+        const gic_real t563 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t561;
+        const gic_real t564 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t560 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t561) + (y[HMMWV14_STATE_OMEGA_X] * t562 - y[HMMWV14_STATE_OMEGA_Y] * t563);
+        const gic_real t565 = t287 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t566 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t565;
+        const gic_real t567 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t561 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t565) + (y[HMMWV14_STATE_OMEGA_Z] * t563 - y[HMMWV14_STATE_OMEGA_X] * t566);
+        const gic_real t568 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t565 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t560 + (y[HMMWV14_STATE_OMEGA_Y] * t566 -
+            y[HMMWV14_STATE_OMEGA_Z] * t562);
+        const gic_real t569 = y[HMMWV14_STATE_V_Y] + (t24 * t564 + (t12 * t567 + t541 * t568));
+        const gic_real t570 = y[HMMWV14_STATE_R_X] + (t27 * t566 + (t15 * t562 + t544 * t563));
+        const gic_real t571 = y[HMMWV14_STATE_R_Y] + (t24 * t566 + (t12 * t562 + t541 * t563));
         gic_real road572[3];
         if (!hmmwv14_road_height(self, time, t570, t571, road572))
             return GIC_ERROR_ROAD;
-        const gic_real t573 = y[12] + (t27 * t564 + (t15 * t567 + t544 * t568));
-        const gic_real t574 = y[14] + (t23 * t564 + (t7 * t567 + t549 * t568));
+        const gic_real t573 = y[HMMWV14_STATE_V_X] + (t27 * t564 + (t15 * t567 + t544 * t568));
+        const gic_real t574 = y[HMMWV14_STATE_V_Z] + (t23 * t564 + (t7 * t567 + t549 * t568));
         const gic_real t575 = t569 * road572[2] + t573 * road572[1] - t574;
-        const gic_real t576 = y[2] + (t23 * t566 + (t7 * t562 + t549 * t563));
+        const gic_real t576 = y[HMMWV14_STATE_R_Z] + (t23 * t566 + (t7 * t562 + t549 * t563));
         const gic_real t577 = R(0.4699) + road572[0] - t576;
         const gic_real t578 = GIC_MIN(GIC_MAX(R(100.0) * t577, R(0.0)), R(1.0));
         const gic_real t579 = t575 * (R(500.0) * ((R(3.0) - (t578 + t578)) * (t578 * t578)));
@@ -4518,47 +5882,61 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t581 = t23 * t580;
         const gic_real t582 = t7 * t580;
         const gic_real t583 = t560 * t581 - t565 * t582;
-        const gic_real t584 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
-        const gic_real t585 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        /* force shock_r_r */
+        const gic_real t584 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.23915941563573181);
+        const gic_real t585 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.23915941563573181);
         const gic_real t586 = R(-0.307086) + t585 - R(-0.4977892);
         const gic_real t587 = t584 - R(0.32313880000000006);
         const gic_real t588 = R(1.0) / GIC_SQRT(t587 * t587 + (R(4.633797183999867e-05) + t586 * t586));
-        const gic_real t589 = t588 * (m[132] * t585 * t587 - m[132] * t584 * t586);
-        const gic_real t590 = R(24780.4) * t589;
-        const gic_real t591 = t588 * t590;
+        const gic_real t589 = t588 * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t585 * t587 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t584 * t586);
+        const gic_real force_shock_r_r = R(24780.4) * t589;
+        const gic_real t591 = t588 * force_shock_r_r;
         const gic_real t592 = t586 * t591;
         const gic_real t593 = t587 * t591;
         const gic_real t594 = t584 * t592 - t585 * t593;
-        const gic_real t595 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
-        const gic_real t596 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        /* force shock_r_l */
+        const gic_real t595 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.23915941563573181);
+        const gic_real t596 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.23915941563573181);
         const gic_real t597 = R(0.307086) + t596 - R(0.4977892);
         const gic_real t598 = t595 - R(0.32313880000000006);
         const gic_real t599 = R(1.0) / GIC_SQRT(t598 * t598 + (R(4.633797183999867e-05) + t597 * t597));
-        const gic_real t600 = t599 * (m[102] * t596 * t598 - m[102] * t595 * t597);
-        const gic_real t601 = t600 * R(24780.4);
-        const gic_real t602 = t599 * t601;
+        const gic_real t600 = t599 * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t596 * t598 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t595 * t597);
+        const gic_real force_shock_r_l = t600 * R(24780.4);
+        const gic_real t602 = t599 * force_shock_r_l;
         const gic_real t603 = t597 * t602;
         const gic_real t604 = t598 * t602;
         const gic_real t605 = t595 * t603 - t596 * t604;
-        const gic_real t606 = t174 + (m[265] * R(-0.12319000000000002) + t175);
-        const gic_real t607 = t177 + (m[262] * R(-0.12319000000000002) + t178);
-        const gic_real t608 = m[259] + t606;
-        const gic_real t609 = m[258] + t607;
-        const gic_real t610 = m[275] + (m[270] * t606 - m[271] * t607) + (y[15] * t608 - y[16] * t609);
-        const gic_real t611 = t180 + (m[268] * R(-0.12319000000000002) + t181);
-        const gic_real t612 = m[260] + t611;
-        const gic_real t613 = m[274] + (m[272] * t607 - m[270] * t611) + (y[17] * t609 - y[15] * t612);
-        const gic_real t614 = m[271] * t611 - m[272] * t606 + (y[16] * t612 - y[17] * t608);
-        const gic_real t615 = y[13] + (t24 * t610 + (t12 * t613 + t541 * t614));
-        const gic_real t616 = y[0] + (t27 * t612 + (t15 * t608 + t544 * t609));
-        const gic_real t617 = y[1] + (t24 * t612 + (t12 * t608 + t541 * t609));
+        const gic_real t606 = t174 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t607 = t177 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) + t178);
+        const gic_real t608 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t606;
+        const gic_real t609 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t607;
+        const gic_real t610 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t606 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t607) + (y[HMMWV14_STATE_OMEGA_X] * t608 - y[HMMWV14_STATE_OMEGA_Y] * t609);
+        const gic_real t611 = t180 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) + t181);
+        const gic_real t612 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t611;
+        const gic_real t613 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t607 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t611) + (y[HMMWV14_STATE_OMEGA_Z] * t609 - y[HMMWV14_STATE_OMEGA_X] * t612);
+        const gic_real t614 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t611 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t606 + (y[HMMWV14_STATE_OMEGA_Y] * t612 -
+            y[HMMWV14_STATE_OMEGA_Z] * t608);
+        const gic_real t615 = y[HMMWV14_STATE_V_Y] + (t24 * t610 + (t12 * t613 + t541 * t614));
+        const gic_real t616 = y[HMMWV14_STATE_R_X] + (t27 * t612 + (t15 * t608 + t544 * t609));
+        const gic_real t617 = y[HMMWV14_STATE_R_Y] + (t24 * t612 + (t12 * t608 + t541 * t609));
         gic_real road618[3];
         if (!hmmwv14_road_height(self, time, t616, t617, road618))
             return GIC_ERROR_ROAD;
-        const gic_real t619 = y[12] + (t27 * t610 + (t15 * t613 + t544 * t614));
-        const gic_real t620 = y[14] + (t23 * t610 + (t7 * t613 + t549 * t614));
+        const gic_real t619 = y[HMMWV14_STATE_V_X] + (t27 * t610 + (t15 * t613 + t544 * t614));
+        const gic_real t620 = y[HMMWV14_STATE_V_Z] + (t23 * t610 + (t7 * t613 + t549 * t614));
         const gic_real t621 = t615 * road618[2] + t619 * road618[1] - t620;
-        const gic_real t622 = y[2] + (t23 * t612 + (t7 * t608 + t549 * t609));
+        const gic_real t622 = y[HMMWV14_STATE_R_Z] + (t23 * t612 + (t7 * t608 + t549 * t609));
         const gic_real t623 = R(0.4699) + road618[0] - t622;
         const gic_real t624 = GIC_MIN(GIC_MAX(R(100.0) * t623, R(0.0)), R(1.0));
         const gic_real t625 = t621 * (R(500.0) * ((R(3.0) - (t624 + t624)) * (t624 * t624)));
@@ -4566,25 +5944,31 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t627 = t23 * t626;
         const gic_real t628 = t7 * t626;
         const gic_real t629 = t606 * t627 - t611 * t628;
-        const gic_real t630 = t116 + (m[193] * R(0.12319000000000002) + t117);
-        const gic_real t631 = t119 + (m[190] * R(0.12319000000000002) + t120);
-        const gic_real t632 = m[187] + t630;
-        const gic_real t633 = m[186] + t631;
-        const gic_real t634 = m[203] + (m[198] * t630 - m[199] * t631) + (y[15] * t632 - y[16] * t633);
-        const gic_real t635 = t122 + (m[196] * R(0.12319000000000002) + t123);
-        const gic_real t636 = m[188] + t635;
-        const gic_real t637 = m[202] + (m[200] * t631 - m[198] * t635) + (y[17] * t633 - y[15] * t636);
-        const gic_real t638 = m[199] * t635 - m[200] * t630 + (y[16] * t636 - y[17] * t632);
-        const gic_real t639 = y[13] + (t24 * t634 + (t12 * t637 + t541 * t638));
-        const gic_real t640 = y[0] + (t27 * t636 + (t15 * t632 + t544 * t633));
-        const gic_real t641 = y[1] + (t24 * t636 + (t12 * t632 + t541 * t633));
+        const gic_real t630 = t116 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) + t117);
+        const gic_real t631 = t119 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) + t120);
+        const gic_real t632 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t630;
+        const gic_real t633 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t631;
+        const gic_real t634 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t630 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t631) + (y[HMMWV14_STATE_OMEGA_X] * t632 - y[HMMWV14_STATE_OMEGA_Y] * t633);
+        const gic_real t635 = t122 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) + t123);
+        const gic_real t636 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t635;
+        const gic_real t637 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t631 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t635) + (y[HMMWV14_STATE_OMEGA_Z] * t633 - y[HMMWV14_STATE_OMEGA_X] * t636);
+        const gic_real t638 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t635 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t630 + (y[HMMWV14_STATE_OMEGA_Y] * t636 -
+            y[HMMWV14_STATE_OMEGA_Z] * t632);
+        const gic_real t639 = y[HMMWV14_STATE_V_Y] + (t24 * t634 + (t12 * t637 + t541 * t638));
+        const gic_real t640 = y[HMMWV14_STATE_R_X] + (t27 * t636 + (t15 * t632 + t544 * t633));
+        const gic_real t641 = y[HMMWV14_STATE_R_Y] + (t24 * t636 + (t12 * t632 + t541 * t633));
         gic_real road642[3];
         if (!hmmwv14_road_height(self, time, t640, t641, road642))
             return GIC_ERROR_ROAD;
-        const gic_real t643 = y[12] + (t27 * t634 + (t15 * t637 + t544 * t638));
-        const gic_real t644 = y[14] + (t23 * t634 + (t7 * t637 + t549 * t638));
+        const gic_real t643 = y[HMMWV14_STATE_V_X] + (t27 * t634 + (t15 * t637 + t544 * t638));
+        const gic_real t644 = y[HMMWV14_STATE_V_Z] + (t23 * t634 + (t7 * t637 + t549 * t638));
         const gic_real t645 = t639 * road642[2] + t643 * road642[1] - t644;
-        const gic_real t646 = y[2] + (t23 * t636 + (t7 * t632 + t549 * t633));
+        const gic_real t646 = y[HMMWV14_STATE_R_Z] + (t23 * t636 + (t7 * t632 + t549 * t633));
         const gic_real t647 = road642[0] + R(0.4699) - t646;
         const gic_real t648 = GIC_MIN(GIC_MAX(t647 * R(100.0), R(0.0)), R(1.0));
         const gic_real t649 = t645 * ((R(3.0) - (t648 + t648)) * (t648 * t648) * R(500.0));
@@ -4592,80 +5976,103 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t651 = t23 * t650;
         const gic_real t652 = t7 * t650;
         const gic_real t653 = t630 * t651 - t635 * t652;
-        const gic_real t654 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
-        const gic_real t655 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t654 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.2403881036540444);
+        const gic_real t655 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.2403881036540444);
         const gic_real t656 = R(-0.307086) + t655 - R(-0.4977892);
         const gic_real t657 = t654 - R(0.32313880000000006);
         const gic_real t658 = R(1.0) / GIC_SQRT(t657 * t657 + (R(4.633797183999867e-05) + t656 * t656));
-        const gic_real t659 = t658 * (m[72] * t655 * t657 - m[72] * t654 * t656);
-        const gic_real t660 = R(17490.8) * t659;
-        const gic_real t661 = t658 * t660;
+        const gic_real t659 = t658 * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t655 * t657 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t654 * t656);
+        const gic_real force_shock_f_r = R(17490.8) * t659;
+        const gic_real t661 = t658 * force_shock_f_r;
         const gic_real t662 = t656 * t661;
         const gic_real t663 = t657 * t661;
         const gic_real t664 = t654 * t662 - t655 * t663;
-        const gic_real t665 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
-        const gic_real t666 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t665 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.2403881036540444);
+        const gic_real t666 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.2403881036540444);
         const gic_real t667 = R(0.307086) + t666 - R(0.4977892);
         const gic_real t668 = t665 - R(0.32313880000000006);
         const gic_real t669 = R(1.0) / GIC_SQRT(t668 * t668 + (t667 * t667 + R(4.633797183999867e-05)));
-        const gic_real t670 = t669 * (m[42] * t666 * t668 - m[42] * t665 * t667);
-        const gic_real t671 = t670 * R(17490.8);
-        const gic_real t672 = t669 * t671;
+        const gic_real t670 = t669 * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t666 * t668 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t665 * t667);
+        const gic_real force_shock_f_l = t670 * R(17490.8);
+        const gic_real t672 = t669 * force_shock_f_l;
         const gic_real t673 = t667 * t672;
         const gic_real t674 = t668 * t672;
         const gic_real t675 = t665 * t673 - t666 * t674;
-        const gic_real t676 = R(0.4977892) * t674 - R(0.32313880000000006) * t673 + (R(-0.4977892) * t663 - R(0.32313880000000006) * t662);
-        const gic_real t677 = t676 + (R(0.4977892) * t604 - R(0.32313880000000006) * t603) + (R(-0.4977892) * t593 - R(0.32313880000000006) * t592);
+        const gic_real t676 = R(0.4977892) * t674 - R(0.32313880000000006) * t673 + (R(-0.4977892) * t663 -
+            R(0.32313880000000006) * t662);
+        const gic_real t677 = t676 + (R(0.4977892) * t604 - R(0.32313880000000006) * t603) + (R(-0.4977892) * t593 -
+            R(0.32313880000000006) * t592);
+        /* applied forces: moment and force on the base, and along each coordinate */
         const gic_real t678 = t664 + (t675 + (t677 - R(0.307086) * t674) - R(-0.307086) * t663);
-        const gic_real t679 = t653 + (t678 + (m[187] * t651 - m[188] * t652)) + (m[259] * t627 - m[260] * t628);
+        const gic_real t679 = t653 + (t678 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t651 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t652)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t627 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t628);
         const gic_real t680 = t605 + (t629 + t679 - R(0.307086) * t604) - R(-0.307086) * t593;
-        const gic_real t681 = t583 + (t594 + t680 + (m[325] * t581 - m[326] * t582));
-        const gic_real t682 = t492 + (t532 + (t524 * R(-2.6864953889999996) - R(1.3118720270000004) * t530)) - (t559 + (t681 + (m[385] * t557 - m[386] * t558)));
-        const gic_real t683 = GIC_FABS(t671);
-        const gic_real t684 = GIC_FABS(t660);
-        const gic_real t685 = GIC_FABS(t601);
-        const gic_real t686 = GIC_FABS(t590);
+        const gic_real t681 = t583 + (t594 + t680 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t581 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t582));
+        const gic_real residual_0 = t492 + (t532 + (t524 * R(-2.6864953889999996) - R(1.3118720270000004) * t530)) -
+            (t559 + (t681 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t557 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t558)));
+        const gic_real t683 = GIC_FABS(force_shock_f_l);
+        const gic_real t684 = GIC_FABS(force_shock_f_r);
+        const gic_real t685 = GIC_FABS(force_shock_r_l);
+        const gic_real t686 = GIC_FABS(force_shock_r_r);
         const gic_real t687 = t683 * R(2.613906) + R(2.613906) * t684 + R(2.613906) * t685 + R(2.613906) * t686;
         const gic_real t688 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t549);
-        const gic_real t689 = t549 * t8 + (t541 * rate[13] + t544 * rate[12]);
+        const gic_real t689 = t549 * t8 + (t541 * rate[HMMWV14_STATE_V_Y] + t544 * rate[HMMWV14_STATE_V_X]);
         const gic_real t690 = t688 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t689));
-        const gic_real t691 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
-        const gic_real t692 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t691 = GIC_FABS(y[HMMWV14_STATE_OMEGA_Z]) + GIC_FABS(y[HMMWV14_STATE_OMEGA_Y]) +
+            GIC_FABS(y[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t692 = GIC_FABS(rate[HMMWV14_STATE_OMEGA_Z]) + GIC_FABS(rate[HMMWV14_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[HMMWV14_STATE_OMEGA_X]);
         const gic_real t693 = t691 * t691 + t692;
         const gic_real t694 = t690 + t693 * R(0.2690000000000001);
         const gic_real t695 = t687 + (t694 * R(561.2738800000002) + t693 * R(7604.379999999999));
         const gic_real t696 = t683 + t684 + t685 + t686 + R(2086.52) * t694;
-        const gic_real t697 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t698 = GIC_FABS(rate[22]);
-        const gic_real t699 = t690 + t693 * t697 + t691 * GIC_FABS(m[16]) + t698;
+        const gic_real t697 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[HMMWV14_MOTION_RACK + HMMWV14_C_Y]));
+        const gic_real t698 = GIC_FABS(rate[HMMWV14_STATE_RACK_RATE]);
+        const gic_real t699 = t690 + t693 * t697 + t691 * GIC_FABS(m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y]) + t698;
         const gic_real t700 = R(9.072) * t699 + t693 * R(0.0005216895628628198);
-        const gic_real t701 = t695 + t696 * R(0.00019090646218458937) + (R(3.0) * t693 + t699 * R(0.0005216895628628198) + t697 * t700);
+        const gic_real t701 = t695 + t696 * R(0.00019090646218458937) + (R(3.0) * t693 + t699 *
+            R(0.0005216895628628198) + t697 * t700);
         const gic_real t702 = GIC_FABS(t46);
         const gic_real t703 = t702 + GIC_FABS(t45);
-        const gic_real t704 = t691 + GIC_FABS(m[42]);
+        const gic_real t704 = t691 + GIC_FABS(m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X]);
         const gic_real t705 = t692 + t704 * t704;
-        const gic_real t706 = t690 + t705 * (R(1.688965) + (t702 + GIC_FABS(t51))) + t691 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t707 = GIC_FABS(rate[18]);
-        const gic_real t708 = GIC_FABS(m[54]);
+        const gic_real t706 = t690 + t705 * (R(1.688965) + (t702 + GIC_FABS(t51))) + t691 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t707 = GIC_FABS(rate[HMMWV14_STATE_SPRING_F_L_RATE]);
+        const gic_real t708 = GIC_FABS(m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0]);
         const gic_real t709 = t707 * t708;
         const gic_real t710 = t706 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t709 * t703;
         const gic_real t711 = R(23.965) * t710;
-        const gic_real t712 = t703 * t711 + (t705 + GIC_FABS(m[48]) + t709) * R(1.7876);
+        const gic_real t712 = t703 * t711 + (t705 + GIC_FABS(m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X]) + t709) *
+            R(1.7876);
         const gic_real t713 = t683 * (R(0.09720579999999998) + (GIC_FABS(t665) + GIC_FABS(t666))) + t712;
         const gic_real t714 = t683 + t711;
         const gic_real t715 = t713 + t714 * R(2.731155680272593e-05);
         const gic_real t716 = t714 + t713 * R(0.00036614536740732094);
         const gic_real t717 = GIC_FABS(t76);
         const gic_real t718 = t717 + GIC_FABS(t75);
-        const gic_real t719 = t691 + GIC_FABS(m[72]);
+        const gic_real t719 = t691 + GIC_FABS(m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X]);
         const gic_real t720 = t692 + t719 * t719;
-        const gic_real t721 = t690 + t720 * (R(1.688965) + (t717 + GIC_FABS(t80))) + t691 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t722 = GIC_FABS(rate[19]);
-        const gic_real t723 = GIC_FABS(m[84]);
+        const gic_real t721 = t690 + t720 * (R(1.688965) + (t717 + GIC_FABS(t80))) + t691 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t722 = GIC_FABS(rate[HMMWV14_STATE_SPRING_F_R_RATE]);
+        const gic_real t723 = GIC_FABS(m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0]);
         const gic_real t724 = t722 * t723;
         const gic_real t725 = t721 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t724 * t718;
         const gic_real t726 = R(23.965) * t725;
-        const gic_real t727 = t718 * t726 + R(1.7876) * (t720 + GIC_FABS(m[78]) + t724);
+        const gic_real t727 = t718 * t726 + R(1.7876) * (t720 + GIC_FABS(m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X]) +
+            t724);
         const gic_real t728 = t684 * (R(0.09720579999999998) + (GIC_FABS(t654) + GIC_FABS(t655))) + t727;
         const gic_real t729 = t684 + t726;
         const gic_real t730 = t728 + R(2.731155680272593e-05) * t729;
@@ -4675,59 +6082,85 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t734 = GIC_FABS(t649) + GIC_FABS(t733);
         const gic_real t735 = t734 * (GIC_FABS(t635) + GIC_FABS(t630) + GIC_FABS(t631));
         const gic_real t736 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t737 = t691 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t737 = t691 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X]));
         const gic_real t738 = t692 + t737 * t737;
         const gic_real t739 = t738 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t740 = t691 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t741 = m[199] * t139 - m[200] * t125 + (m[205] * t124 - m[206] * t118);
+        const gic_real t741 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t139 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t125 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] *
+            t124 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] * t118);
         const gic_real t742 = t690 + t739 + t740 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t741));
-        const gic_real t743 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t743 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0]);
         const gic_real t744 = t698 * t743;
-        const gic_real t745 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t745 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6]);
         const gic_real t746 = t707 * t745;
-        const gic_real t747 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t747 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10]);
         const gic_real t748 = t742 + t744 * t736 + t736 * t746 + t707 * t747;
         const gic_real t749 = R(90.555) * t748;
-        const gic_real t750 = t738 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t750 = t738 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X]));
         const gic_real t751 = t735 + (t736 * t749 + (t750 + t744 + t746) * R(17.248790999999997));
         const gic_real t752 = t734 + t749;
         const gic_real t753 = t751 + t752 * R(4.364385583403788e-05);
         const gic_real t754 = t752 + t751 * R(0.00022912732637616755);
-        const gic_real t755 = t754 * (GIC_FABS(m[188]) + GIC_FABS(m[187]) + GIC_FABS(m[186]));
+        const gic_real t755 = t754 * (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y]) + GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X]));
         const gic_real t756 = R(283000.0) * (R(0.4699) + (GIC_FABS(t622) + GIC_FABS(road618[0])));
         const gic_real t757 = GIC_FABS(t625) + GIC_FABS(t756);
         const gic_real t758 = t757 * (GIC_FABS(t611) + GIC_FABS(t606) + GIC_FABS(t607));
         const gic_real t759 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t760 = t691 + (GIC_FABS(m[272]) + GIC_FABS(m[271]) + GIC_FABS(m[270]));
+        const gic_real t760 = t691 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X]));
         const gic_real t761 = t692 + t760 * t760;
         const gic_real t762 = t761 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t763 = t691 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t764 = m[271] * t197 - m[272] * t183 + (m[277] * t182 - m[278] * t176);
+        const gic_real t764 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t197 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t183 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] *
+            t182 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] * t176);
         const gic_real t765 = t690 + t762 + t763 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t764));
-        const gic_real t766 = GIC_FABS(m[284]) + GIC_FABS(m[283]) + GIC_FABS(m[282]);
+        const gic_real t766 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0]);
         const gic_real t767 = t698 * t766;
-        const gic_real t768 = GIC_FABS(m[290]) + GIC_FABS(m[289]) + GIC_FABS(m[288]);
+        const gic_real t768 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6]);
         const gic_real t769 = t722 * t768;
-        const gic_real t770 = GIC_FABS(m[293]) + GIC_FABS(m[292]);
+        const gic_real t770 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10]);
         const gic_real t771 = t765 + t767 * t759 + t759 * t769 + t722 * t770;
         const gic_real t772 = R(90.555) * t771;
-        const gic_real t773 = t761 + (GIC_FABS(m[278]) + GIC_FABS(m[277]) + GIC_FABS(m[276]));
+        const gic_real t773 = t761 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X]));
         const gic_real t774 = t758 + (t759 * t772 + R(17.248790999999997) * (t773 + t767 + t769));
         const gic_real t775 = t757 + t772;
         const gic_real t776 = t774 + R(4.364385583403788e-05) * t775;
         const gic_real t777 = t775 + R(0.00022912732637616755) * t774;
-        const gic_real t778 = t777 * (GIC_FABS(m[260]) + GIC_FABS(m[259]) + GIC_FABS(m[258]));
+        const gic_real t778 = t777 * (GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y]) + GIC_FABS(m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X]));
         const gic_real t779 = GIC_FABS(t216);
         const gic_real t780 = t779 + GIC_FABS(t215);
-        const gic_real t781 = t691 + GIC_FABS(m[102]);
+        const gic_real t781 = t691 + GIC_FABS(m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X]);
         const gic_real t782 = t692 + t781 * t781;
-        const gic_real t783 = t690 + t782 * (R(1.688965) + (t779 + GIC_FABS(t221))) + t691 * (GIC_FABS(t227) + GIC_FABS(-t217));
-        const gic_real t784 = GIC_FABS(rate[20]);
-        const gic_real t785 = GIC_FABS(m[114]);
+        const gic_real t783 = t690 + t782 * (R(1.688965) + (t779 + GIC_FABS(t221))) + t691 * (GIC_FABS(t227) +
+            GIC_FABS(-t217));
+        const gic_real t784 = GIC_FABS(rate[HMMWV14_STATE_SPRING_R_L_RATE]);
+        const gic_real t785 = GIC_FABS(m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0]);
         const gic_real t786 = t784 * t785;
         const gic_real t787 = t783 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t786 * t780;
         const gic_real t788 = R(23.965) * t787;
-        const gic_real t789 = t780 * t788 + R(1.7876) * (t782 + GIC_FABS(m[108]) + t786);
+        const gic_real t789 = t780 * t788 + R(1.7876) * (t782 + GIC_FABS(m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X]) +
+            t786);
         const gic_real t790 = t685 * (R(0.09720579999999998) + (GIC_FABS(t595) + GIC_FABS(t596))) + t789;
         const gic_real t791 = t685 + t788;
         const gic_real t792 = t790 + R(2.731155680272593e-05) * t791;
@@ -4735,15 +6168,17 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t794 = t732 + (t753 + t755) + (t776 + t778) + (t792 + R(1.996051) * t793);
         const gic_real t795 = GIC_FABS(t246);
         const gic_real t796 = t795 + GIC_FABS(t245);
-        const gic_real t797 = t691 + GIC_FABS(m[132]);
+        const gic_real t797 = t691 + GIC_FABS(m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X]);
         const gic_real t798 = t692 + t797 * t797;
-        const gic_real t799 = t690 + t798 * (R(1.688965) + (t795 + GIC_FABS(t250))) + t691 * (GIC_FABS(t255) + GIC_FABS(-t247));
-        const gic_real t800 = GIC_FABS(rate[21]);
-        const gic_real t801 = GIC_FABS(m[144]);
+        const gic_real t799 = t690 + t798 * (R(1.688965) + (t795 + GIC_FABS(t250))) + t691 * (GIC_FABS(t255) +
+            GIC_FABS(-t247));
+        const gic_real t800 = GIC_FABS(rate[HMMWV14_STATE_SPRING_R_R_RATE]);
+        const gic_real t801 = GIC_FABS(m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0]);
         const gic_real t802 = t800 * t801;
         const gic_real t803 = t799 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t802 * t796;
         const gic_real t804 = R(23.965) * t803;
-        const gic_real t805 = t796 * t804 + R(1.7876) * (t798 + GIC_FABS(m[138]) + t802);
+        const gic_real t805 = t796 * t804 + R(1.7876) * (t798 + GIC_FABS(m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X]) +
+            t802);
         const gic_real t806 = t686 * (R(0.09720579999999998) + (GIC_FABS(t584) + GIC_FABS(t585))) + t805;
         const gic_real t807 = t686 + t804;
         const gic_real t808 = t806 + R(2.731155680272593e-05) * t807;
@@ -4752,153 +6187,231 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t811 = GIC_FABS(t579) + GIC_FABS(t810);
         const gic_real t812 = t811 * (GIC_FABS(t565) + GIC_FABS(t560) + GIC_FABS(t561));
         const gic_real t813 = GIC_FABS(t288) + GIC_FABS(t284) + GIC_FABS(t286);
-        const gic_real t814 = t691 + (GIC_FABS(m[338]) + GIC_FABS(m[337]) + GIC_FABS(m[336]));
+        const gic_real t814 = t691 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X]));
         const gic_real t815 = t692 + t814 * t814;
         const gic_real t816 = t815 * (GIC_FABS(t295) + GIC_FABS(t297) + GIC_FABS(t294));
         const gic_real t817 = t691 * (GIC_FABS(t305) + GIC_FABS(t293) + GIC_FABS(t290));
-        const gic_real t818 = m[337] * t302 - m[338] * t289 + (m[343] * t288 - m[344] * t284);
+        const gic_real t818 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t302 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t289 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] *
+            t288 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] * t284);
         const gic_real t819 = t690 + t816 + t817 + (GIC_FABS(t292) + GIC_FABS(t304) + GIC_FABS(t818));
-        const gic_real t820 = GIC_FABS(m[350]) + GIC_FABS(m[349]) + GIC_FABS(m[348]);
+        const gic_real t820 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0]);
         const gic_real t821 = t784 * t820;
-        const gic_real t822 = GIC_FABS(m[353]) + GIC_FABS(m[352]);
+        const gic_real t822 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4]);
         const gic_real t823 = R(90.555) * (t819 + t821 * t813 + t784 * t822);
-        const gic_real t824 = t815 + (GIC_FABS(m[344]) + GIC_FABS(m[343]) + GIC_FABS(m[342]));
+        const gic_real t824 = t815 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X]));
         const gic_real t825 = t812 + (t813 * t823 + R(17.248790999999997) * (t824 + t821));
         const gic_real t826 = t811 + t823;
         const gic_real t827 = t825 + R(4.364385583403788e-05) * t826;
         const gic_real t828 = t826 + R(0.00022912732637616755) * t825;
-        const gic_real t829 = t828 * (GIC_FABS(m[326]) + GIC_FABS(m[325]) + GIC_FABS(m[324]));
+        const gic_real t829 = t828 * (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y]) + GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X]));
         const gic_real t830 = R(283000.0) * (R(0.4699) + (GIC_FABS(t552) + GIC_FABS(road547[0])));
         const gic_real t831 = GIC_FABS(t555) + GIC_FABS(t830);
         const gic_real t832 = t831 * (GIC_FABS(t538) + GIC_FABS(t533) + GIC_FABS(t534));
         const gic_real t833 = GIC_FABS(t338) + GIC_FABS(t334) + GIC_FABS(t336);
-        const gic_real t834 = t691 + (GIC_FABS(m[398]) + GIC_FABS(m[397]) + GIC_FABS(m[396]));
+        const gic_real t834 = t691 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X]));
         const gic_real t835 = t692 + t834 * t834;
         const gic_real t836 = t835 * (GIC_FABS(t345) + GIC_FABS(t347) + GIC_FABS(t344));
         const gic_real t837 = t691 * (GIC_FABS(t355) + GIC_FABS(t343) + GIC_FABS(t340));
-        const gic_real t838 = m[397] * t352 - m[398] * t339 + (m[403] * t338 - m[404] * t334);
+        const gic_real t838 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t352 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t339 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] *
+            t338 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] * t334);
         const gic_real t839 = t690 + t836 + t837 + (GIC_FABS(t342) + GIC_FABS(t354) + GIC_FABS(t838));
-        const gic_real t840 = GIC_FABS(m[410]) + GIC_FABS(m[409]) + GIC_FABS(m[408]);
+        const gic_real t840 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0]);
         const gic_real t841 = t800 * t840;
-        const gic_real t842 = GIC_FABS(m[413]) + GIC_FABS(m[412]);
+        const gic_real t842 = GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4]);
         const gic_real t843 = R(90.555) * (t839 + t841 * t833 + t800 * t842);
-        const gic_real t844 = t835 + (GIC_FABS(m[404]) + GIC_FABS(m[403]) + GIC_FABS(m[402]));
+        const gic_real t844 = t835 + (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X]));
         const gic_real t845 = t832 + (t833 * t843 + R(17.248790999999997) * (t844 + t841));
         const gic_real t846 = t831 + t843;
         const gic_real t847 = t845 + R(4.364385583403788e-05) * t846;
         const gic_real t848 = t846 + R(0.00022912732637616755) * t845;
-        const gic_real t849 = t848 * (GIC_FABS(m[386]) + GIC_FABS(m[385]) + GIC_FABS(m[384]));
+        const gic_real t849 = t848 * (GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y]) + GIC_FABS(m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X]));
         const gic_real t850 = t794 + (t808 + R(1.996051) * t809) + (t827 + t829) + (t847 + t849);
         const gic_real t851 = GIC_FABS(t385) + GIC_FABS(t383) + GIC_FABS(t384);
-        const gic_real t852 = t691 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t852 = t691 + (GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X]));
         const gic_real t853 = t692 + t852 * t852;
         const gic_real t854 = t853 * (GIC_FABS(t390) + GIC_FABS(t392) + GIC_FABS(t389));
         const gic_real t855 = t691 * (GIC_FABS(t398) + GIC_FABS(t386) + GIC_FABS(t387));
-        const gic_real t856 = m[163] * t398 - m[164] * t386 + (m[169] * t385 - m[170] * t383);
+        const gic_real t856 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t398 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t386 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t385 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t383);
         const gic_real t857 = t690 + t854 + t855 + (GIC_FABS(t388) + GIC_FABS(t399) + GIC_FABS(t856));
-        const gic_real t858 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t858 = GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1]) + GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0]);
         const gic_real t859 = t698 * t858;
-        const gic_real t860 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t860 = GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7]) + GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6]);
         const gic_real t861 = t707 * t860;
         const gic_real t862 = t857 + t859 * t851 + t851 * t861;
         const gic_real t863 = R(5.813) * t862;
-        const gic_real t864 = t853 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t864 = t853 + (GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X]));
         const gic_real t865 = t851 * t863 + (t864 + t859 + t861) * R(0.12552);
         const gic_real t866 = t865 + t862 * R(8.541942167914741e-05);
         const gic_real t867 = t863 + t865 * R(0.0006805243919626149);
         const gic_real t868 = GIC_FABS(t431) + GIC_FABS(t429) + GIC_FABS(t430);
-        const gic_real t869 = t691 + (GIC_FABS(m[236]) + GIC_FABS(m[235]) + GIC_FABS(m[234]));
+        const gic_real t869 = t691 + (GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X]));
         const gic_real t870 = t692 + t869 * t869;
         const gic_real t871 = t870 * (GIC_FABS(t436) + GIC_FABS(t438) + GIC_FABS(t435));
         const gic_real t872 = t691 * (GIC_FABS(t444) + GIC_FABS(t432) + GIC_FABS(t433));
-        const gic_real t873 = m[235] * t444 - m[236] * t432 + (m[241] * t431 - m[242] * t429);
+        const gic_real t873 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t444 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t432 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t431 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t429);
         const gic_real t874 = t690 + t871 + t872 + (GIC_FABS(t434) + GIC_FABS(t445) + GIC_FABS(t873));
-        const gic_real t875 = GIC_FABS(m[248]) + GIC_FABS(m[247]) + GIC_FABS(m[246]);
+        const gic_real t875 = GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1]) + GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0]);
         const gic_real t876 = t698 * t875;
-        const gic_real t877 = GIC_FABS(m[254]) + GIC_FABS(m[253]) + GIC_FABS(m[252]);
+        const gic_real t877 = GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7]) + GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6]);
         const gic_real t878 = t722 * t877;
         const gic_real t879 = t874 + t876 * t868 + t868 * t878;
         const gic_real t880 = R(5.813) * t879;
-        const gic_real t881 = t870 + (GIC_FABS(m[242]) + GIC_FABS(m[241]) + GIC_FABS(m[240]));
+        const gic_real t881 = t870 + (GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X]));
         const gic_real t882 = t868 * t880 + R(0.12552) * (t881 + t876 + t878);
         const gic_real t883 = t882 + R(8.541942167914741e-05) * t879;
         const gic_real t884 = t880 + R(0.0006805243919626149) * t882;
         const gic_real t885 = t850 + (t866 + t867 * R(2.21284)) + (t883 + R(2.21284) * t884);
         const gic_real t886 = GIC_FABS(t473) + GIC_FABS(t471) + GIC_FABS(t472);
-        const gic_real t887 = t691 + (GIC_FABS(m[308]) + GIC_FABS(m[307]) + GIC_FABS(m[306]));
+        const gic_real t887 = t691 + (GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X]));
         const gic_real t888 = t692 + t887 * t887;
         const gic_real t889 = t888 * (GIC_FABS(t478) + GIC_FABS(t480) + GIC_FABS(t477));
         const gic_real t890 = t691 * (GIC_FABS(t485) + GIC_FABS(t474) + GIC_FABS(t475));
-        const gic_real t891 = m[307] * t485 - m[308] * t474 + (m[313] * t473 - m[314] * t471);
+        const gic_real t891 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t485 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t474 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t473 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t471);
         const gic_real t892 = t690 + t889 + t890 + (GIC_FABS(t476) + GIC_FABS(t486) + GIC_FABS(t891));
-        const gic_real t893 = GIC_FABS(m[320]) + GIC_FABS(m[319]) + GIC_FABS(m[318]);
+        const gic_real t893 = GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1]) + GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0]);
         const gic_real t894 = t784 * t893;
         const gic_real t895 = t892 + t894 * t886;
         const gic_real t896 = R(5.813) * t895;
-        const gic_real t897 = t888 + (GIC_FABS(m[314]) + GIC_FABS(m[313]) + GIC_FABS(m[312]));
+        const gic_real t897 = t888 + (GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X]));
         const gic_real t898 = t886 * t896 + R(0.12552) * (t897 + t894);
         const gic_real t899 = t898 + R(8.541942167914741e-05) * t895;
         const gic_real t900 = t896 + R(0.0006805243919626149) * t898;
         const gic_real t901 = GIC_FABS(t514) + GIC_FABS(t512) + GIC_FABS(t513);
-        const gic_real t902 = t691 + (GIC_FABS(m[368]) + GIC_FABS(m[367]) + GIC_FABS(m[366]));
+        const gic_real t902 = t691 + (GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X]));
         const gic_real t903 = t692 + t902 * t902;
         const gic_real t904 = t903 * (GIC_FABS(t519) + GIC_FABS(t521) + GIC_FABS(t518));
         const gic_real t905 = t691 * (GIC_FABS(t526) + GIC_FABS(t515) + GIC_FABS(t516));
-        const gic_real t906 = m[367] * t526 - m[368] * t515 + (m[373] * t514 - m[374] * t512);
+        const gic_real t906 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t526 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t515 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t514 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t512);
         const gic_real t907 = t690 + t904 + t905 + (GIC_FABS(t517) + GIC_FABS(t527) + GIC_FABS(t906));
-        const gic_real t908 = GIC_FABS(m[380]) + GIC_FABS(m[379]) + GIC_FABS(m[378]);
+        const gic_real t908 = GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1]) + GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0]);
         const gic_real t909 = t800 * t908;
         const gic_real t910 = t907 + t909 * t901;
         const gic_real t911 = R(5.813) * t910;
-        const gic_real t912 = t903 + (GIC_FABS(m[374]) + GIC_FABS(m[373]) + GIC_FABS(m[372]));
+        const gic_real t912 = t903 + (GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X]));
         const gic_real t913 = t901 * t911 + R(0.12552) * (t912 + t909);
         const gic_real t914 = t913 + R(8.541942167914741e-05) * t910;
         const gic_real t915 = t911 + R(0.0006805243919626149) * t913;
         const gic_real t916 = t885 + (t899 + t900 * R(2.163691)) + (t914 + R(2.163691) * t915);
-        const gic_real t917 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t918 = t689 + (rate[16] * R(0.21300000000000008) - (y[17] * t917 + y[16] * t17));
-        const gic_real t919 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t917 = y[HMMWV14_STATE_OMEGA_Z] * R(0.056) - y[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t918 = t689 + (rate[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008) - (y[HMMWV14_STATE_OMEGA_Z] *
+            t917 + y[HMMWV14_STATE_OMEGA_Y] * t17));
+        const gic_real t919 = y[HMMWV14_STATE_OMEGA_Y] * t34 - y[HMMWV14_STATE_OMEGA_Z] * t29 +
+            (R(0.05422899999999997) * rate[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] *
+            rate[HMMWV14_STATE_OMEGA_Z]);
         const gic_real t920 = t689 + t919;
         const gic_real t921 = t920 * R(9.072);
-        const gic_real t922 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t922 = y[HMMWV14_STATE_OMEGA_Y] * t59 - y[HMMWV14_STATE_OMEGA_Z] * t50 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t46 - rate[HMMWV14_STATE_OMEGA_Z] * t51);
         const gic_real t923 = t689 + t922;
         const gic_real t924 = t923 * R(23.965);
-        const gic_real t925 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t925 = y[HMMWV14_STATE_OMEGA_Y] * t86 - y[HMMWV14_STATE_OMEGA_Z] * t79 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t76 - rate[HMMWV14_STATE_OMEGA_Z] * t80);
         const gic_real t926 = t689 + t925;
         const gic_real t927 = R(23.965) * t926;
-        const gic_real t928 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
-        const gic_real t929 = t741 + (t689 + t928) + rate[22] * (m[211] * t124 - m[212] * t118);
-        const gic_real t930 = (t929 + rate[18] * (m[217] * t124 - m[218] * t118)) * R(90.555);
-        const gic_real t931 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
-        const gic_real t932 = t764 + (t689 + t931) + rate[22] * (m[283] * t182 - m[284] * t176);
-        const gic_real t933 = R(90.555) * (t932 + rate[19] * (m[289] * t182 - m[290] * t176));
+        const gic_real t928 = y[HMMWV14_STATE_OMEGA_Y] * t143 - y[HMMWV14_STATE_OMEGA_Z] * t132 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t131 - rate[HMMWV14_STATE_OMEGA_Z] * t133);
+        const gic_real t929 = t741 + (t689 + t928) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t124 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t118);
+        const gic_real t930 = (t929 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t124 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t118)) *
+            R(90.555);
+        const gic_real t931 = y[HMMWV14_STATE_OMEGA_Y] * t201 - y[HMMWV14_STATE_OMEGA_Z] * t190 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t189 - rate[HMMWV14_STATE_OMEGA_Z] * t191);
+        const gic_real t932 = t764 + (t689 + t931) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t182 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t176);
+        const gic_real t933 = R(90.555) * (t932 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t182 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t176));
         const gic_real t934 = t918 * R(2086.52) + t921 + t924 + t927 + t930 + t933;
-        const gic_real t935 = y[16] * t229 - y[17] * t220 + (rate[16] * t216 - rate[17] * t221);
+        const gic_real t935 = y[HMMWV14_STATE_OMEGA_Y] * t229 - y[HMMWV14_STATE_OMEGA_Z] * t220 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t216 - rate[HMMWV14_STATE_OMEGA_Z] * t221);
         const gic_real t936 = t689 + t935;
         const gic_real t937 = R(23.965) * t936;
-        const gic_real t938 = y[16] * t256 - y[17] * t249 + (rate[16] * t246 - rate[17] * t250);
+        const gic_real t938 = y[HMMWV14_STATE_OMEGA_Y] * t256 - y[HMMWV14_STATE_OMEGA_Z] * t249 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t246 - rate[HMMWV14_STATE_OMEGA_Z] * t250);
         const gic_real t939 = t689 + t938;
         const gic_real t940 = R(23.965) * t939;
-        const gic_real t941 = y[16] * t306 - y[17] * t296 + (rate[16] * t295 - rate[17] * t297);
-        const gic_real t942 = t818 + (t689 + t941) + rate[20] * (m[349] * t288 - m[350] * t284);
+        const gic_real t941 = y[HMMWV14_STATE_OMEGA_Y] * t306 - y[HMMWV14_STATE_OMEGA_Z] * t296 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t295 - rate[HMMWV14_STATE_OMEGA_Z] * t297);
+        const gic_real t942 = t818 + (t689 + t941) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t288 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t284);
         const gic_real t943 = R(90.555) * t942;
-        const gic_real t944 = y[16] * t356 - y[17] * t346 + (rate[16] * t345 - rate[17] * t347);
-        const gic_real t945 = t838 + (t689 + t944) + rate[21] * (m[409] * t338 - m[410] * t334);
+        const gic_real t944 = y[HMMWV14_STATE_OMEGA_Y] * t356 - y[HMMWV14_STATE_OMEGA_Z] * t346 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t345 - rate[HMMWV14_STATE_OMEGA_Z] * t347);
+        const gic_real t945 = t838 + (t689 + t944) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t338 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t334);
         const gic_real t946 = R(90.555) * t945;
-        const gic_real t947 = y[16] * t400 - y[17] * t391 + (rate[16] * t390 - rate[17] * t392);
-        const gic_real t948 = t856 + (t689 + t947) + rate[22] * (m[175] * t385 - m[176] * t383);
-        const gic_real t949 = t948 + rate[18] * (m[181] * t385 - m[182] * t383);
+        const gic_real t947 = y[HMMWV14_STATE_OMEGA_Y] * t400 - y[HMMWV14_STATE_OMEGA_Z] * t391 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t390 - rate[HMMWV14_STATE_OMEGA_Z] * t392);
+        const gic_real t948 = t856 + (t689 + t947) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t385 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t383);
+        const gic_real t949 = t948 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] *
+            t385 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * t383);
         const gic_real t950 = t949 * R(5.813);
-        const gic_real t951 = y[16] * t446 - y[17] * t437 + (rate[16] * t436 - rate[17] * t438);
-        const gic_real t952 = t873 + (t689 + t951) + rate[22] * (m[247] * t431 - m[248] * t429);
-        const gic_real t953 = t952 + rate[19] * (m[253] * t431 - m[254] * t429);
+        const gic_real t951 = y[HMMWV14_STATE_OMEGA_Y] * t446 - y[HMMWV14_STATE_OMEGA_Z] * t437 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t436 - rate[HMMWV14_STATE_OMEGA_Z] * t438);
+        const gic_real t952 = t873 + (t689 + t951) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t431 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t429);
+        const gic_real t953 = t952 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] *
+            t431 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * t429);
         const gic_real t954 = R(5.813) * t953;
         const gic_real t955 = t934 + t937 + t940 + t943 + t946 + t950 + t954;
-        const gic_real t956 = y[16] * t487 - y[17] * t479 + (rate[16] * t478 - rate[17] * t480);
-        const gic_real t957 = t891 + (t689 + t956) + rate[20] * (m[319] * t473 - m[320] * t471);
+        const gic_real t956 = y[HMMWV14_STATE_OMEGA_Y] * t487 - y[HMMWV14_STATE_OMEGA_Z] * t479 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t478 - rate[HMMWV14_STATE_OMEGA_Z] * t480);
+        const gic_real t957 = t891 + (t689 + t956) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t473 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t471);
         const gic_real t958 = R(5.813) * t957;
-        const gic_real t959 = y[16] * t528 - y[17] * t520 + (rate[16] * t519 - rate[17] * t521);
-        const gic_real t960 = t906 + (t689 + t959) + rate[21] * (m[379] * t514 - m[380] * t512);
+        const gic_real t959 = y[HMMWV14_STATE_OMEGA_Y] * t528 - y[HMMWV14_STATE_OMEGA_Z] * t520 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t519 - rate[HMMWV14_STATE_OMEGA_Z] * t521);
+        const gic_real t960 = t906 + (t689 + t959) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t514 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t512);
         const gic_real t961 = R(5.813) * t960;
         const gic_real t962 = t549 * t556;
         const gic_real t963 = t549 * t580;
@@ -4909,60 +6422,77 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t968 = R(0.006807199999999902) * t602;
         const gic_real t969 = R(0.006807199999999902) * t591;
         const gic_real t970 = t965 + (t966 + t967 + t968 + t969 - t966 - t967);
-        const gic_real t971 = t955 + t958 + t961 - (t962 + (t963 + (t964 + t970 - t968 - t969)));
+        const gic_real residual_3 = t955 + t958 + t961 - (t962 + (t963 + (t964 + t970 - t968 - t969)));
         const gic_real t972 = t696 + t695 * R(5.2381673650894547e-05) + t700 + t716 + t731 + t754;
         const gic_real t973 = t972 + t777 + t793 + t809 + t828 + t848 + t867;
         const gic_real t974 = t973 + t884 + t900 + t915;
-        const gic_real t975 = y[15] * R(1078.52);
-        const gic_real t976 = t28 + (y[15] * t917 - y[16] * t18 - rate[16] * R(0.056));
-        const gic_real t977 = y[17] * t975 - y[15] * t1 + rate[16] * R(2955.66) + (t918 * R(444.4287600000002) - t976 * R(116.84512));
-        const gic_real t978 = m[42] + y[15];
+        const gic_real t975 = y[HMMWV14_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t976 = t28 + (y[HMMWV14_STATE_OMEGA_X] * t917 - y[HMMWV14_STATE_OMEGA_Y] * t18 -
+            rate[HMMWV14_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t977 = y[HMMWV14_STATE_OMEGA_Z] * t975 - y[HMMWV14_STATE_OMEGA_X] * t1 +
+            rate[HMMWV14_STATE_OMEGA_Y] * R(2955.66) + (t918 * R(444.4287600000002) - t976 * R(116.84512));
+        const gic_real t978 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t979 = R(0.4469) * t978;
-        const gic_real t980 = rate[17] - m[42] * y[16];
-        const gic_real t981 = rate[16] + m[42] * y[17];
-        const gic_real t982 = y[17] * t979 - t978 * t41 + (t40 * t980 + t42 * t981);
-        const gic_real t983 = t977 + (rate[16] + (t920 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t982 + t46 * t924 - t55 * R(40.476046225));
-        const gic_real t984 = m[72] + y[15];
+        const gic_real t980 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t981 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t982 = y[HMMWV14_STATE_OMEGA_Z] * t979 - t978 * t41 + (t40 * t980 + t42 * t981);
+        const gic_real t983 = t977 + (rate[HMMWV14_STATE_OMEGA_Y] + (t920 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t982 + t46 * t924 - t55 * R(40.476046225));
+        const gic_real t984 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t985 = R(0.4469) * t984;
-        const gic_real t986 = rate[17] - m[72] * y[16];
-        const gic_real t987 = rate[16] + m[72] * y[17];
-        const gic_real t988 = y[17] * t985 - t984 * t71 + (t70 * t986 + t72 * t987);
+        const gic_real t986 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t987 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t988 = y[HMMWV14_STATE_OMEGA_Z] * t985 - t984 * t71 + (t70 * t986 + t72 * t987);
         const gic_real t989 = t102 * t94 + (t106 * t92 + t112 * t103);
         const gic_real t990 = t94 * t989 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t991 = t990 + (t124 * t930 - t121 * t138);
-        const gic_real t992 = t983 + (t988 + t76 * t927 - R(40.476046225) * t83) + (t991 + (m[188] * t930 - m[186] * t138));
+        const gic_real t992 = t983 + (t988 + t76 * t927 - R(40.476046225) * t83) + (t991 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t930 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t138));
         const gic_real t993 = t160 * t152 + (t164 * t150 + t170 * t161);
         const gic_real t994 = t152 * t993 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t995 = t994 + (t182 * t933 - t179 * t196);
-        const gic_real t996 = m[102] + y[15];
+        const gic_real t996 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t997 = R(0.4469) * t996;
-        const gic_real t998 = rate[17] - m[102] * y[16];
-        const gic_real t999 = rate[16] + m[102] * y[17];
-        const gic_real t1000 = y[17] * t997 - t996 * t211 + (t210 * t998 + t212 * t999);
-        const gic_real t1001 = t992 + (t995 + (m[260] * t933 - m[258] * t196)) + (t1000 + t216 * t937 - t225 * R(-40.476046225));
-        const gic_real t1002 = m[132] + y[15];
+        const gic_real t998 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t999 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t1000 = y[HMMWV14_STATE_OMEGA_Z] * t997 - t996 * t211 + (t210 * t998 + t212 * t999);
+        const gic_real t1001 = t992 + (t995 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t933 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t196)) + (t1000 + t216 * t937 - t225 * R(-40.476046225));
+        const gic_real t1002 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t1003 = R(0.4469) * t1002;
-        const gic_real t1004 = rate[17] - m[132] * y[16];
-        const gic_real t1005 = rate[16] + m[132] * y[17];
-        const gic_real t1006 = y[17] * t1003 - t1002 * t241 + (t240 * t1004 + t242 * t1005);
+        const gic_real t1004 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t1005 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t1006 = y[HMMWV14_STATE_OMEGA_Z] * t1003 - t1002 * t241 + (t240 * t1004 + t242 * t1005);
         const gic_real t1007 = t272 * t264 + (t276 * t262 + t280 * t273);
         const gic_real t1008 = t264 * t1007 - t273 * t274 + (t268 * t278 + (t275 * t279 + t276 * t281));
         const gic_real t1009 = t1008 + (t288 * t943 - t286 * t301);
-        const gic_real t1010 = t1001 + (t1006 + t246 * t940 - R(-40.476046225) * t253) + (t1009 + (m[326] * t943 - m[324] * t301));
+        const gic_real t1010 = t1001 + (t1006 + t246 * t940 - R(-40.476046225) * t253) + (t1009 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t943 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t301));
         const gic_real t1011 = t322 * t314 + (t326 * t312 + t330 * t323);
         const gic_real t1012 = t314 * t1011 - t323 * t324 + (t318 * t328 + (t325 * t329 + t326 * t331));
         const gic_real t1013 = t1012 + (t338 * t946 - t336 * t351);
         const gic_real t1014 = t369 * t363 + (t373 * t361 + t379 * t370);
         const gic_real t1015 = t363 * t1014 - t370 * t371 + (t366 * t376 + (t372 * t378 + t373 * t381));
         const gic_real t1016 = t1015 + (t385 * t950 - t384 * t397);
-        const gic_real t1017 = t1010 + (t1013 + (m[386] * t946 - m[384] * t351)) + (t1016 + (t949 * R(1.2793889830000003) - t396 * R(8.8991263504)));
+        const gic_real t1017 = t1010 + (t1013 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t946 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t351)) + (t1016 + (t949 * R(1.2793889830000003) - t396 *
+            R(8.8991263504)));
         const gic_real t1018 = t415 * t409 + (t419 * t407 + t425 * t416);
         const gic_real t1019 = t409 * t1018 - t416 * t417 + (t412 * t422 + (t418 * t424 + t419 * t427));
         const gic_real t1020 = t1019 + (t431 * t954 - t430 * t443);
         const gic_real t1021 = t460 * t454 + (t464 * t452 + t468 * t461);
         const gic_real t1022 = t454 * t1021 - t461 * t462 + (t457 * t466 + (t463 * t467 + t464 * t469));
         const gic_real t1023 = t1022 + (t473 * t958 - t472 * t484);
-        const gic_real t1024 = t1017 + (t1020 + (R(1.2793889830000003) * t953 - R(8.8991263504) * t442)) + (t1023 + (t957 * R(1.3118720270000004) - t483 * R(-8.579168367)));
+        const gic_real t1024 = t1017 + (t1020 + (R(1.2793889830000003) * t953 - R(8.8991263504) * t442)) + (t1023 +
+            (t957 * R(1.3118720270000004) - t483 * R(-8.579168367)));
         const gic_real t1025 = t501 * t495 + (t505 * t493 + t509 * t502);
         const gic_real t1026 = t495 * t1025 - t502 * t503 + (t498 * t507 + (t504 * t508 + t505 * t510));
         const gic_real t1027 = t1026 + (t514 * t961 - t513 * t525);
@@ -4970,130 +6500,196 @@ static GIC_COLD GIC_APART int hmmwv14_balance(const hmmwv14 *self, gic_real time
         const gic_real t1029 = t565 * t963 - t561 * t581;
         const gic_real t1030 = t611 * t964 - t607 * t627;
         const gic_real t1031 = t635 * t965 - t631 * t651;
-        const gic_real t1032 = t672 * R(-0.002199670439359969) - R(1.792978) * t674 + (R(-0.002199670439359969) * t661 - R(1.792978) * t663);
-        const gic_real t1033 = t1032 + (t602 * R(0.002199670439359969) - R(-1.792978) * t604) + (R(0.002199670439359969) * t591 - R(-1.792978) * t593);
+        const gic_real t1032 = t672 * R(-0.002199670439359969) - R(1.792978) * t674 + (R(-0.002199670439359969) * t661 -
+            R(1.792978) * t663);
+        const gic_real t1033 = t1032 + (t602 * R(0.002199670439359969) - R(-1.792978) * t604) +
+            (R(0.002199670439359969) * t591 - R(-1.792978) * t593);
         const gic_real t1034 = R(0.09720579999999998) * t674 - t665 * t966 + (t1033 + R(1.688965) * t674);
         const gic_real t1035 = R(0.09720579999999998) * t663 - t654 * t967 + (t1034 + R(1.688965) * t663);
-        const gic_real t1036 = t1031 + (t1035 + (m[188] * t965 - m[186] * t651)) + (m[260] * t964 - m[258] * t627);
+        const gic_real t1036 = t1031 + (t1035 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t965 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t651)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t964 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t627);
         const gic_real t1037 = R(-0.09720579999999998) * t604 - t595 * t968 + (t1030 + t1036 + R(-1.688965) * t604);
         const gic_real t1038 = R(-0.09720579999999998) * t593 - t584 * t969 + (t1037 + R(-1.688965) * t593);
-        const gic_real t1039 = t1029 + (t1038 + (m[326] * t963 - m[324] * t581)) + (m[386] * t962 - m[384] * t557);
-        const gic_real t1040 = t1024 + (t1027 + (R(1.3118720270000004) * t960 - R(-8.579168367) * t524)) - (t1028 + t1039);
+        const gic_real t1039 = t1029 + (t1038 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t963 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t581)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t962 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t557);
+        const gic_real residual_1 = t1024 + (t1027 + (R(1.3118720270000004) * t960 - R(-8.579168367) * t524)) - (t1028 +
+            t1039);
         const gic_real t1041 = t36 * R(9.072);
         const gic_real t1042 = t20 * R(2086.52) + t1041 + t64 + t90 + t147 + t205;
         const gic_real t1043 = t1042 + t234 + t260 + t309 + t359 + t404 + t450;
         const gic_real t1044 = t652 + (t673 + t662 + t603 + t592 - t673 - t662);
-        const gic_real t1045 = t1043 + t490 + t531 - (t558 + (t582 + (t628 + t1044 - t603 - t592)));
-        const gic_real t1046 = y[15] * t2 - y[16] * t975 + rate[17] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t1047 = t978 * t43 - y[16] * t979 + (t37 * t980 + t40 * t981);
+        const gic_real residual_4 = t1043 + t490 + t531 - (t558 + (t582 + (t628 + t1044 - t603 - t592)));
+        const gic_real t1046 = y[HMMWV14_STATE_OMEGA_X] * t2 - y[HMMWV14_STATE_OMEGA_Y] * t975 +
+            rate[HMMWV14_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t1047 = t978 * t43 - y[HMMWV14_STATE_OMEGA_Y] * t979 + (t37 * t980 + t40 * t981);
         const gic_real t1048 = t1047 - t45 * t924 + (t63 * R(40.476046225) - t923 * R(7.359315990000001));
-        const gic_real t1049 = t1046 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t921)) + t1048;
-        const gic_real t1050 = t984 * t73 - y[16] * t985 + (t67 * t986 + t70 * t987);
+        const gic_real t1049 = t1046 + (rate[HMMWV14_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t921)) + t1048;
+        const gic_real t1050 = t984 * t73 - y[HMMWV14_STATE_OMEGA_Y] * t985 + (t67 * t986 + t70 * t987);
         const gic_real t1051 = t1050 - t75 * t927 + (R(40.476046225) * t89 - t926 * R(-7.359315990000001));
         const gic_real t1052 = t103 * t107 - t92 * t989 + (t93 * t109 + (t98 * t111 + t102 * t114));
         const gic_real t1053 = t1052 + (t121 * t147 - t118 * t930);
-        const gic_real t1054 = t1049 + t1051 + (t1053 + (m[186] * t147 - m[187] * t930));
+        const gic_real t1054 = t1049 + t1051 + (t1053 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t147 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t930));
         const gic_real t1055 = t161 * t165 - t150 * t993 + (t151 * t167 + (t156 * t169 + t160 * t172));
         const gic_real t1056 = t1055 + (t179 * t205 - t176 * t933);
-        const gic_real t1057 = t996 * t213 - y[16] * t997 + (t207 * t998 + t210 * t999);
+        const gic_real t1057 = t996 * t213 - y[HMMWV14_STATE_OMEGA_Y] * t997 + (t207 * t998 + t210 * t999);
         const gic_real t1058 = t1057 - t215 * t937 + (t233 * R(-40.476046225) - R(7.359315990000001) * t936);
-        const gic_real t1059 = t1054 + (t1056 + (m[258] * t205 - m[259] * t933)) + t1058;
-        const gic_real t1060 = t1002 * t243 - y[16] * t1003 + (t237 * t1004 + t240 * t1005);
+        const gic_real t1059 = t1054 + (t1056 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t205 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t933)) + t1058;
+        const gic_real t1060 = t1002 * t243 - y[HMMWV14_STATE_OMEGA_Y] * t1003 + (t237 * t1004 + t240 * t1005);
         const gic_real t1061 = t1060 - t245 * t940 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t939);
         const gic_real t1062 = t273 * t277 - t262 * t1007 + (t263 * t278 + (t268 * t279 + t272 * t281));
         const gic_real t1063 = t1062 + (t286 * t309 - t284 * t943);
-        const gic_real t1064 = t1059 + t1061 + (t1063 + (m[324] * t309 - m[325] * t943));
+        const gic_real t1064 = t1059 + t1061 + (t1063 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t309 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t943));
         const gic_real t1065 = t323 * t327 - t312 * t1011 + (t313 * t328 + (t318 * t329 + t322 * t331));
         const gic_real t1066 = t1065 + (t336 * t359 - t334 * t946);
         const gic_real t1067 = t370 * t374 - t361 * t1014 + (t362 * t376 + (t366 * t378 + t369 * t381));
         const gic_real t1068 = t1067 + (t384 * t404 - t383 * t950);
-        const gic_real t1069 = t1064 + (t1066 + (m[384] * t359 - m[385] * t946)) + (t1068 + (t403 * R(8.8991263504) - t949 * R(2.6847235865999997)));
+        const gic_real t1069 = t1064 + (t1066 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t359 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t946)) + (t1068 + (t403 * R(8.8991263504) - t949 *
+            R(2.6847235865999997)));
         const gic_real t1070 = t416 * t420 - t407 * t1018 + (t408 * t422 + (t412 * t424 + t415 * t427));
         const gic_real t1071 = t1070 + (t430 * t450 - t429 * t954);
         const gic_real t1072 = t461 * t465 - t452 * t1021 + (t453 * t466 + (t457 * t467 + t460 * t469));
         const gic_real t1073 = t1072 + (t472 * t490 - t471 * t958);
-        const gic_real t1074 = t1069 + (t1071 + (R(8.8991263504) * t449 - t953 * R(-2.6847235865999997))) + (t1073 + (t489 * R(-8.579168367) - t957 * R(2.6864953889999996)));
+        const gic_real t1074 = t1069 + (t1071 + (R(8.8991263504) * t449 - t953 * R(-2.6847235865999997))) + (t1073 +
+            (t489 * R(-8.579168367) - t957 * R(2.6864953889999996)));
         const gic_real t1075 = t502 * t506 - t493 * t1025 + (t494 * t507 + (t498 * t508 + t501 * t510));
         const gic_real t1076 = t1075 + (t513 * t531 - t512 * t961);
         const gic_real t1077 = t534 * t558 - t533 * t962;
         const gic_real t1078 = t561 * t582 - t560 * t963;
         const gic_real t1079 = t607 * t628 - t606 * t964;
         const gic_real t1080 = t631 * t652 - t630 * t965;
-        const gic_real t1081 = R(1.792978) * t673 - t672 * R(-0.003388550642239951) + (R(1.792978) * t662 - t661 * R(0.003388550642239951));
-        const gic_real t1082 = t1081 + (R(-1.792978) * t603 - R(0.003388550642239951) * t602) + (R(-1.792978) * t592 - R(-0.003388550642239951) * t591);
-        const gic_real t1083 = t666 * t966 - R(0.09720579999999998) * t673 + (t1082 + (t672 * R(-0.00209039581919997) - R(1.688965) * t673));
-        const gic_real t1084 = t655 * t967 - R(0.09720579999999998) * t662 + (t1083 + (t661 * R(0.00209039581919997) - R(1.688965) * t662));
-        const gic_real t1085 = t1080 + (t1084 + (m[186] * t652 - m[187] * t965)) + (m[258] * t628 - m[259] * t964);
-        const gic_real t1086 = t596 * t968 - R(-0.09720579999999998) * t603 + (t1079 + t1085 + (t602 * R(0.00209039581919997) - R(-1.688965) * t603));
-        const gic_real t1087 = t585 * t969 - R(-0.09720579999999998) * t592 + (t1086 + (t591 * R(-0.00209039581919997) - R(-1.688965) * t592));
-        const gic_real t1088 = t1078 + (t1087 + (m[324] * t582 - m[325] * t963)) + (m[384] * t558 - m[385] * t962);
-        const gic_real t1089 = t1074 + (t1076 + (R(-8.579168367) * t530 - t960 * R(-2.6864953889999996))) - (t1077 + t1088);
+        const gic_real t1081 = R(1.792978) * t673 - t672 * R(-0.003388550642239951) + (R(1.792978) * t662 - t661 *
+            R(0.003388550642239951));
+        const gic_real t1082 = t1081 + (R(-1.792978) * t603 - R(0.003388550642239951) * t602) + (R(-1.792978) * t592 -
+            R(-0.003388550642239951) * t591);
+        const gic_real t1083 = t666 * t966 - R(0.09720579999999998) * t673 + (t1082 + (t672 * R(-0.00209039581919997) -
+            R(1.688965) * t673));
+        const gic_real t1084 = t655 * t967 - R(0.09720579999999998) * t662 + (t1083 + (t661 * R(0.00209039581919997) -
+            R(1.688965) * t662));
+        const gic_real t1085 = t1080 + (t1084 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t652 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t965)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t628 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t964);
+        const gic_real t1086 = t596 * t968 - R(-0.09720579999999998) * t603 + (t1079 + t1085 + (t602 *
+            R(0.00209039581919997) - R(-1.688965) * t603));
+        const gic_real t1087 = t585 * t969 - R(-0.09720579999999998) * t592 + (t1086 + (t591 * R(-0.00209039581919997) -
+            R(-1.688965) * t592));
+        const gic_real t1088 = t1078 + (t1087 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t582 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t963)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t558 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t962);
+        const gic_real residual_2 = t1074 + (t1076 + (R(-8.579168367) * t530 - t960 * R(-2.6864953889999996))) -
+            (t1077 + t1088);
         const gic_real t1090 = t976 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
         const gic_real t1091 = t1090 + t226 + t254 + t301 + t351 + t397 + t443;
         const gic_real t1092 = t651 + (t674 + t663 + t604 + t593 - t674 - t663);
-        const gic_real t1093 = t1091 + t484 + t525 - (t557 + (t581 + (t627 + t1092 - t604 - t593)));
-        const gic_real t1094 = m[221] * t138 + m[220] * t147 + (m[218] * t1053 + (m[217] * t991 + m[216] * t148));
-        const gic_real t1095 = m[54] * t65 + t1094 + (m[182] * t1068 + (m[181] * t1016 + m[180] * t405));
-        const gic_real t1096 = (x[0] - R(0.31945)) * R(167070.9);
-        const gic_real t1097 = m[221] * t651 + m[220] * t652 + (m[218] * t1080 + (m[217] * t1031 + m[216] * t653));
-        const gic_real t1098 = GIC_FABS(t1096) + R(167070.9) * (R(0.31945) + GIC_FABS(x[0])) + t708 * t715;
+        const gic_real residual_5 = t1091 + t484 + t525 - (t557 + (t581 + (t627 + t1092 - t604 - t593)));
+        const gic_real t1094 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] * t138 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] * t147 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t1053 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t991 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t148));
+        const gic_real t1095 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t65 + t1094 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * t1068 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * t1016 +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * t405));
+        /* force spring_f_l */
+        const gic_real t1096 = (x[HMMWV14_X_SPRING_F_L] - R(0.31945)) * R(167070.9);
+        const gic_real t1097 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] * t651 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] * t652 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t1080 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t1031 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t653));
+        const gic_real t1098 = GIC_FABS(t1096) + R(167070.9) * (R(0.31945) + GIC_FABS(x[HMMWV14_X_SPRING_F_L])) + t708 *
+            t715;
         const gic_real t1099 = t1098 + t745 * t753 + t747 * t754 + t860 * t866;
-        const gic_real t1100 = m[293] * t196 + m[292] * t205 + (m[290] * t1056 + (m[289] * t995 + m[288] * t206));
-        const gic_real t1101 = m[84] * t91 + t1100 + (m[254] * t1071 + (m[253] * t1020 + m[252] * t451));
-        const gic_real t1102 = R(167070.9) * (x[1] - R(0.31945));
-        const gic_real t1103 = m[293] * t627 + m[292] * t628 + (m[290] * t1079 + (m[289] * t1030 + m[288] * t629));
-        const gic_real t1104 = GIC_FABS(t1102) + R(167070.9) * (R(0.31945) + GIC_FABS(x[1])) + t723 * t730;
+        const gic_real t1100 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] * t196 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] * t205 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t1056 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t995 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t206));
+        const gic_real t1101 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t91 + t1100 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * t1071 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * t1020 +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * t451));
+        /* force spring_f_r */
+        const gic_real t1102 = R(167070.9) * (x[HMMWV14_X_SPRING_F_R] - R(0.31945));
+        const gic_real t1103 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] * t627 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] * t628 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t1079 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t1030 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t629));
+        const gic_real t1104 = GIC_FABS(t1102) + R(167070.9) * (R(0.31945) + GIC_FABS(x[HMMWV14_X_SPRING_F_R])) + t723 *
+            t730;
         const gic_real t1105 = t1104 + t768 * t776 + t770 * t777 + t877 * t883;
-        const gic_real t1106 = m[353] * t301 + m[352] * t309 + (m[350] * t1063 + (m[349] * t1009 + m[348] * t310));
-        const gic_real t1107 = m[114] * t235 + t1106 + (m[320] * t1073 + (m[319] * t1023 + m[318] * t491));
-        const gic_real t1108 = (x[2] - R(0.33757)) * R(369167.2);
-        const gic_real t1109 = m[353] * t581 + m[352] * t582 + (m[350] * t1078 + (m[349] * t1029 + m[348] * t583));
-        const gic_real t1110 = GIC_FABS(t1108) + R(369167.2) * (R(0.33757) + GIC_FABS(x[2])) + t785 * t792;
+        const gic_real t1106 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] * t301 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] * t309 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t1063 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t1009 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t310));
+        const gic_real t1107 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t235 + t1106 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t1073 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t1023 +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t491));
+        /* force spring_r_l */
+        const gic_real t1108 = (x[HMMWV14_X_SPRING_R_L] - R(0.33757)) * R(369167.2);
+        const gic_real t1109 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] * t581 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] * t582 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t1078 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t1029 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t583));
+        const gic_real t1110 = GIC_FABS(t1108) + R(369167.2) * (R(0.33757) + GIC_FABS(x[HMMWV14_X_SPRING_R_L])) + t785 *
+            t792;
         const gic_real t1111 = t1110 + t820 * t827 + t822 * t828 + t893 * t899;
-        const gic_real t1112 = m[413] * t351 + m[412] * t359 + (m[410] * t1066 + (m[409] * t1013 + m[408] * t360));
-        const gic_real t1113 = m[144] * t261 + t1112 + (m[380] * t1076 + (m[379] * t1027 + m[378] * t532));
-        const gic_real t1114 = R(369167.2) * (x[3] - R(0.33757));
-        const gic_real t1115 = m[413] * t557 + m[412] * t558 + (m[410] * t1077 + (m[409] * t1028 + m[408] * t559));
-        const gic_real t1116 = GIC_FABS(t1114) + R(369167.2) * (R(0.33757) + GIC_FABS(x[3])) + t801 * t808;
+        const gic_real t1112 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] * t351 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] * t359 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t1066 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t1013 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t360));
+        const gic_real t1113 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t261 + t1112 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t1076 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t1027 +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t532));
+        /* force spring_r_r */
+        const gic_real t1114 = R(369167.2) * (x[HMMWV14_X_SPRING_R_R] - R(0.33757));
+        const gic_real t1115 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] * t557 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] * t558 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t1077 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t1028 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t559));
+        const gic_real t1116 = GIC_FABS(t1114) + R(369167.2) * (R(0.33757) + GIC_FABS(x[HMMWV14_X_SPRING_R_R])) + t801 *
+            t808;
         const gic_real t1117 = t1116 + t840 * t847 + t842 * t848 + t908 * t914;
-        const gic_real t1118 = t1041 + (m[212] * t1053 + (m[211] * t991 + m[210] * t148));
-        const gic_real t1119 = t1118 + (m[284] * t1056 + (m[283] * t995 + m[282] * t206));
-        const gic_real t1120 = t1119 + (m[176] * t1068 + (m[175] * t1016 + m[174] * t405));
-        const gic_real t1121 = t1120 + (m[248] * t1071 + (m[247] * t1020 + m[246] * t451));
-        const gic_real t1122 = x[4] * R(100000.0);
-        const gic_real t1123 = xd[4] * R(12000.0);
-        const gic_real t1124 = m[212] * t1080 + (m[211] * t1031 + m[210] * t653) - (t1122 + t1123);
-        const gic_real t1125 = t1124 + (m[284] * t1079 + (m[283] * t1030 + m[282] * t629));
-        const gic_real t1126 = GIC_FABS(t1123) + GIC_FABS(t1122) + R(100000.0) * GIC_FABS(x[4]);
+        const gic_real t1118 = t1041 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t1053 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t991 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t148));
+        const gic_real t1119 = t1118 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t1056 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t995 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t206));
+        const gic_real t1120 = t1119 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t1068 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t1016 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t405));
+        const gic_real t1121 = t1120 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t1071 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t1020 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t451));
+        /* force rack */
+        const gic_real t1122 = x[HMMWV14_X_RACK] * R(100000.0);
+        const gic_real t1123 = xd[HMMWV14_X_RACK] * R(12000.0);
+        const gic_real t1124 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t1080 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t1031 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t653) -
+            (t1122 + t1123);
+        const gic_real t1125 = t1124 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t1079 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t1030 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t629));
+        const gic_real t1126 = GIC_FABS(t1123) + GIC_FABS(t1122) + R(100000.0) * GIC_FABS(x[HMMWV14_X_RACK]);
         const gic_real t1127 = t1126 + t700 + t743 * t753 + t766 * t776 + t858 * t866;
-        const gic_real t1128 = t1095 - (m[54] * t675 - t1096 + t1097);
-        const gic_real t1129 = t1101 - (m[84] * t664 - t1102 + t1103);
-        const gic_real t1130 = t1107 - (m[114] * t605 - t1108 + t1109);
-        const gic_real t1131 = t1113 - (m[144] * t594 - t1114 + t1115);
-        const gic_real t1132 = t1121 - t1125;
+        const gic_real residual_6 = t1095 - (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t675 - t1096 + t1097);
+        const gic_real residual_7 = t1101 - (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t664 - t1102 + t1103);
+        const gic_real residual_8 = t1107 - (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t605 - t1108 + t1109);
+        const gic_real residual_9 = t1113 - (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t594 - t1114 + t1115);
+        const gic_real residual_10 = t1121 - t1125;
         const gic_real t1133 = t1127 + t875 * t883;
-        tau[0] = t682;
-        size[0] = t916;
-        tau[3] = t971;
-        size[3] = t974;
-        tau[1] = t1040;
-        size[1] = t916;
-        tau[4] = t1045;
-        size[4] = t974;
-        tau[2] = t1089;
-        size[2] = t916;
-        tau[5] = t1093;
-        size[5] = t974;
-        tau[6] = t1128;
-        size[6] = t1099;
-        tau[7] = t1129;
-        size[7] = t1105;
-        tau[8] = t1130;
-        size[8] = t1111;
-        tau[9] = t1131;
-        size[9] = t1117;
-        tau[10] = t1132;
-        size[10] = t1133;
+        tau[HMMWV14_UNKNOWN_ALPHA_X] = residual_0;
+        size[HMMWV14_UNKNOWN_ALPHA_X] = t916;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[HMMWV14_UNKNOWN_ACCELERATION_X] = t974;
+        tau[HMMWV14_UNKNOWN_ALPHA_Y] = residual_1;
+        size[HMMWV14_UNKNOWN_ALPHA_Y] = t916;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[HMMWV14_UNKNOWN_ACCELERATION_Y] = t974;
+        tau[HMMWV14_UNKNOWN_ALPHA_Z] = residual_2;
+        size[HMMWV14_UNKNOWN_ALPHA_Z] = t916;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[HMMWV14_UNKNOWN_ACCELERATION_Z] = t974;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[HMMWV14_UNKNOWN_OF_SPRING_F_L] = t1099;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[HMMWV14_UNKNOWN_OF_SPRING_F_R] = t1105;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[HMMWV14_UNKNOWN_OF_SPRING_R_L] = t1111;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[HMMWV14_UNKNOWN_OF_SPRING_R_R] = t1117;
+        tau[HMMWV14_UNKNOWN_OF_RACK] = residual_10;
+        size[HMMWV14_UNKNOWN_OF_RACK] = t1133;
     }
     return GIC_OK;
 }
@@ -5130,7 +6726,7 @@ static GIC_COLD GIC_APART int hmmwv14_check(hmmwv14 *self, gic_real time, const 
     return status;
 }
 
-/* ---- the functions of hmmwv14.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of hmmwv14.h ---------------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -5150,7 +6746,8 @@ static int hmmwv14_locate(hmmwv14 *self, gic_real time, const gic_real *y, gic_r
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV14_STATE_ROOM])
+static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[HMMWV14_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = hmmwv14_locate(self, time, y, e);
@@ -5158,7 +6755,8 @@ static int hmmwv14_evaluate(hmmwv14 *self, gic_real time, const gic_real *y, gic
     if (status == GIC_OK)
         status = hmmwv14_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + HMMWV14_TWIST, HMMWV14_STATES - HMMWV14_TWIST))
+    if (status == GIC_OK && HMMWV14_STATES > HMMWV14_TWIST && !GIC_FINITE(rate + HMMWV14_TWIST, HMMWV14_STATES -
+        HMMWV14_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv14_check(self, time, y, e, rate);
@@ -5178,8 +6776,9 @@ int hmmwv14_rhs(hmmwv14 *self, gic_real time, const gic_real *state, gic_real *r
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int hmmwv14_march(hmmwv14 *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -5190,7 +6789,7 @@ static int hmmwv14_march(hmmwv14 *self, gic_real time)
         return status;
     memcpy(before, state, HMMWV14_STATES * sizeof *state);
     for (i = 0; i < HMMWV14_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = hmmwv14_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, HMMWV14_STATES * sizeof *state);
@@ -5467,7 +7066,8 @@ static const char *const hmmwv14_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -5594,7 +7194,7 @@ void hmmwv14_restore(hmmwv14 *self, const hmmwv14 *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv14_dynamics. */
 static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
@@ -5604,502 +7204,847 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
-        const gic_real t3 = y[16] * R(0.056);
-        const gic_real t4 = y[16] * R(0.21300000000000008);
-        const gic_real t5 = y[15] * t3 + y[17] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[16] * t1 - y[17] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t9 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t10 = y[15] * t8 - y[16] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV14_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV14_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[HMMWV14_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[HMMWV14_STATE_OMEGA_X] * t3 + y[HMMWV14_STATE_OMEGA_Z] * t4 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * R(0.056) - acc[HMMWV14_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[HMMWV14_STATE_OMEGA_Y] * t1 - y[HMMWV14_STATE_OMEGA_Z] * t2 +
+            acc[HMMWV14_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] + (m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] +
+            (R(1.438648) * y[HMMWV14_STATE_OMEGA_Z] - R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t10 = y[HMMWV14_STATE_OMEGA_X] * t8 - y[HMMWV14_STATE_OMEGA_Y] * t9 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * acc[HMMWV14_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[HMMWV14_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t14 = y[17] * t9 - y[15] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = acc[10] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[17] * t16 + y[16] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[17];
-        const gic_real t28 = t27 - y[15] * t25 - t26 - t26;
+        const gic_real t13 = m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * y[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t14 = y[HMMWV14_STATE_OMEGA_Z] * t9 - y[HMMWV14_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[HMMWV14_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[HMMWV14_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = acc[HMMWV14_UNKNOWN_OF_RACK] + (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t17 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t18 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t19 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * t17 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            t18;
+        const gic_real t20 = y[HMMWV14_STATE_OMEGA_Z] * t16 + y[HMMWV14_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * t17 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] *
+            t18;
+        const gic_real t22 = y[HMMWV14_STATE_OMEGA_Z] * t19 + y[HMMWV14_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[HMMWV14_STATE_OMEGA_Y] * t20 - y[HMMWV14_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] + acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[HMMWV14_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[16] * t25 - y[17] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[15] * t28 - y[16] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[HMMWV14_STATE_OMEGA_Y] * t25 - y[HMMWV14_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[HMMWV14_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[HMMWV14_STATE_OMEGA_X] * t28 - y[HMMWV14_STATE_OMEGA_Y] * t30 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t24 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t26 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t32) +
+            acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[16];
-        const gic_real t37 = t35 + (t35 + (y[15] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[17] * t30 - y[15] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[HMMWV14_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[HMMWV14_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[HMMWV14_STATE_OMEGA_Z] * t30 - y[HMMWV14_STATE_OMEGA_X] * t37 + (t38 -
+            acc[HMMWV14_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t39 - (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            t35 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t25) - acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[17] * t44 + y[16] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[15] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[HMMWV14_UNKNOWN_ALPHA_X] + (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t12 - t15 *
+            R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t45 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t46 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t47 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * t45 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            t46;
+        const gic_real t48 = y[HMMWV14_STATE_OMEGA_Z] * t44 + y[HMMWV14_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * t45 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] *
+            t46;
+        const gic_real t50 = y[HMMWV14_STATE_OMEGA_Z] * t47 + y[HMMWV14_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[HMMWV14_STATE_OMEGA_Y] * t48 - y[HMMWV14_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] + acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[HMMWV14_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[16] * t53 - y[17] * t56;
-        const gic_real t58 = y[15] * t55 - y[16] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[HMMWV14_STATE_OMEGA_Y] * t53 - y[HMMWV14_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[HMMWV14_STATE_OMEGA_X] * t55 - y[HMMWV14_STATE_OMEGA_Y] * t57 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t52 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t54 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t58) +
+            acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[15] * t56 - t36));
-        const gic_real t63 = y[17] * t57 - y[15] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[HMMWV14_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[HMMWV14_STATE_OMEGA_Z] * t57 - y[HMMWV14_STATE_OMEGA_X] * t62 + (t38 -
+            acc[HMMWV14_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t63 - (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            t61 + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t53) - acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[199] + y[16];
-        const gic_real t68 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t69 = m[200] + y[17];
-        const gic_real t70 = m[194] * R(4.7728205);
-        const gic_real t71 = m[193] * R(7.58122);
-        const gic_real t72 = m[192] * R(4.8947505);
-        const gic_real t73 = m[197] * t70 + (m[196] * t71 + m[195] * t72);
-        const gic_real t74 = m[191] * R(4.7728205);
-        const gic_real t75 = m[190] * R(7.58122);
-        const gic_real t76 = m[189] * R(4.8947505);
-        const gic_real t77 = m[197] * t74 + (m[196] * t75 + m[195] * t76);
-        const gic_real t78 = m[198] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t67 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t68 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t69 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t70 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t72 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t73 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t70 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t71 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t72);
+        const gic_real t74 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t75 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t76 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t77 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t74 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t75 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t76);
+        const gic_real t78 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t79 = t68 * t69 + (t73 * t67 + t77 * t78);
-        const gic_real t80 = m[194] * t70 + (m[193] * t71 + m[192] * t72);
-        const gic_real t81 = m[194] * t74 + (m[193] * t75 + m[192] * t76);
+        const gic_real t80 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t70 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t71 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t72);
+        const gic_real t81 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t74 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t75 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t76);
         const gic_real t82 = t73 * t69 + (t80 * t67 + t81 * t78);
-        const gic_real t83 = m[206] + (acc[2] + (m[199] * y[15] - m[198] * y[16])) + m[212] * acc[10];
-        const gic_real t84 = t83 + m[218] * acc[6];
-        const gic_real t85 = m[205] + (acc[1] + (m[198] * y[17] - m[200] * y[15])) + m[211] * acc[10];
-        const gic_real t86 = t85 + m[217] * acc[6];
-        const gic_real t87 = m[191] * t74 + (m[190] * t75 + m[189] * t76);
-        const gic_real t88 = m[204] + (acc[0] + (m[200] * y[16] - m[199] * y[17])) + m[210] * acc[10];
-        const gic_real t89 = t88 + m[216] * acc[6];
+        const gic_real t83 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t84 = t83 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t86 = t85 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * t74 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * t75 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t76);
+        const gic_real t88 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t89 = t88 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t69 * t82 + (t77 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[194] * R(0.09182100000000004);
-        const gic_real t92 = m[192] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[193] * R(0.08910630000000008));
-        const gic_real t94 = m[191] * R(0.09182100000000004);
-        const gic_real t95 = m[189] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[190] * R(0.08910630000000008));
-        const gic_real t97 = m[197] * R(0.09182100000000004);
-        const gic_real t98 = m[195] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[196] * R(0.08910630000000008));
-        const gic_real t100 = m[200] * t96 - m[198] * t99;
-        const gic_real t101 = m[199] * t99 - m[200] * t93;
-        const gic_real t102 = m[198] * t100 - m[199] * t101 + (m[204] * t93 - m[205] * t96);
-        const gic_real t103 = m[202] + t100;
-        const gic_real t104 = m[186] + t96;
-        const gic_real t105 = m[188] + t99;
-        const gic_real t106 = t103 + (t103 + (y[17] * t104 - y[15] * t105));
-        const gic_real t107 = m[187] + t93;
-        const gic_real t108 = t101 + (t101 + (y[16] * t105 - y[17] * t107));
-        const gic_real t109 = y[15] * t106 - y[16] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[209] + t102 + (acc[5] + t109) + acc[10] * (m[210] * t93 - m[211] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[221] + (m[216] * t93 - m[217] * t96));
+        /* wheel tire_f_l */
+        const gic_real t91 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.08910630000000008));
+        const gic_real t94 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.08910630000000008));
+        const gic_real t97 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.08910630000000008));
+        const gic_real t100 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t96 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t99;
+        const gic_real t101 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t99 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t93;
+        const gic_real t102 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t100 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t101 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] *
+            t93 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] * t96);
+        const gic_real t103 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] + t100;
+        const gic_real t104 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t96;
+        const gic_real t105 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[HMMWV14_STATE_OMEGA_Z] * t104 - y[HMMWV14_STATE_OMEGA_X] * t105));
+        const gic_real t107 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[HMMWV14_STATE_OMEGA_Y] * t105 - y[HMMWV14_STATE_OMEGA_Z] * t107));
+        const gic_real t109 = y[HMMWV14_STATE_OMEGA_X] * t106 - y[HMMWV14_STATE_OMEGA_Y] * t108 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t107 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Z] + t102 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t109) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t93 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t96);
+        const gic_real t111 = t110 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t93 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[198] * t93 - m[199] * t96;
-        const gic_real t114 = m[200] * t101 - m[198] * t113 + (m[206] * t96 - m[204] * t99);
-        const gic_real t115 = m[203] + t113;
-        const gic_real t116 = t115 + (t115 + (y[15] * t107 - y[16] * t104));
-        const gic_real t117 = y[17] * t108 - y[15] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[208] + t114 + (acc[4] + t117) + acc[10] * (m[212] * t96 - m[210] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[220] + (m[218] * t96 - m[216] * t99));
+        const gic_real t113 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t93 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t96;
+        const gic_real t114 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t101 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t113 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] *
+            t96 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] * t99);
+        const gic_real t115 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[HMMWV14_STATE_OMEGA_X] * t107 - y[HMMWV14_STATE_OMEGA_Y] * t104));
+        const gic_real t117 = y[HMMWV14_STATE_OMEGA_Z] * t108 - y[HMMWV14_STATE_OMEGA_X] * t116 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t104 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Y] + t114 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t117) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t96 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t99);
+        const gic_real t119 = t118 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t96 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[187] * t112 - m[188] * t120));
-        const gic_real t123 = m[271] + y[16];
-        const gic_real t124 = m[269] * (m[269] * R(4.7728205)) + (m[268] * (m[268] * R(7.58122)) + m[267] * (m[267] * R(4.8947505)));
-        const gic_real t125 = m[272] + y[17];
-        const gic_real t126 = m[266] * R(4.7728205);
-        const gic_real t127 = m[265] * R(7.58122);
-        const gic_real t128 = m[264] * R(4.8947505);
-        const gic_real t129 = m[269] * t126 + (m[268] * t127 + m[267] * t128);
-        const gic_real t130 = m[263] * R(4.7728205);
-        const gic_real t131 = m[262] * R(7.58122);
-        const gic_real t132 = m[261] * R(4.8947505);
-        const gic_real t133 = m[269] * t130 + (m[268] * t131 + m[267] * t132);
-        const gic_real t134 = m[270] + y[15];
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t112 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t120));
+        /* inertia of wheel_f_r */
+        const gic_real t123 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t124 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t125 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t126 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t128 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t129 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t126 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t127 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t128);
+        const gic_real t130 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t131 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t132 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t133 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t130 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t131 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t132);
+        const gic_real t134 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t135 = t124 * t125 + (t129 * t123 + t133 * t134);
-        const gic_real t136 = m[266] * t126 + (m[265] * t127 + m[264] * t128);
-        const gic_real t137 = m[266] * t130 + (m[265] * t131 + m[264] * t132);
+        const gic_real t136 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t126 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t127 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t128);
+        const gic_real t137 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t130 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t131 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t132);
         const gic_real t138 = t129 * t125 + (t136 * t123 + t137 * t134);
-        const gic_real t139 = m[278] + (acc[2] + (m[271] * y[15] - m[270] * y[16])) + m[284] * acc[10];
-        const gic_real t140 = t139 + m[290] * acc[7];
-        const gic_real t141 = m[277] + (acc[1] + (m[270] * y[17] - m[272] * y[15])) + m[283] * acc[10];
-        const gic_real t142 = t141 + m[289] * acc[7];
-        const gic_real t143 = m[263] * t130 + (m[262] * t131 + m[261] * t132);
-        const gic_real t144 = m[276] + (acc[0] + (m[272] * y[16] - m[271] * y[17])) + m[282] * acc[10];
-        const gic_real t145 = t144 + m[288] * acc[7];
+        const gic_real t139 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t140 = t139 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t141 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t142 = t141 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t143 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * t130 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * t131 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t132);
+        const gic_real t144 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t145 = t144 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
         const gic_real t146 = t123 * t135 - t125 * t138 + (t133 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[266] * R(0.09182100000000004);
-        const gic_real t148 = m[264] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[265] * R(-0.08910630000000008));
-        const gic_real t150 = m[263] * R(0.09182100000000004);
-        const gic_real t151 = m[261] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[262] * R(-0.08910630000000008));
-        const gic_real t153 = m[269] * R(0.09182100000000004);
-        const gic_real t154 = m[267] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[268] * R(-0.08910630000000008));
-        const gic_real t156 = m[272] * t152 - m[270] * t155;
-        const gic_real t157 = m[271] * t155 - m[272] * t149;
-        const gic_real t158 = m[270] * t156 - m[271] * t157 + (m[276] * t149 - m[277] * t152);
-        const gic_real t159 = m[274] + t156;
-        const gic_real t160 = m[258] + t152;
-        const gic_real t161 = m[260] + t155;
-        const gic_real t162 = t159 + (t159 + (y[17] * t160 - y[15] * t161));
-        const gic_real t163 = m[259] + t149;
-        const gic_real t164 = t157 + (t157 + (y[16] * t161 - y[17] * t163));
-        const gic_real t165 = y[15] * t162 - y[16] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[281] + t158 + (acc[5] + t165) + acc[10] * (m[282] * t149 - m[283] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[293] + (m[288] * t149 - m[289] * t152));
+        /* wheel tire_f_r */
+        const gic_real t147 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.08910630000000008));
+        const gic_real t150 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.08910630000000008));
+        const gic_real t153 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.08910630000000008));
+        const gic_real t156 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t152 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t155;
+        const gic_real t157 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t155 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t149;
+        const gic_real t158 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t156 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t157 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] *
+            t149 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] * t152);
+        const gic_real t159 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] + t156;
+        const gic_real t160 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t152;
+        const gic_real t161 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[HMMWV14_STATE_OMEGA_Z] * t160 - y[HMMWV14_STATE_OMEGA_X] * t161));
+        const gic_real t163 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[HMMWV14_STATE_OMEGA_Y] * t161 - y[HMMWV14_STATE_OMEGA_Z] * t163));
+        const gic_real t165 = y[HMMWV14_STATE_OMEGA_X] * t162 - y[HMMWV14_STATE_OMEGA_Y] * t164 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t163 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Z] + t158 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t165) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t149 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t152);
+        const gic_real t167 = t166 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t149 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[270] * t149 - m[271] * t152;
-        const gic_real t170 = m[272] * t157 - m[270] * t169 + (m[278] * t152 - m[276] * t155);
-        const gic_real t171 = m[275] + t169;
-        const gic_real t172 = t171 + (t171 + (y[15] * t163 - y[16] * t160));
-        const gic_real t173 = y[17] * t164 - y[15] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[280] + t170 + (acc[4] + t173) + acc[10] * (m[284] * t152 - m[282] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[292] + (m[290] * t152 - m[288] * t155));
+        const gic_real t169 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t149 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t152;
+        const gic_real t170 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t157 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t169 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] *
+            t152 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] * t155);
+        const gic_real t171 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[HMMWV14_STATE_OMEGA_X] * t163 - y[HMMWV14_STATE_OMEGA_Y] * t160));
+        const gic_real t173 = y[HMMWV14_STATE_OMEGA_Z] * t164 - y[HMMWV14_STATE_OMEGA_X] * t172 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t160 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Y] + t170 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t173) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t152 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t155);
+        const gic_real t175 = t174 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t152 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t179 = m[98] * R(0.8938);
-        const gic_real t180 = m[97] * R(0.4469);
-        const gic_real t181 = m[101] * t179 + m[100] * t180;
-        const gic_real t182 = y[17] * t178 + y[16] * t181;
-        const gic_real t183 = m[98] * t179 + m[97] * t180;
-        const gic_real t184 = y[17] * t181 + y[16] * t183;
-        const gic_real t185 = y[16] * t182 - y[17] * t184 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
-        const gic_real t186 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t187 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t188 = m[102] * t187;
-        const gic_real t189 = R(-1.688965) * y[17];
-        const gic_real t190 = t189 - y[15] * t187 - t188 - t188;
+        /* inertia of lca_r_l */
+        const gic_real t178 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t179 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t180 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t181 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * t179 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * t180;
+        const gic_real t182 = y[HMMWV14_STATE_OMEGA_Z] * t178 + y[HMMWV14_STATE_OMEGA_Y] * t181;
+        const gic_real t183 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * t179 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * t180;
+        const gic_real t184 = y[HMMWV14_STATE_OMEGA_Z] * t181 + y[HMMWV14_STATE_OMEGA_Y] * t183;
+        const gic_real t185 = y[HMMWV14_STATE_OMEGA_Y] * t182 - y[HMMWV14_STATE_OMEGA_Z] * t184 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] + acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L]);
+        const gic_real t186 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.246867347245056);
+        const gic_real t187 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.246867347245056);
+        const gic_real t188 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t187;
+        const gic_real t189 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t190 = t189 - y[HMMWV14_STATE_OMEGA_X] * t187 - t188 - t188;
         const gic_real t191 = R(0.307086) + t186;
-        const gic_real t192 = y[16] * t187 - y[17] * t191;
-        const gic_real t193 = R(-1.688965) * acc[1];
-        const gic_real t194 = y[15] * t190 - y[16] * t192 + (acc[0] * t191 - t193);
-        const gic_real t195 = m[108] * t186 - m[102] * t188 + (acc[5] + t194) + acc[8] * (m[114] * t186);
+        const gic_real t192 = y[HMMWV14_STATE_OMEGA_Y] * t187 - y[HMMWV14_STATE_OMEGA_Z] * t191;
+        const gic_real t193 = R(-1.688965) * acc[HMMWV14_UNKNOWN_ALPHA_Y];
+        const gic_real t194 = y[HMMWV14_STATE_OMEGA_X] * t190 - y[HMMWV14_STATE_OMEGA_Y] * t192 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t191 - t193);
+        const gic_real t195 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t186 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t188 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t194) +
+            acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t186);
         const gic_real t196 = R(23.965) * t195;
-        const gic_real t197 = m[102] * t186;
-        const gic_real t198 = R(-1.688965) * y[16];
-        const gic_real t199 = t197 + (t197 + (y[15] * t191 - t198));
-        const gic_real t200 = R(-1.688965) * acc[2];
-        const gic_real t201 = y[17] * t192 - y[15] * t199 + (t200 - acc[0] * t187);
-        const gic_real t202 = acc[4] + t201 - (m[102] * t197 + m[108] * t187) - acc[8] * (m[114] * t187);
+        const gic_real t197 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t186;
+        const gic_real t198 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t199 = t197 + (t197 + (y[HMMWV14_STATE_OMEGA_X] * t191 - t198));
+        const gic_real t200 = R(-1.688965) * acc[HMMWV14_UNKNOWN_ALPHA_Z];
+        const gic_real t201 = y[HMMWV14_STATE_OMEGA_Z] * t192 - y[HMMWV14_STATE_OMEGA_X] * t199 + (t200 -
+            acc[HMMWV14_UNKNOWN_ALPHA_X] * t187);
+        const gic_real t202 = acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t201 -
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t197 + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t187) -
+            acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t187);
         const gic_real t203 = R(23.965) * t202;
         const gic_real t204 = t185 + (t186 * t196 - t187 * t203);
-        const gic_real t205 = t122 + (t177 + (m[259] * t168 - m[260] * t176)) + (t204 + R(7.359315990000001) * t195);
-        const gic_real t206 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t207 = m[128] * R(0.8938);
-        const gic_real t208 = m[127] * R(0.4469);
-        const gic_real t209 = m[131] * t207 + m[130] * t208;
-        const gic_real t210 = y[17] * t206 + y[16] * t209;
-        const gic_real t211 = m[128] * t207 + m[127] * t208;
-        const gic_real t212 = y[17] * t209 + y[16] * t211;
-        const gic_real t213 = y[16] * t210 - y[17] * t212 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
-        const gic_real t214 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t215 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t216 = m[132] * t215;
-        const gic_real t217 = t189 - y[15] * t215 - t216 - t216;
+        const gic_real t205 = t122 + (t177 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t168 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t176)) + (t204 + R(7.359315990000001) * t195);
+        /* inertia of lca_r_r */
+        const gic_real t206 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] *
+            R(0.4469));
+        const gic_real t207 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t208 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t209 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * t207 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * t208;
+        const gic_real t210 = y[HMMWV14_STATE_OMEGA_Z] * t206 + y[HMMWV14_STATE_OMEGA_Y] * t209;
+        const gic_real t211 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * t207 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * t208;
+        const gic_real t212 = y[HMMWV14_STATE_OMEGA_Z] * t209 + y[HMMWV14_STATE_OMEGA_Y] * t211;
+        const gic_real t213 = y[HMMWV14_STATE_OMEGA_Y] * t210 - y[HMMWV14_STATE_OMEGA_Z] * t212 + R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] + acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R]);
+        const gic_real t214 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.246867347245056);
+        const gic_real t215 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.246867347245056);
+        const gic_real t216 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t215;
+        const gic_real t217 = t189 - y[HMMWV14_STATE_OMEGA_X] * t215 - t216 - t216;
         const gic_real t218 = R(-0.307086) + t214;
-        const gic_real t219 = y[16] * t215 - y[17] * t218;
-        const gic_real t220 = y[15] * t217 - y[16] * t219 + (acc[0] * t218 - t193);
-        const gic_real t221 = m[138] * t214 - m[132] * t216 + (acc[5] + t220) + acc[9] * (m[144] * t214);
+        const gic_real t219 = y[HMMWV14_STATE_OMEGA_Y] * t215 - y[HMMWV14_STATE_OMEGA_Z] * t218;
+        const gic_real t220 = y[HMMWV14_STATE_OMEGA_X] * t217 - y[HMMWV14_STATE_OMEGA_Y] * t219 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t218 - t193);
+        const gic_real t221 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t214 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t216 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t220) +
+            acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t214);
         const gic_real t222 = R(23.965) * t221;
-        const gic_real t223 = m[132] * t214;
-        const gic_real t224 = t223 + (t223 + (y[15] * t218 - t198));
-        const gic_real t225 = y[17] * t219 - y[15] * t224 + (t200 - acc[0] * t215);
-        const gic_real t226 = acc[4] + t225 - (m[132] * t223 + m[138] * t215) - acc[9] * (m[144] * t215);
+        const gic_real t223 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t214;
+        const gic_real t224 = t223 + (t223 + (y[HMMWV14_STATE_OMEGA_X] * t218 - t198));
+        const gic_real t225 = y[HMMWV14_STATE_OMEGA_Z] * t219 - y[HMMWV14_STATE_OMEGA_X] * t224 + (t200 -
+            acc[HMMWV14_UNKNOWN_ALPHA_X] * t215);
+        const gic_real t226 = acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t225 -
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t223 + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t215) -
+            acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t215);
         const gic_real t227 = R(23.965) * t226;
         const gic_real t228 = t213 + (t214 * t222 - t215 * t227);
-        const gic_real t229 = m[337] + y[16];
-        const gic_real t230 = m[335] * (m[335] * R(4.7728205)) + (m[334] * (m[334] * R(7.58122)) + m[333] * (m[333] * R(4.8947505)));
-        const gic_real t231 = m[338] + y[17];
-        const gic_real t232 = m[332] * R(4.7728205);
-        const gic_real t233 = m[331] * R(7.58122);
-        const gic_real t234 = m[330] * R(4.8947505);
-        const gic_real t235 = m[335] * t232 + (m[334] * t233 + m[333] * t234);
-        const gic_real t236 = m[329] * R(4.7728205);
-        const gic_real t237 = m[328] * R(7.58122);
-        const gic_real t238 = m[327] * R(4.8947505);
-        const gic_real t239 = m[335] * t236 + (m[334] * t237 + m[333] * t238);
-        const gic_real t240 = m[336] + y[15];
+        /* inertia of wheel_r_l */
+        const gic_real t229 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t230 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t231 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t232 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t233 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t234 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t235 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t232 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t233 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t234);
+        const gic_real t236 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t237 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t238 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t239 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t236 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t237 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t238);
+        const gic_real t240 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t241 = t230 * t231 + (t235 * t229 + t239 * t240);
-        const gic_real t242 = m[332] * t232 + (m[331] * t233 + m[330] * t234);
-        const gic_real t243 = m[332] * t236 + (m[331] * t237 + m[330] * t238);
+        const gic_real t242 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t232 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t233 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t234);
+        const gic_real t243 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t236 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t237 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t238);
         const gic_real t244 = t235 * t231 + (t242 * t229 + t243 * t240);
-        const gic_real t245 = m[344] + (acc[2] + (m[337] * y[15] - m[336] * y[16])) + m[350] * acc[8];
-        const gic_real t246 = m[343] + (acc[1] + (m[336] * y[17] - m[338] * y[15])) + m[349] * acc[8];
-        const gic_real t247 = m[329] * t236 + (m[328] * t237 + m[327] * t238);
-        const gic_real t248 = m[342] + (acc[0] + (m[338] * y[16] - m[337] * y[17])) + m[348] * acc[8];
+        const gic_real t245 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t246 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t247 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * t236 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * t237 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t238);
+        const gic_real t248 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
         const gic_real t249 = t229 * t241 - t231 * t244 + (t239 * t245 + (t243 * t246 + t247 * t248));
-        const gic_real t250 = m[332] * R(0.09182100000000004);
-        const gic_real t251 = t250 + m[331] * R(0.08910630000000008);
-        const gic_real t252 = m[329] * R(0.09182100000000004);
-        const gic_real t253 = t252 + m[328] * R(0.08910630000000008);
-        const gic_real t254 = m[335] * R(0.09182100000000004);
-        const gic_real t255 = t254 + m[334] * R(0.08910630000000008);
-        const gic_real t256 = m[338] * t253 - m[336] * t255;
-        const gic_real t257 = m[337] * t255 - m[338] * t251;
-        const gic_real t258 = m[336] * t256 - m[337] * t257 + (m[342] * t251 - m[343] * t253);
-        const gic_real t259 = m[340] + t256;
-        const gic_real t260 = m[324] + t253;
-        const gic_real t261 = m[326] + t255;
-        const gic_real t262 = t259 + (t259 + (y[17] * t260 - y[15] * t261));
-        const gic_real t263 = m[325] + t251;
-        const gic_real t264 = t257 + (t257 + (y[16] * t261 - y[17] * t263));
-        const gic_real t265 = y[15] * t262 - y[16] * t264 + (acc[0] * t263 - acc[1] * t260);
-        const gic_real t266 = m[347] + t258 + (acc[5] + t265) + acc[8] * (m[353] + (m[348] * t251 - m[349] * t253));
+        /* wheel tire_r_l */
+        const gic_real t250 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t251 = t250 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.08910630000000008);
+        const gic_real t252 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t253 = t252 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.08910630000000008);
+        const gic_real t254 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t255 = t254 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.08910630000000008);
+        const gic_real t256 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t253 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t255;
+        const gic_real t257 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t255 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t251;
+        const gic_real t258 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t256 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t257 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] *
+            t251 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] * t253);
+        const gic_real t259 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] + t256;
+        const gic_real t260 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t253;
+        const gic_real t261 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t255;
+        const gic_real t262 = t259 + (t259 + (y[HMMWV14_STATE_OMEGA_Z] * t260 - y[HMMWV14_STATE_OMEGA_X] * t261));
+        const gic_real t263 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t251;
+        const gic_real t264 = t257 + (t257 + (y[HMMWV14_STATE_OMEGA_Y] * t261 - y[HMMWV14_STATE_OMEGA_Z] * t263));
+        const gic_real t265 = y[HMMWV14_STATE_OMEGA_X] * t262 - y[HMMWV14_STATE_OMEGA_Y] * t264 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t263 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t260);
+        const gic_real t266 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Z] + t258 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t265) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t251 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t253));
         const gic_real t267 = R(90.555) * t266;
-        const gic_real t268 = m[336] * t251 - m[337] * t253;
-        const gic_real t269 = m[338] * t257 - m[336] * t268 + (m[344] * t253 - m[342] * t255);
-        const gic_real t270 = m[341] + t268;
-        const gic_real t271 = t270 + (t270 + (y[15] * t263 - y[16] * t260));
-        const gic_real t272 = y[17] * t264 - y[15] * t271 + (acc[2] * t260 - acc[0] * t261);
-        const gic_real t273 = m[346] + t269 + (acc[4] + t272) + acc[8] * (m[352] + (m[350] * t253 - m[348] * t255));
+        const gic_real t268 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t251 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t253;
+        const gic_real t269 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t257 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t268 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] *
+            t253 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] * t255);
+        const gic_real t270 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] + t268;
+        const gic_real t271 = t270 + (t270 + (y[HMMWV14_STATE_OMEGA_X] * t263 - y[HMMWV14_STATE_OMEGA_Y] * t260));
+        const gic_real t272 = y[HMMWV14_STATE_OMEGA_Z] * t264 - y[HMMWV14_STATE_OMEGA_X] * t271 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t260 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t261);
+        const gic_real t273 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Y] + t269 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t272) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t253 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t255));
         const gic_real t274 = R(90.555) * t273;
         const gic_real t275 = t249 + (t251 * t267 - t255 * t274);
-        const gic_real t276 = t205 + (t228 + R(-7.359315990000001) * t221) + (t275 + (m[325] * t267 - m[326] * t274));
-        const gic_real t277 = m[397] + y[16];
-        const gic_real t278 = m[395] * (m[395] * R(4.7728205)) + (m[394] * (m[394] * R(7.58122)) + m[393] * (m[393] * R(4.8947505)));
-        const gic_real t279 = m[398] + y[17];
-        const gic_real t280 = m[392] * R(4.7728205);
-        const gic_real t281 = m[391] * R(7.58122);
-        const gic_real t282 = m[390] * R(4.8947505);
-        const gic_real t283 = m[395] * t280 + (m[394] * t281 + m[393] * t282);
-        const gic_real t284 = m[389] * R(4.7728205);
-        const gic_real t285 = m[388] * R(7.58122);
-        const gic_real t286 = m[387] * R(4.8947505);
-        const gic_real t287 = m[395] * t284 + (m[394] * t285 + m[393] * t286);
-        const gic_real t288 = m[396] + y[15];
+        const gic_real t276 = t205 + (t228 + R(-7.359315990000001) * t221) + (t275 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t267 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t274));
+        /* inertia of wheel_r_r */
+        const gic_real t277 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t278 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t279 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t280 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t281 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t282 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t283 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t280 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t281 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t282);
+        const gic_real t284 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t285 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t286 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t287 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t284 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t285 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t286);
+        const gic_real t288 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t289 = t278 * t279 + (t283 * t277 + t287 * t288);
-        const gic_real t290 = m[392] * t280 + (m[391] * t281 + m[390] * t282);
-        const gic_real t291 = m[392] * t284 + (m[391] * t285 + m[390] * t286);
+        const gic_real t290 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t280 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t281 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t282);
+        const gic_real t291 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t284 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t285 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t286);
         const gic_real t292 = t283 * t279 + (t290 * t277 + t291 * t288);
-        const gic_real t293 = m[404] + (acc[2] + (m[397] * y[15] - m[396] * y[16])) + m[410] * acc[9];
-        const gic_real t294 = m[403] + (acc[1] + (m[396] * y[17] - m[398] * y[15])) + m[409] * acc[9];
-        const gic_real t295 = m[389] * t284 + (m[388] * t285 + m[387] * t286);
-        const gic_real t296 = m[402] + (acc[0] + (m[398] * y[16] - m[397] * y[17])) + m[408] * acc[9];
+        const gic_real t293 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t294 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t295 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * t284 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * t285 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t286);
+        const gic_real t296 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
         const gic_real t297 = t277 * t289 - t279 * t292 + (t287 * t293 + (t291 * t294 + t295 * t296));
-        const gic_real t298 = m[392] * R(0.09182100000000004);
-        const gic_real t299 = t298 + m[391] * R(-0.08910630000000008);
-        const gic_real t300 = m[389] * R(0.09182100000000004);
-        const gic_real t301 = t300 + m[388] * R(-0.08910630000000008);
-        const gic_real t302 = m[395] * R(0.09182100000000004);
-        const gic_real t303 = t302 + m[394] * R(-0.08910630000000008);
-        const gic_real t304 = m[398] * t301 - m[396] * t303;
-        const gic_real t305 = m[397] * t303 - m[398] * t299;
-        const gic_real t306 = m[396] * t304 - m[397] * t305 + (m[402] * t299 - m[403] * t301);
-        const gic_real t307 = m[400] + t304;
-        const gic_real t308 = m[384] + t301;
-        const gic_real t309 = m[386] + t303;
-        const gic_real t310 = t307 + (t307 + (y[17] * t308 - y[15] * t309));
-        const gic_real t311 = m[385] + t299;
-        const gic_real t312 = t305 + (t305 + (y[16] * t309 - y[17] * t311));
-        const gic_real t313 = y[15] * t310 - y[16] * t312 + (acc[0] * t311 - acc[1] * t308);
-        const gic_real t314 = m[407] + t306 + (acc[5] + t313) + acc[9] * (m[413] + (m[408] * t299 - m[409] * t301));
+        /* wheel tire_r_r */
+        const gic_real t298 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t299 = t298 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.08910630000000008);
+        const gic_real t300 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t301 = t300 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.08910630000000008);
+        const gic_real t302 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t303 = t302 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.08910630000000008);
+        const gic_real t304 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t301 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t303;
+        const gic_real t305 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t303 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t299;
+        const gic_real t306 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t304 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t305 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] *
+            t299 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] * t301);
+        const gic_real t307 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] + t304;
+        const gic_real t308 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t301;
+        const gic_real t309 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t303;
+        const gic_real t310 = t307 + (t307 + (y[HMMWV14_STATE_OMEGA_Z] * t308 - y[HMMWV14_STATE_OMEGA_X] * t309));
+        const gic_real t311 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t299;
+        const gic_real t312 = t305 + (t305 + (y[HMMWV14_STATE_OMEGA_Y] * t309 - y[HMMWV14_STATE_OMEGA_Z] * t311));
+        const gic_real t313 = y[HMMWV14_STATE_OMEGA_X] * t310 - y[HMMWV14_STATE_OMEGA_Y] * t312 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t311 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t308);
+        const gic_real t314 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Z] + t306 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t313) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t299 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t301));
         const gic_real t315 = R(90.555) * t314;
-        const gic_real t316 = m[396] * t299 - m[397] * t301;
-        const gic_real t317 = m[398] * t305 - m[396] * t316 + (m[404] * t301 - m[402] * t303);
-        const gic_real t318 = m[401] + t316;
-        const gic_real t319 = t318 + (t318 + (y[15] * t311 - y[16] * t308));
-        const gic_real t320 = y[17] * t312 - y[15] * t319 + (acc[2] * t308 - acc[0] * t309);
-        const gic_real t321 = m[406] + t317 + (acc[4] + t320) + acc[9] * (m[412] + (m[410] * t301 - m[408] * t303));
+        const gic_real t316 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t299 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t301;
+        const gic_real t317 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t305 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t316 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] *
+            t301 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] * t303);
+        const gic_real t318 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] + t316;
+        const gic_real t319 = t318 + (t318 + (y[HMMWV14_STATE_OMEGA_X] * t311 - y[HMMWV14_STATE_OMEGA_Y] * t308));
+        const gic_real t320 = y[HMMWV14_STATE_OMEGA_Z] * t312 - y[HMMWV14_STATE_OMEGA_X] * t319 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t308 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t309);
+        const gic_real t321 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Y] + t317 +
+            (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t320) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t301 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t303));
         const gic_real t322 = R(90.555) * t321;
         const gic_real t323 = t297 + (t299 * t315 - t303 * t322);
-        const gic_real t324 = m[163] + y[16];
-        const gic_real t325 = m[161] * (m[161] * R(0.06276)) + (m[160] * (m[160] * R(0.03138)) + R(0.0014540542454566034));
-        const gic_real t326 = m[164] + y[17];
-        const gic_real t327 = m[158] * R(0.06276);
-        const gic_real t328 = m[157] * R(0.03138);
-        const gic_real t329 = m[161] * t327 + (m[160] * t328 + R(-0.0009417184427870059));
-        const gic_real t330 = m[155] * R(0.06276);
-        const gic_real t331 = m[154] * R(0.03138);
-        const gic_real t332 = m[161] * t330 + (m[160] * t331 + R(0.0065289443900383055));
-        const gic_real t333 = m[162] + y[15];
+        /* inertia of uca_f_l */
+        const gic_real t324 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t325 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(0.0014540542454566034));
+        const gic_real t326 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t327 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t328 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t329 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t327 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t328 + R(-0.0009417184427870059));
+        const gic_real t330 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t331 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t332 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t330 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t331 + R(0.0065289443900383055));
+        const gic_real t333 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t334 = t325 * t326 + (t329 * t324 + t332 * t333);
-        const gic_real t335 = m[158] * t327 + (m[157] * t328 + R(0.0006099040859419237));
-        const gic_real t336 = m[158] * t330 + (m[157] * t331 + R(-0.004228471780362703));
+        const gic_real t335 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t327 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t328 + R(0.0006099040859419237));
+        const gic_real t336 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t330 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t331 + R(-0.004228471780362703));
         const gic_real t337 = t329 * t326 + (t335 * t324 + t336 * t333);
-        const gic_real t338 = m[170] + (acc[2] + (m[163] * y[15] - m[162] * y[16])) + m[176] * acc[10];
-        const gic_real t339 = t338 + m[182] * acc[6];
-        const gic_real t340 = m[169] + (acc[1] + (m[162] * y[17] - m[164] * y[15])) + m[175] * acc[10];
-        const gic_real t341 = t340 + m[181] * acc[6];
-        const gic_real t342 = m[155] * t330 + (m[154] * t331 + R(0.029316041668601474));
-        const gic_real t343 = m[168] + (acc[0] + (m[164] * y[16] - m[163] * y[17])) + m[174] * acc[10];
-        const gic_real t344 = t343 + m[180] * acc[6];
+        const gic_real t338 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t339 = t338 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t340 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t341 = t340 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t342 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * t330 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * t331 + R(0.029316041668601474));
+        const gic_real t343 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t344 = t343 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_L];
         const gic_real t345 = t324 * t334 - t326 * t337 + (t332 * t339 + (t336 * t341 + t342 * t344));
-        const gic_real t346 = m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648));
-        const gic_real t347 = m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016));
-        const gic_real t348 = m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429));
-        const gic_real t349 = m[164] * t347 - m[162] * t348;
-        const gic_real t350 = m[163] * t348 - m[164] * t346;
-        const gic_real t351 = m[162] * t349 - m[163] * t350 + (m[168] * t346 - m[169] * t347);
+        const gic_real t346 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.1333626625632361) + R(-0.004544539087734648));
+        const gic_real t347 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.1333626625632361) + R(0.031507339809937016));
+        const gic_real t348 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * R(0.1333626625632361) + R(0.007016966063240429));
+        const gic_real t349 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t347 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t348;
+        const gic_real t350 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t348 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t346;
+        const gic_real t351 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t349 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t350 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t346 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t347);
         const gic_real t352 = R(1.5309008) + t347;
         const gic_real t353 = R(0.22009100000000004) + t348;
-        const gic_real t354 = t349 + (t349 + (y[17] * t352 - y[15] * t353));
+        const gic_real t354 = t349 + (t349 + (y[HMMWV14_STATE_OMEGA_Z] * t352 - y[HMMWV14_STATE_OMEGA_X] * t353));
         const gic_real t355 = R(0.4618482) + t346;
-        const gic_real t356 = t350 + (t350 + (y[16] * t353 - y[17] * t355));
-        const gic_real t357 = y[15] * t354 - y[16] * t356 + (acc[0] * t355 - acc[1] * t352);
-        const gic_real t358 = t351 + (acc[5] + t357) + acc[10] * (m[174] * t346 - m[175] * t347);
-        const gic_real t359 = t358 + acc[6] * (m[180] * t346 - m[181] * t347);
+        const gic_real t356 = t350 + (t350 + (y[HMMWV14_STATE_OMEGA_Y] * t353 - y[HMMWV14_STATE_OMEGA_Z] * t355));
+        const gic_real t357 = y[HMMWV14_STATE_OMEGA_X] * t354 - y[HMMWV14_STATE_OMEGA_Y] * t356 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t355 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t352);
+        const gic_real t358 = t351 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t357) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t346 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t347);
+        const gic_real t359 = t358 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] *
+            t346 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * t347);
         const gic_real t360 = t359 * R(5.813);
-        const gic_real t361 = m[162] * t346 - m[163] * t347;
-        const gic_real t362 = m[164] * t350 - m[162] * t361 + (m[170] * t347 - m[168] * t348);
-        const gic_real t363 = t361 + (t361 + (y[15] * t355 - y[16] * t352));
-        const gic_real t364 = y[17] * t356 - y[15] * t363 + (acc[2] * t352 - acc[0] * t353);
-        const gic_real t365 = t362 + (acc[4] + t364) + acc[10] * (m[176] * t347 - m[174] * t348);
-        const gic_real t366 = t365 + acc[6] * (m[182] * t347 - m[180] * t348);
+        const gic_real t361 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t346 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t347;
+        const gic_real t362 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t350 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t361 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t347 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t348);
+        const gic_real t363 = t361 + (t361 + (y[HMMWV14_STATE_OMEGA_X] * t355 - y[HMMWV14_STATE_OMEGA_Y] * t352));
+        const gic_real t364 = y[HMMWV14_STATE_OMEGA_Z] * t356 - y[HMMWV14_STATE_OMEGA_X] * t363 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t352 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t353);
+        const gic_real t365 = t362 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t364) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t347 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t348);
+        const gic_real t366 = t365 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] *
+            t347 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * t348);
         const gic_real t367 = t366 * R(5.813);
         const gic_real t368 = t345 + (t346 * t360 - t348 * t367);
-        const gic_real t369 = t276 + (t323 + (m[385] * t315 - m[386] * t322)) + (t368 + (t359 * R(2.6847235865999997) - t366 * R(1.2793889830000003)));
-        const gic_real t370 = m[235] + y[16];
-        const gic_real t371 = m[233] * (m[233] * R(0.06276)) + (R(0.0014540542454566034) + m[232] * (m[232] * R(0.03138)));
-        const gic_real t372 = m[236] + y[17];
-        const gic_real t373 = m[230] * R(0.06276);
-        const gic_real t374 = m[229] * R(0.03138);
-        const gic_real t375 = m[233] * t373 + (m[232] * t374 + R(0.0009417184427870059));
-        const gic_real t376 = m[227] * R(0.06276);
-        const gic_real t377 = m[226] * R(0.03138);
-        const gic_real t378 = m[233] * t376 + (R(0.0065289443900383055) + m[232] * t377);
-        const gic_real t379 = m[234] + y[15];
+        const gic_real t369 = t276 + (t323 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t315 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t322)) + (t368 + (t359 * R(2.6847235865999997) - t366 *
+            R(1.2793889830000003)));
+        /* inertia of uca_f_r */
+        const gic_real t370 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t371 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(0.0014540542454566034) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t372 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t373 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t374 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t375 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t373 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t374 + R(0.0009417184427870059));
+        const gic_real t376 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t377 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t378 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t376 + (R(0.0065289443900383055) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t377);
+        const gic_real t379 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t380 = t371 * t372 + (t375 * t370 + t378 * t379);
-        const gic_real t381 = m[230] * t373 + (R(0.0006099040859419237) + m[229] * t374);
-        const gic_real t382 = m[230] * t376 + (m[229] * t377 + R(0.004228471780362703));
+        const gic_real t381 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t373 + (R(0.0006099040859419237) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t374);
+        const gic_real t382 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t376 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t377 + R(0.004228471780362703));
         const gic_real t383 = t375 * t372 + (t381 * t370 + t382 * t379);
-        const gic_real t384 = m[242] + (acc[2] + (m[235] * y[15] - m[234] * y[16])) + m[248] * acc[10];
-        const gic_real t385 = t384 + m[254] * acc[7];
-        const gic_real t386 = m[241] + (acc[1] + (m[234] * y[17] - m[236] * y[15])) + m[247] * acc[10];
-        const gic_real t387 = t386 + m[253] * acc[7];
-        const gic_real t388 = m[227] * t376 + (R(0.029316041668601474) + m[226] * t377);
-        const gic_real t389 = m[240] + (acc[0] + (m[236] * y[16] - m[235] * y[17])) + m[246] * acc[10];
-        const gic_real t390 = t389 + m[252] * acc[7];
+        const gic_real t384 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t385 = t384 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t386 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t387 = t386 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t388 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * t376 + (R(0.029316041668601474) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * t377);
+        const gic_real t389 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_RACK];
+        const gic_real t390 = t389 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * acc[HMMWV14_UNKNOWN_OF_SPRING_F_R];
         const gic_real t391 = t370 * t380 - t372 * t383 + (t378 * t385 + (t382 * t387 + t388 * t390));
-        const gic_real t392 = m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648));
-        const gic_real t393 = m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361));
-        const gic_real t394 = m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361));
-        const gic_real t395 = m[236] * t393 - m[234] * t394;
-        const gic_real t396 = m[235] * t394 - m[236] * t392;
-        const gic_real t397 = m[234] * t395 - m[235] * t396 + (m[240] * t392 - m[241] * t393);
+        const gic_real t392 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(-0.1333626625632361) + R(0.004544539087734648));
+        const gic_real t393 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (R(0.031507339809937016) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(-0.1333626625632361));
+        const gic_real t394 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (R(0.007016966063240429) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(-0.1333626625632361));
+        const gic_real t395 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t393 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t394;
+        const gic_real t396 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t394 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t392;
+        const gic_real t397 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t395 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t396 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t392 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t393);
         const gic_real t398 = R(1.5309008) + t393;
         const gic_real t399 = R(0.22009100000000004) + t394;
-        const gic_real t400 = t395 + (t395 + (y[17] * t398 - y[15] * t399));
+        const gic_real t400 = t395 + (t395 + (y[HMMWV14_STATE_OMEGA_Z] * t398 - y[HMMWV14_STATE_OMEGA_X] * t399));
         const gic_real t401 = R(-0.4618482) + t392;
-        const gic_real t402 = t396 + (t396 + (y[16] * t399 - y[17] * t401));
-        const gic_real t403 = y[15] * t400 - y[16] * t402 + (acc[0] * t401 - acc[1] * t398);
-        const gic_real t404 = t397 + (acc[5] + t403) + acc[10] * (m[246] * t392 - m[247] * t393);
-        const gic_real t405 = t404 + acc[7] * (m[252] * t392 - m[253] * t393);
+        const gic_real t402 = t396 + (t396 + (y[HMMWV14_STATE_OMEGA_Y] * t399 - y[HMMWV14_STATE_OMEGA_Z] * t401));
+        const gic_real t403 = y[HMMWV14_STATE_OMEGA_X] * t400 - y[HMMWV14_STATE_OMEGA_Y] * t402 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t401 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t398);
+        const gic_real t404 = t397 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t403) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t392 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t393);
+        const gic_real t405 = t404 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] *
+            t392 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * t393);
         const gic_real t406 = R(5.813) * t405;
-        const gic_real t407 = m[234] * t392 - m[235] * t393;
-        const gic_real t408 = m[236] * t396 - m[234] * t407 + (m[242] * t393 - m[240] * t394);
-        const gic_real t409 = t407 + (t407 + (y[15] * t401 - y[16] * t398));
-        const gic_real t410 = y[17] * t402 - y[15] * t409 + (acc[2] * t398 - acc[0] * t399);
-        const gic_real t411 = t408 + (acc[4] + t410) + acc[10] * (m[248] * t393 - m[246] * t394);
-        const gic_real t412 = t411 + acc[7] * (m[254] * t393 - m[252] * t394);
+        const gic_real t407 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t392 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t393;
+        const gic_real t408 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t396 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t407 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t393 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t394);
+        const gic_real t409 = t407 + (t407 + (y[HMMWV14_STATE_OMEGA_X] * t401 - y[HMMWV14_STATE_OMEGA_Y] * t398));
+        const gic_real t410 = y[HMMWV14_STATE_OMEGA_Z] * t402 - y[HMMWV14_STATE_OMEGA_X] * t409 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t398 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t399);
+        const gic_real t411 = t408 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t410) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t393 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t394);
+        const gic_real t412 = t411 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] *
+            t393 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * t394);
         const gic_real t413 = R(5.813) * t412;
         const gic_real t414 = t391 + (t392 * t406 - t394 * t413);
-        const gic_real t415 = m[307] + y[16];
-        const gic_real t416 = m[305] * (m[305] * R(0.06276)) + (m[304] * (m[304] * R(0.03138)) + R(6.221420556416178e-06));
-        const gic_real t417 = m[308] + y[17];
-        const gic_real t418 = m[302] * R(0.06276);
-        const gic_real t419 = m[301] * R(0.03138);
-        const gic_real t420 = m[305] * t418 + (m[304] * t419 + R(3.3816305342675644e-07));
-        const gic_real t421 = m[299] * R(0.06276);
-        const gic_real t422 = m[298] * R(0.03138);
-        const gic_real t423 = m[305] * t421 + (m[304] * t422 + R(0.00044180239545791184));
-        const gic_real t424 = m[306] + y[15];
+        /* inertia of uca_r_l */
+        const gic_real t415 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t416 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(6.221420556416178e-06));
+        const gic_real t417 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t418 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t419 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t420 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t418 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t419 + R(3.3816305342675644e-07));
+        const gic_real t421 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t422 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t423 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t421 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t422 + R(0.00044180239545791184));
+        const gic_real t424 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t425 = t416 * t417 + (t420 * t415 + t423 * t424);
-        const gic_real t426 = m[302] * t418 + (m[301] * t419 + R(1.838072987767614e-08));
-        const gic_real t427 = m[302] * t421 + (m[301] * t422 + R(2.4014008650359553e-05));
+        const gic_real t426 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t418 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t419 + R(1.838072987767614e-08));
+        const gic_real t427 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t421 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t422 + R(2.4014008650359553e-05));
         const gic_real t428 = t420 * t417 + (t426 * t415 + t427 * t424);
-        const gic_real t429 = m[314] + (acc[2] + (m[307] * y[15] - m[306] * y[16])) + m[320] * acc[8];
-        const gic_real t430 = m[313] + (acc[1] + (m[306] * y[17] - m[308] * y[15])) + m[319] * acc[8];
-        const gic_real t431 = m[299] * t421 + (m[298] * t422 + R(0.0313737601987137));
-        const gic_real t432 = m[312] + (acc[0] + (m[308] * y[16] - m[307] * y[17])) + m[318] * acc[8];
+        const gic_real t429 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t430 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t431 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * t421 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * t422 + R(0.0313737601987137));
+        const gic_real t432 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_L];
         const gic_real t433 = t415 * t425 - t417 * t428 + (t423 * t429 + (t427 * t430 + t431 * t432));
-        const gic_real t434 = m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05));
-        const gic_real t435 = m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348));
-        const gic_real t436 = m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036));
-        const gic_real t437 = m[308] * t435 - m[306] * t436;
-        const gic_real t438 = m[307] * t436 - m[308] * t434;
-        const gic_real t439 = m[306] * t437 - m[307] * t438 + (m[312] * t434 - m[313] * t435);
+        const gic_real t434 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.1268157381236126) + R(-6.79134666217616e-05));
+        const gic_real t435 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.1268157381236126) + R(-0.0887274110323348));
+        const gic_real t436 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * R(0.1268157381236126) + R(-0.0012494512130067036));
+        const gic_real t437 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t435 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t436;
+        const gic_real t438 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t436 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t434;
+        const gic_real t439 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t437 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t438 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t434 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t435);
         const gic_real t440 = R(-1.475859) + t435;
         const gic_real t441 = R(0.22567900000000007) + t436;
-        const gic_real t442 = t437 + (t437 + (y[17] * t440 - y[15] * t441));
+        const gic_real t442 = t437 + (t437 + (y[HMMWV14_STATE_OMEGA_Z] * t440 - y[HMMWV14_STATE_OMEGA_X] * t441));
         const gic_real t443 = R(0.462153) + t434;
-        const gic_real t444 = t438 + (t438 + (y[16] * t441 - y[17] * t443));
-        const gic_real t445 = y[15] * t442 - y[16] * t444 + (acc[0] * t443 - acc[1] * t440);
-        const gic_real t446 = t439 + (acc[5] + t445) + acc[8] * (m[318] * t434 - m[319] * t435);
+        const gic_real t444 = t438 + (t438 + (y[HMMWV14_STATE_OMEGA_Y] * t441 - y[HMMWV14_STATE_OMEGA_Z] * t443));
+        const gic_real t445 = y[HMMWV14_STATE_OMEGA_X] * t442 - y[HMMWV14_STATE_OMEGA_Y] * t444 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t443 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t440);
+        const gic_real t446 = t439 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t445) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t434 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t435);
         const gic_real t447 = R(5.813) * t446;
-        const gic_real t448 = m[306] * t434 - m[307] * t435;
-        const gic_real t449 = m[308] * t438 - m[306] * t448 + (m[314] * t435 - m[312] * t436);
-        const gic_real t450 = t448 + (t448 + (y[15] * t443 - y[16] * t440));
-        const gic_real t451 = y[17] * t444 - y[15] * t450 + (acc[2] * t440 - acc[0] * t441);
-        const gic_real t452 = t449 + (acc[4] + t451) + acc[8] * (m[320] * t435 - m[318] * t436);
+        const gic_real t448 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t434 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t435;
+        const gic_real t449 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t438 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t448 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t435 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t436);
+        const gic_real t450 = t448 + (t448 + (y[HMMWV14_STATE_OMEGA_X] * t443 - y[HMMWV14_STATE_OMEGA_Y] * t440));
+        const gic_real t451 = y[HMMWV14_STATE_OMEGA_Z] * t444 - y[HMMWV14_STATE_OMEGA_X] * t450 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t440 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t441);
+        const gic_real t452 = t449 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t451) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t435 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t436);
         const gic_real t453 = R(5.813) * t452;
         const gic_real t454 = t433 + (t434 * t447 - t436 * t453);
-        const gic_real t455 = t369 + (t414 + (t405 * R(-2.6847235865999997) - R(1.2793889830000003) * t412)) + (t454 + (t446 * R(2.6864953889999996) - t452 * R(1.3118720270000004)));
-        const gic_real t456 = m[367] + y[16];
-        const gic_real t457 = m[365] * (m[365] * R(0.06276)) + (R(6.221420556416178e-06) + m[364] * (m[364] * R(0.03138)));
-        const gic_real t458 = m[368] + y[17];
-        const gic_real t459 = m[362] * R(0.06276);
-        const gic_real t460 = m[361] * R(0.03138);
-        const gic_real t461 = m[365] * t459 + (m[364] * t460 + R(-3.3816305342675644e-07));
-        const gic_real t462 = m[359] * R(0.06276);
-        const gic_real t463 = m[358] * R(0.03138);
-        const gic_real t464 = m[365] * t462 + (R(0.00044180239545791184) + m[364] * t463);
-        const gic_real t465 = m[366] + y[15];
+        const gic_real t455 = t369 + (t414 + (t405 * R(-2.6847235865999997) - R(1.2793889830000003) * t412)) + (t454 +
+            (t446 * R(2.6864953889999996) - t452 * R(1.3118720270000004)));
+        /* inertia of uca_r_r */
+        const gic_real t456 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t457 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(6.221420556416178e-06) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t458 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t459 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t460 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t461 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t459 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t460 + R(-3.3816305342675644e-07));
+        const gic_real t462 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t463 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t464 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t462 + (R(0.00044180239545791184) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t463);
+        const gic_real t465 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t466 = t457 * t458 + (t461 * t456 + t464 * t465);
-        const gic_real t467 = m[362] * t459 + (R(1.838072987767614e-08) + m[361] * t460);
-        const gic_real t468 = m[362] * t462 + (m[361] * t463 + R(-2.4014008650359553e-05));
+        const gic_real t467 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t459 + (R(1.838072987767614e-08) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t460);
+        const gic_real t468 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t462 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t463 + R(-2.4014008650359553e-05));
         const gic_real t469 = t461 * t458 + (t467 * t456 + t468 * t465);
-        const gic_real t470 = m[374] + (acc[2] + (m[367] * y[15] - m[366] * y[16])) + m[380] * acc[9];
-        const gic_real t471 = m[373] + (acc[1] + (m[366] * y[17] - m[368] * y[15])) + m[379] * acc[9];
-        const gic_real t472 = m[359] * t462 + (R(0.0313737601987137) + m[358] * t463);
-        const gic_real t473 = m[372] + (acc[0] + (m[368] * y[16] - m[367] * y[17])) + m[378] * acc[9];
+        const gic_real t470 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] + (acc[HMMWV14_UNKNOWN_ALPHA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t471 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t472 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * t462 + (R(0.0313737601987137) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * t463);
+        const gic_real t473 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] + (acc[HMMWV14_UNKNOWN_ALPHA_X] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * acc[HMMWV14_UNKNOWN_OF_SPRING_R_R];
         const gic_real t474 = t456 * t466 - t458 * t469 + (t464 * t470 + (t468 * t471 + t472 * t473));
-        const gic_real t475 = m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05));
-        const gic_real t476 = m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126));
-        const gic_real t477 = m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126));
-        const gic_real t478 = m[368] * t476 - m[366] * t477;
-        const gic_real t479 = m[367] * t477 - m[368] * t475;
-        const gic_real t480 = m[366] * t478 - m[367] * t479 + (m[372] * t475 - m[373] * t476);
+        const gic_real t475 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(-0.1268157381236126) + R(6.79134666217616e-05));
+        const gic_real t476 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (R(-0.0887274110323348) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(-0.1268157381236126));
+        const gic_real t477 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (R(-0.0012494512130067036) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(-0.1268157381236126));
+        const gic_real t478 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t476 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t477;
+        const gic_real t479 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t477 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t475;
+        const gic_real t480 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t478 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t479 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t475 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t476);
         const gic_real t481 = R(-1.475859) + t476;
         const gic_real t482 = R(0.22567900000000007) + t477;
-        const gic_real t483 = t478 + (t478 + (y[17] * t481 - y[15] * t482));
+        const gic_real t483 = t478 + (t478 + (y[HMMWV14_STATE_OMEGA_Z] * t481 - y[HMMWV14_STATE_OMEGA_X] * t482));
         const gic_real t484 = R(-0.462153) + t475;
-        const gic_real t485 = t479 + (t479 + (y[16] * t482 - y[17] * t484));
-        const gic_real t486 = y[15] * t483 - y[16] * t485 + (acc[0] * t484 - acc[1] * t481);
-        const gic_real t487 = t480 + (acc[5] + t486) + acc[9] * (m[378] * t475 - m[379] * t476);
+        const gic_real t485 = t479 + (t479 + (y[HMMWV14_STATE_OMEGA_Y] * t482 - y[HMMWV14_STATE_OMEGA_Z] * t484));
+        const gic_real t486 = y[HMMWV14_STATE_OMEGA_X] * t483 - y[HMMWV14_STATE_OMEGA_Y] * t485 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_X] * t484 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * t481);
+        const gic_real t487 = t480 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + t486) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t475 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t476);
         const gic_real t488 = R(5.813) * t487;
-        const gic_real t489 = m[366] * t475 - m[367] * t476;
-        const gic_real t490 = m[368] * t479 - m[366] * t489 + (m[374] * t476 - m[372] * t477);
-        const gic_real t491 = t489 + (t489 + (y[15] * t484 - y[16] * t481));
-        const gic_real t492 = y[17] * t485 - y[15] * t491 + (acc[2] * t481 - acc[0] * t482);
-        const gic_real t493 = t490 + (acc[4] + t492) + acc[9] * (m[380] * t476 - m[378] * t477);
+        const gic_real t489 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t475 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t476;
+        const gic_real t490 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t479 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t489 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t476 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t477);
+        const gic_real t491 = t489 + (t489 + (y[HMMWV14_STATE_OMEGA_X] * t484 - y[HMMWV14_STATE_OMEGA_Y] * t481));
+        const gic_real t492 = y[HMMWV14_STATE_OMEGA_Z] * t485 - y[HMMWV14_STATE_OMEGA_X] * t491 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Z] * t481 - acc[HMMWV14_UNKNOWN_ALPHA_X] * t482);
+        const gic_real t493 = t490 + (acc[HMMWV14_UNKNOWN_ACCELERATION_Y] + t492) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t476 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t477);
         const gic_real t494 = R(5.813) * t493;
         const gic_real t495 = t474 + (t475 * t488 - t477 * t494);
-        const gic_real t496 = t298 + m[391] * R(-0.12319000000000002);
+        const gic_real t496 = t298 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
         const gic_real t497 = e[1] + e[1];
         const gic_real t498 = e[1] * t497;
         const gic_real t499 = e[2] + e[2];
@@ -6108,37 +8053,43 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t502 = e[3] * t499;
         const gic_real t503 = e[0] * t497;
         const gic_real t504 = t502 - t503;
-        const gic_real t505 = t300 + m[388] * R(-0.12319000000000002);
-        const gic_real t506 = m[385] + t496;
-        const gic_real t507 = m[384] + t505;
-        const gic_real t508 = m[401] + (m[396] * t496 - m[397] * t505) + (y[15] * t506 - y[16] * t507);
+        const gic_real t505 = t300 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t506 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t496;
+        const gic_real t507 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t505;
+        const gic_real t508 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t496 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t505) + (y[HMMWV14_STATE_OMEGA_X] * t506 - y[HMMWV14_STATE_OMEGA_Y] * t507);
         const gic_real t509 = e[3] + e[3];
         const gic_real t510 = e[3] * t509;
         const gic_real t511 = R(1.0) - (t498 + t510);
-        const gic_real t512 = t302 + m[394] * R(-0.12319000000000002);
-        const gic_real t513 = m[386] + t512;
-        const gic_real t514 = m[400] + (m[398] * t505 - m[396] * t512) + (y[17] * t507 - y[15] * t513);
+        const gic_real t512 = t302 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t513 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t512;
+        const gic_real t514 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t505 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t512) + (y[HMMWV14_STATE_OMEGA_Z] * t507 - y[HMMWV14_STATE_OMEGA_X] * t513);
         const gic_real t515 = e[2] * t497;
         const gic_real t516 = e[0] * t509;
         const gic_real t517 = t515 + t516;
-        const gic_real t518 = m[397] * t512 - m[398] * t496 + (y[16] * t513 - y[17] * t506);
-        const gic_real t519 = y[13] + (t504 * t508 + (t511 * t514 + t517 * t518));
+        const gic_real t518 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t512 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t496 + (y[HMMWV14_STATE_OMEGA_Y] * t513 -
+            y[HMMWV14_STATE_OMEGA_Z] * t506);
+        const gic_real t519 = y[HMMWV14_STATE_V_Y] + (t504 * t508 + (t511 * t514 + t517 * t518));
         const gic_real t520 = e[1] * t509;
         const gic_real t521 = e[0] * t499;
         const gic_real t522 = t520 + t521;
         const gic_real t523 = t515 - t516;
         const gic_real t524 = R(1.0) - (t500 + t510);
-        const gic_real t525 = y[0] + (t522 * t513 + (t523 * t506 + t524 * t507));
-        const gic_real t526 = y[1] + (t504 * t513 + (t511 * t506 + t517 * t507));
+        const gic_real t525 = y[HMMWV14_STATE_R_X] + (t522 * t513 + (t523 * t506 + t524 * t507));
+        const gic_real t526 = y[HMMWV14_STATE_R_Y] + (t504 * t513 + (t511 * t506 + t517 * t507));
         gic_real road527[3];
         if (!hmmwv14_road_height(self, time, t525, t526, road527))
             return GIC_ERROR_ROAD;
-        const gic_real t528 = y[12] + (t522 * t508 + (t523 * t514 + t524 * t518));
+        const gic_real t528 = y[HMMWV14_STATE_V_X] + (t522 * t508 + (t523 * t514 + t524 * t518));
         const gic_real t529 = t502 + t503;
         const gic_real t530 = t520 - t521;
-        const gic_real t531 = y[14] + (t501 * t508 + (t529 * t514 + t530 * t518));
+        const gic_real t531 = y[HMMWV14_STATE_V_Z] + (t501 * t508 + (t529 * t514 + t530 * t518));
         const gic_real t532 = t519 * road527[2] + t528 * road527[1] - t531;
-        const gic_real t533 = y[2] + (t501 * t513 + (t529 * t506 + t530 * t507));
+        const gic_real t533 = y[HMMWV14_STATE_R_Z] + (t501 * t513 + (t529 * t506 + t530 * t507));
         const gic_real t534 = R(0.4699) + road527[0] - t533;
         const gic_real t535 = GIC_MIN(GIC_MAX(R(100.0) * t534, R(0.0)), R(1.0));
         const gic_real t536 = t532 * (R(500.0) * ((R(3.0) - (t535 + t535)) * (t535 * t535)));
@@ -6146,25 +8097,31 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t538 = t501 * t537;
         const gic_real t539 = t529 * t537;
         const gic_real t540 = t496 * t538 - t512 * t539;
-        const gic_real t541 = t250 + m[331] * R(0.12319000000000002);
-        const gic_real t542 = t252 + m[328] * R(0.12319000000000002);
-        const gic_real t543 = m[325] + t541;
-        const gic_real t544 = m[324] + t542;
-        const gic_real t545 = m[341] + (m[336] * t541 - m[337] * t542) + (y[15] * t543 - y[16] * t544);
-        const gic_real t546 = t254 + m[334] * R(0.12319000000000002);
-        const gic_real t547 = m[326] + t546;
-        const gic_real t548 = m[340] + (m[338] * t542 - m[336] * t546) + (y[17] * t544 - y[15] * t547);
-        const gic_real t549 = m[337] * t546 - m[338] * t541 + (y[16] * t547 - y[17] * t543);
-        const gic_real t550 = y[13] + (t504 * t545 + (t511 * t548 + t517 * t549));
-        const gic_real t551 = y[0] + (t522 * t547 + (t523 * t543 + t524 * t544));
-        const gic_real t552 = y[1] + (t504 * t547 + (t511 * t543 + t517 * t544));
+        const gic_real t541 = t250 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t542 = t252 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t543 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t541;
+        const gic_real t544 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t542;
+        const gic_real t545 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t541 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t542) + (y[HMMWV14_STATE_OMEGA_X] * t543 - y[HMMWV14_STATE_OMEGA_Y] * t544);
+        const gic_real t546 = t254 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t547 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t546;
+        const gic_real t548 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t542 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t546) + (y[HMMWV14_STATE_OMEGA_Z] * t544 - y[HMMWV14_STATE_OMEGA_X] * t547);
+        const gic_real t549 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t546 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t541 + (y[HMMWV14_STATE_OMEGA_Y] * t547 -
+            y[HMMWV14_STATE_OMEGA_Z] * t543);
+        const gic_real t550 = y[HMMWV14_STATE_V_Y] + (t504 * t545 + (t511 * t548 + t517 * t549));
+        const gic_real t551 = y[HMMWV14_STATE_R_X] + (t522 * t547 + (t523 * t543 + t524 * t544));
+        const gic_real t552 = y[HMMWV14_STATE_R_Y] + (t504 * t547 + (t511 * t543 + t517 * t544));
         gic_real road553[3];
         if (!hmmwv14_road_height(self, time, t551, t552, road553))
             return GIC_ERROR_ROAD;
-        const gic_real t554 = y[12] + (t522 * t545 + (t523 * t548 + t524 * t549));
-        const gic_real t555 = y[14] + (t501 * t545 + (t529 * t548 + t530 * t549));
+        const gic_real t554 = y[HMMWV14_STATE_V_X] + (t522 * t545 + (t523 * t548 + t524 * t549));
+        const gic_real t555 = y[HMMWV14_STATE_V_Z] + (t501 * t545 + (t529 * t548 + t530 * t549));
         const gic_real t556 = t550 * road553[2] + t554 * road553[1] - t555;
-        const gic_real t557 = y[2] + (t501 * t547 + (t529 * t543 + t530 * t544));
+        const gic_real t557 = y[HMMWV14_STATE_R_Z] + (t501 * t547 + (t529 * t543 + t530 * t544));
         const gic_real t558 = R(0.4699) + road553[0] - t557;
         const gic_real t559 = GIC_MIN(GIC_MAX(R(100.0) * t558, R(0.0)), R(1.0));
         const gic_real t560 = t556 * (R(500.0) * ((R(3.0) - (t559 + t559)) * (t559 * t559)));
@@ -6172,45 +8129,59 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t562 = t501 * t561;
         const gic_real t563 = t529 * t561;
         const gic_real t564 = t541 * t562 - t546 * t563;
-        const gic_real t565 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
-        const gic_real t566 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        /* force shock_r_r */
+        const gic_real t565 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.23915941563573181);
+        const gic_real t566 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.23915941563573181);
         const gic_real t567 = R(-0.307086) + t566 - R(-0.4977892);
         const gic_real t568 = t565 - R(0.32313880000000006);
         const gic_real t569 = R(1.0) / GIC_SQRT(t568 * t568 + (R(4.633797183999867e-05) + t567 * t567));
-        const gic_real t570 = t569 * (m[132] * t566 * t568 - m[132] * t565 * t567);
+        const gic_real t570 = t569 * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t566 * t568 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t565 * t567);
         const gic_real t571 = t569 * (R(24780.4) * t570);
         const gic_real t572 = t567 * t571;
         const gic_real t573 = t568 * t571;
         const gic_real t574 = t565 * t572 - t566 * t573;
-        const gic_real t575 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
-        const gic_real t576 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        /* force shock_r_l */
+        const gic_real t575 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.23915941563573181);
+        const gic_real t576 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.23915941563573181);
         const gic_real t577 = R(0.307086) + t576 - R(0.4977892);
         const gic_real t578 = t575 - R(0.32313880000000006);
         const gic_real t579 = R(1.0) / GIC_SQRT(t578 * t578 + (R(4.633797183999867e-05) + t577 * t577));
-        const gic_real t580 = t579 * (m[102] * t576 * t578 - m[102] * t575 * t577);
+        const gic_real t580 = t579 * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t576 * t578 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t575 * t577);
         const gic_real t581 = t579 * (t580 * R(24780.4));
         const gic_real t582 = t577 * t581;
         const gic_real t583 = t578 * t581;
         const gic_real t584 = t575 * t582 - t576 * t583;
-        const gic_real t585 = t147 + (m[265] * R(-0.12319000000000002) + t148);
-        const gic_real t586 = t150 + (m[262] * R(-0.12319000000000002) + t151);
-        const gic_real t587 = m[259] + t585;
-        const gic_real t588 = m[258] + t586;
-        const gic_real t589 = m[275] + (m[270] * t585 - m[271] * t586) + (y[15] * t587 - y[16] * t588);
-        const gic_real t590 = t153 + (m[268] * R(-0.12319000000000002) + t154);
-        const gic_real t591 = m[260] + t590;
-        const gic_real t592 = m[274] + (m[272] * t586 - m[270] * t590) + (y[17] * t588 - y[15] * t591);
-        const gic_real t593 = m[271] * t590 - m[272] * t585 + (y[16] * t591 - y[17] * t587);
-        const gic_real t594 = y[13] + (t504 * t589 + (t511 * t592 + t517 * t593));
-        const gic_real t595 = y[0] + (t522 * t591 + (t523 * t587 + t524 * t588));
-        const gic_real t596 = y[1] + (t504 * t591 + (t511 * t587 + t517 * t588));
+        const gic_real t585 = t147 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) + t148);
+        const gic_real t586 = t150 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) + t151);
+        const gic_real t587 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t585;
+        const gic_real t588 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t586;
+        const gic_real t589 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t585 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t586) + (y[HMMWV14_STATE_OMEGA_X] * t587 - y[HMMWV14_STATE_OMEGA_Y] * t588);
+        const gic_real t590 = t153 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) + t154);
+        const gic_real t591 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t590;
+        const gic_real t592 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t586 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t590) + (y[HMMWV14_STATE_OMEGA_Z] * t588 - y[HMMWV14_STATE_OMEGA_X] * t591);
+        const gic_real t593 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t590 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t585 + (y[HMMWV14_STATE_OMEGA_Y] * t591 -
+            y[HMMWV14_STATE_OMEGA_Z] * t587);
+        const gic_real t594 = y[HMMWV14_STATE_V_Y] + (t504 * t589 + (t511 * t592 + t517 * t593));
+        const gic_real t595 = y[HMMWV14_STATE_R_X] + (t522 * t591 + (t523 * t587 + t524 * t588));
+        const gic_real t596 = y[HMMWV14_STATE_R_Y] + (t504 * t591 + (t511 * t587 + t517 * t588));
         gic_real road597[3];
         if (!hmmwv14_road_height(self, time, t595, t596, road597))
             return GIC_ERROR_ROAD;
-        const gic_real t598 = y[12] + (t522 * t589 + (t523 * t592 + t524 * t593));
-        const gic_real t599 = y[14] + (t501 * t589 + (t529 * t592 + t530 * t593));
+        const gic_real t598 = y[HMMWV14_STATE_V_X] + (t522 * t589 + (t523 * t592 + t524 * t593));
+        const gic_real t599 = y[HMMWV14_STATE_V_Z] + (t501 * t589 + (t529 * t592 + t530 * t593));
         const gic_real t600 = t594 * road597[2] + t598 * road597[1] - t599;
-        const gic_real t601 = y[2] + (t501 * t591 + (t529 * t587 + t530 * t588));
+        const gic_real t601 = y[HMMWV14_STATE_R_Z] + (t501 * t591 + (t529 * t587 + t530 * t588));
         const gic_real t602 = R(0.4699) + road597[0] - t601;
         const gic_real t603 = GIC_MIN(GIC_MAX(R(100.0) * t602, R(0.0)), R(1.0));
         const gic_real t604 = t600 * (R(500.0) * ((R(3.0) - (t603 + t603)) * (t603 * t603)));
@@ -6218,25 +8189,31 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t606 = t501 * t605;
         const gic_real t607 = t529 * t605;
         const gic_real t608 = t585 * t606 - t590 * t607;
-        const gic_real t609 = t91 + (m[193] * R(0.12319000000000002) + t92);
-        const gic_real t610 = t94 + (m[190] * R(0.12319000000000002) + t95);
-        const gic_real t611 = m[187] + t609;
-        const gic_real t612 = m[186] + t610;
-        const gic_real t613 = m[203] + (m[198] * t609 - m[199] * t610) + (y[15] * t611 - y[16] * t612);
-        const gic_real t614 = t97 + (m[196] * R(0.12319000000000002) + t98);
-        const gic_real t615 = m[188] + t614;
-        const gic_real t616 = m[202] + (m[200] * t610 - m[198] * t614) + (y[17] * t612 - y[15] * t615);
-        const gic_real t617 = m[199] * t614 - m[200] * t609 + (y[16] * t615 - y[17] * t611);
-        const gic_real t618 = y[13] + (t504 * t613 + (t511 * t616 + t517 * t617));
-        const gic_real t619 = y[0] + (t522 * t615 + (t523 * t611 + t524 * t612));
-        const gic_real t620 = y[1] + (t504 * t615 + (t511 * t611 + t517 * t612));
+        const gic_real t609 = t91 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) + t92);
+        const gic_real t610 = t94 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) + t95);
+        const gic_real t611 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t609;
+        const gic_real t612 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t610;
+        const gic_real t613 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t609 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t610) + (y[HMMWV14_STATE_OMEGA_X] * t611 - y[HMMWV14_STATE_OMEGA_Y] * t612);
+        const gic_real t614 = t97 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) + t98);
+        const gic_real t615 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t614;
+        const gic_real t616 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t610 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t614) + (y[HMMWV14_STATE_OMEGA_Z] * t612 - y[HMMWV14_STATE_OMEGA_X] * t615);
+        const gic_real t617 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t614 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t609 + (y[HMMWV14_STATE_OMEGA_Y] * t615 -
+            y[HMMWV14_STATE_OMEGA_Z] * t611);
+        const gic_real t618 = y[HMMWV14_STATE_V_Y] + (t504 * t613 + (t511 * t616 + t517 * t617));
+        const gic_real t619 = y[HMMWV14_STATE_R_X] + (t522 * t615 + (t523 * t611 + t524 * t612));
+        const gic_real t620 = y[HMMWV14_STATE_R_Y] + (t504 * t615 + (t511 * t611 + t517 * t612));
         gic_real road621[3];
         if (!hmmwv14_road_height(self, time, t619, t620, road621))
             return GIC_ERROR_ROAD;
-        const gic_real t622 = y[12] + (t522 * t613 + (t523 * t616 + t524 * t617));
-        const gic_real t623 = y[14] + (t501 * t613 + (t529 * t616 + t530 * t617));
+        const gic_real t622 = y[HMMWV14_STATE_V_X] + (t522 * t613 + (t523 * t616 + t524 * t617));
+        const gic_real t623 = y[HMMWV14_STATE_V_Z] + (t501 * t613 + (t529 * t616 + t530 * t617));
         const gic_real t624 = t618 * road621[2] + t622 * road621[1] - t623;
-        const gic_real t625 = y[2] + (t501 * t615 + (t529 * t611 + t530 * t612));
+        const gic_real t625 = y[HMMWV14_STATE_R_Z] + (t501 * t615 + (t529 * t611 + t530 * t612));
         const gic_real t626 = road621[0] + R(0.4699) - t625;
         const gic_real t627 = GIC_MIN(GIC_MAX(t626 * R(100.0), R(0.0)), R(1.0));
         const gic_real t628 = t624 * ((R(3.0) - (t627 + t627)) * (t627 * t627) * R(500.0));
@@ -6244,85 +8221,144 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t630 = t501 * t629;
         const gic_real t631 = t529 * t629;
         const gic_real t632 = t609 * t630 - t614 * t631;
-        const gic_real t633 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
-        const gic_real t634 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t633 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.2403881036540444);
+        const gic_real t634 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.2403881036540444);
         const gic_real t635 = R(-0.307086) + t634 - R(-0.4977892);
         const gic_real t636 = t633 - R(0.32313880000000006);
         const gic_real t637 = R(1.0) / GIC_SQRT(t636 * t636 + (R(4.633797183999867e-05) + t635 * t635));
-        const gic_real t638 = t637 * (m[72] * t634 * t636 - m[72] * t633 * t635);
+        const gic_real t638 = t637 * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t634 * t636 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t633 * t635);
         const gic_real t639 = t637 * (R(17490.8) * t638);
         const gic_real t640 = t635 * t639;
         const gic_real t641 = t636 * t639;
         const gic_real t642 = t633 * t640 - t634 * t641;
-        const gic_real t643 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
-        const gic_real t644 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t643 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.2403881036540444);
+        const gic_real t644 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.2403881036540444);
         const gic_real t645 = R(0.307086) + t644 - R(0.4977892);
         const gic_real t646 = t643 - R(0.32313880000000006);
         const gic_real t647 = R(1.0) / GIC_SQRT(t646 * t646 + (t645 * t645 + R(4.633797183999867e-05)));
-        const gic_real t648 = t647 * (m[42] * t644 * t646 - m[42] * t643 * t645);
+        const gic_real t648 = t647 * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t644 * t646 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t643 * t645);
         const gic_real t649 = t647 * (t648 * R(17490.8));
         const gic_real t650 = t645 * t649;
         const gic_real t651 = t646 * t649;
         const gic_real t652 = t643 * t650 - t644 * t651;
-        const gic_real t653 = R(0.4977892) * t651 - R(0.32313880000000006) * t650 + (R(-0.4977892) * t641 - R(0.32313880000000006) * t640);
-        const gic_real t654 = t653 + (R(0.4977892) * t583 - R(0.32313880000000006) * t582) + (R(-0.4977892) * t573 - R(0.32313880000000006) * t572);
+        const gic_real t653 = R(0.4977892) * t651 - R(0.32313880000000006) * t650 + (R(-0.4977892) * t641 -
+            R(0.32313880000000006) * t640);
+        const gic_real t654 = t653 + (R(0.4977892) * t583 - R(0.32313880000000006) * t582) + (R(-0.4977892) * t573 -
+            R(0.32313880000000006) * t572);
+        /* applied forces: moment and force on the base, and along each coordinate */
         const gic_real t655 = t642 + (t652 + (t654 - R(0.307086) * t651) - R(-0.307086) * t641);
-        const gic_real t656 = t632 + (t655 + (m[187] * t630 - m[188] * t631)) + (m[259] * t606 - m[260] * t607);
+        const gic_real t656 = t632 + (t655 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t630 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t631)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t606 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t607);
         const gic_real t657 = t584 + (t608 + t656 - R(0.307086) * t583) - R(-0.307086) * t573;
-        const gic_real t658 = t564 + (t574 + t657 + (m[325] * t562 - m[326] * t563));
-        const gic_real t659 = t455 + (t495 + (t487 * R(-2.6864953889999996) - R(1.3118720270000004) * t493)) - (t540 + (t658 + (m[385] * t538 - m[386] * t539)));
-        const gic_real t660 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t661 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t660 + y[16] * t3));
-        const gic_real t662 = y[16] * t13 - y[17] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t663 = acc[3] + t662;
+        const gic_real t658 = t564 + (t574 + t657 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t562 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t563));
+        const gic_real residual_0 = t455 + (t495 + (t487 * R(-2.6864953889999996) - R(1.3118720270000004) * t493)) -
+            (t540 + (t658 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t538 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t539)));
+        const gic_real t660 = y[HMMWV14_STATE_OMEGA_Z] * R(0.056) - y[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t661 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + (acc[HMMWV14_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000008) - (y[HMMWV14_STATE_OMEGA_Z] * t660 + y[HMMWV14_STATE_OMEGA_Y] * t3));
+        const gic_real t662 = y[HMMWV14_STATE_OMEGA_Y] * t13 - y[HMMWV14_STATE_OMEGA_Z] * t8 + (R(0.05422899999999997) *
+            acc[HMMWV14_UNKNOWN_ALPHA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * acc[HMMWV14_UNKNOWN_ALPHA_Z]);
+        const gic_real t663 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t662;
         const gic_real t664 = t663 * R(9.072);
-        const gic_real t665 = y[16] * t37 - y[17] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t666 = acc[3] + t665;
+        const gic_real t665 = y[HMMWV14_STATE_OMEGA_Y] * t37 - y[HMMWV14_STATE_OMEGA_Z] * t28 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t25 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t666 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t665;
         const gic_real t667 = t666 * R(23.965);
-        const gic_real t668 = y[16] * t62 - y[17] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t669 = acc[3] + t668;
+        const gic_real t668 = y[HMMWV14_STATE_OMEGA_Y] * t62 - y[HMMWV14_STATE_OMEGA_Z] * t55 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t53 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t669 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t668;
         const gic_real t670 = R(23.965) * t669;
-        const gic_real t671 = m[199] * t113 - m[200] * t100 + (m[205] * t99 - m[206] * t93);
-        const gic_real t672 = y[16] * t116 - y[17] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t673 = t671 + (acc[3] + t672) + acc[10] * (m[211] * t99 - m[212] * t93);
-        const gic_real t674 = (t673 + acc[6] * (m[217] * t99 - m[218] * t93)) * R(90.555);
-        const gic_real t675 = m[271] * t169 - m[272] * t156 + (m[277] * t155 - m[278] * t149);
-        const gic_real t676 = y[16] * t172 - y[17] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t677 = t675 + (acc[3] + t676) + acc[10] * (m[283] * t155 - m[284] * t149);
-        const gic_real t678 = R(90.555) * (t677 + acc[7] * (m[289] * t155 - m[290] * t149));
+        const gic_real t671 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t113 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t100 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] *
+            t99 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] * t93);
+        const gic_real t672 = y[HMMWV14_STATE_OMEGA_Y] * t116 - y[HMMWV14_STATE_OMEGA_Z] * t106 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t105 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t673 = t671 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t672) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t99 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t93);
+        const gic_real t674 = (t673 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t99 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t93)) *
+            R(90.555);
+        const gic_real t675 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t169 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t156 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] *
+            t155 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] * t149);
+        const gic_real t676 = y[HMMWV14_STATE_OMEGA_Y] * t172 - y[HMMWV14_STATE_OMEGA_Z] * t162 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t161 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t677 = t675 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t676) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t155 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t149);
+        const gic_real t678 = R(90.555) * (t677 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t155 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t149));
         const gic_real t679 = t661 * R(2086.52) + t664 + t667 + t670 + t674 + t678;
-        const gic_real t680 = y[16] * t199 - y[17] * t190 + (acc[1] * t187 - acc[2] * t191);
-        const gic_real t681 = acc[3] + t680;
+        const gic_real t680 = y[HMMWV14_STATE_OMEGA_Y] * t199 - y[HMMWV14_STATE_OMEGA_Z] * t190 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t187 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t191);
+        const gic_real t681 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t680;
         const gic_real t682 = R(23.965) * t681;
-        const gic_real t683 = y[16] * t224 - y[17] * t217 + (acc[1] * t215 - acc[2] * t218);
-        const gic_real t684 = acc[3] + t683;
+        const gic_real t683 = y[HMMWV14_STATE_OMEGA_Y] * t224 - y[HMMWV14_STATE_OMEGA_Z] * t217 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t215 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t218);
+        const gic_real t684 = acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t683;
         const gic_real t685 = R(23.965) * t684;
-        const gic_real t686 = m[337] * t268 - m[338] * t256 + (m[343] * t255 - m[344] * t251);
-        const gic_real t687 = y[16] * t271 - y[17] * t262 + (acc[1] * t261 - acc[2] * t263);
-        const gic_real t688 = t686 + (acc[3] + t687) + acc[8] * (m[349] * t255 - m[350] * t251);
+        const gic_real t686 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t268 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t256 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] *
+            t255 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] * t251);
+        const gic_real t687 = y[HMMWV14_STATE_OMEGA_Y] * t271 - y[HMMWV14_STATE_OMEGA_Z] * t262 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t261 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t263);
+        const gic_real t688 = t686 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t687) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t255 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t251);
         const gic_real t689 = R(90.555) * t688;
-        const gic_real t690 = m[397] * t316 - m[398] * t304 + (m[403] * t303 - m[404] * t299);
-        const gic_real t691 = y[16] * t319 - y[17] * t310 + (acc[1] * t309 - acc[2] * t311);
-        const gic_real t692 = t690 + (acc[3] + t691) + acc[9] * (m[409] * t303 - m[410] * t299);
+        const gic_real t690 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t316 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t304 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] *
+            t303 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] * t299);
+        const gic_real t691 = y[HMMWV14_STATE_OMEGA_Y] * t319 - y[HMMWV14_STATE_OMEGA_Z] * t310 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t309 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t311);
+        const gic_real t692 = t690 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t691) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t303 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t299);
         const gic_real t693 = R(90.555) * t692;
-        const gic_real t694 = m[163] * t361 - m[164] * t349 + (m[169] * t348 - m[170] * t346);
-        const gic_real t695 = y[16] * t363 - y[17] * t354 + (acc[1] * t353 - acc[2] * t355);
-        const gic_real t696 = t694 + (acc[3] + t695) + acc[10] * (m[175] * t348 - m[176] * t346);
-        const gic_real t697 = t696 + acc[6] * (m[181] * t348 - m[182] * t346);
+        const gic_real t694 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t361 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t349 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t348 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t346);
+        const gic_real t695 = y[HMMWV14_STATE_OMEGA_Y] * t363 - y[HMMWV14_STATE_OMEGA_Z] * t354 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t353 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t355);
+        const gic_real t696 = t694 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t695) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t348 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t346);
+        const gic_real t697 = t696 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] *
+            t348 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * t346);
         const gic_real t698 = t697 * R(5.813);
-        const gic_real t699 = m[235] * t407 - m[236] * t395 + (m[241] * t394 - m[242] * t392);
-        const gic_real t700 = y[16] * t409 - y[17] * t400 + (acc[1] * t399 - acc[2] * t401);
-        const gic_real t701 = t699 + (acc[3] + t700) + acc[10] * (m[247] * t394 - m[248] * t392);
-        const gic_real t702 = t701 + acc[7] * (m[253] * t394 - m[254] * t392);
+        const gic_real t699 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t407 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t395 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t394 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t392);
+        const gic_real t700 = y[HMMWV14_STATE_OMEGA_Y] * t409 - y[HMMWV14_STATE_OMEGA_Z] * t400 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t399 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t401);
+        const gic_real t701 = t699 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t700) + acc[HMMWV14_UNKNOWN_OF_RACK] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t394 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t392);
+        const gic_real t702 = t701 + acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] *
+            t394 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * t392);
         const gic_real t703 = R(5.813) * t702;
         const gic_real t704 = t679 + t682 + t685 + t689 + t693 + t698 + t703;
-        const gic_real t705 = m[307] * t448 - m[308] * t437 + (m[313] * t436 - m[314] * t434);
-        const gic_real t706 = y[16] * t450 - y[17] * t442 + (acc[1] * t441 - acc[2] * t443);
-        const gic_real t707 = t705 + (acc[3] + t706) + acc[8] * (m[319] * t436 - m[320] * t434);
+        const gic_real t705 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t448 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t437 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t436 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t434);
+        const gic_real t706 = y[HMMWV14_STATE_OMEGA_Y] * t450 - y[HMMWV14_STATE_OMEGA_Z] * t442 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t441 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t443);
+        const gic_real t707 = t705 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t706) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t436 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t434);
         const gic_real t708 = R(5.813) * t707;
-        const gic_real t709 = m[367] * t489 - m[368] * t478 + (m[373] * t477 - m[374] * t475);
-        const gic_real t710 = y[16] * t491 - y[17] * t483 + (acc[1] * t482 - acc[2] * t484);
-        const gic_real t711 = t709 + (acc[3] + t710) + acc[9] * (m[379] * t477 - m[380] * t475);
+        const gic_real t709 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t489 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t478 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t477 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t475);
+        const gic_real t710 = y[HMMWV14_STATE_OMEGA_Y] * t491 - y[HMMWV14_STATE_OMEGA_Z] * t483 +
+            (acc[HMMWV14_UNKNOWN_ALPHA_Y] * t482 - acc[HMMWV14_UNKNOWN_ALPHA_Z] * t484);
+        const gic_real t711 = t709 + (acc[HMMWV14_UNKNOWN_ACCELERATION_X] + t710) + acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t477 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t475);
         const gic_real t712 = R(5.813) * t711;
         const gic_real t713 = t530 * t537;
         const gic_real t714 = t530 * t561;
@@ -6333,57 +8369,74 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t719 = R(0.006807199999999902) * t581;
         const gic_real t720 = R(0.006807199999999902) * t571;
         const gic_real t721 = t716 + (t717 + t718 + t719 + t720 - t717 - t718);
-        const gic_real t722 = t704 + t708 + t712 - (t713 + (t714 + (t715 + t721 - t719 - t720)));
-        const gic_real t723 = y[15] * R(1078.52);
-        const gic_real t724 = acc[5] + (y[15] * t660 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t725 = y[17] * t723 - y[15] * t1 + acc[1] * R(2955.66) + (t661 * R(444.4287600000002) - t724 * R(116.84512));
-        const gic_real t726 = m[42] + y[15];
+        const gic_real residual_3 = t704 + t708 + t712 - (t713 + (t714 + (t715 + t721 - t719 - t720)));
+        const gic_real t723 = y[HMMWV14_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t724 = acc[HMMWV14_UNKNOWN_ACCELERATION_Z] + (y[HMMWV14_STATE_OMEGA_X] * t660 -
+            y[HMMWV14_STATE_OMEGA_Y] * t4 - acc[HMMWV14_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t725 = y[HMMWV14_STATE_OMEGA_Z] * t723 - y[HMMWV14_STATE_OMEGA_X] * t1 +
+            acc[HMMWV14_UNKNOWN_ALPHA_Y] * R(2955.66) + (t661 * R(444.4287600000002) - t724 * R(116.84512));
+        const gic_real t726 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t727 = R(0.4469) * t726;
-        const gic_real t728 = acc[2] - m[42] * y[16];
-        const gic_real t729 = acc[1] + m[42] * y[17];
-        const gic_real t730 = y[17] * t727 - t726 * t20 + (t19 * t728 + t21 * t729);
-        const gic_real t731 = t725 + (acc[1] + (t663 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t730 + t25 * t667 - t33 * R(40.476046225));
-        const gic_real t732 = m[72] + y[15];
+        const gic_real t728 = acc[HMMWV14_UNKNOWN_ALPHA_Z] - m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t729 = acc[HMMWV14_UNKNOWN_ALPHA_Y] + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t730 = y[HMMWV14_STATE_OMEGA_Z] * t727 - t726 * t20 + (t19 * t728 + t21 * t729);
+        const gic_real t731 = t725 + (acc[HMMWV14_UNKNOWN_ALPHA_Y] + (t663 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t730 + t25 * t667 - t33 * R(40.476046225));
+        const gic_real t732 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t733 = R(0.4469) * t732;
-        const gic_real t734 = acc[2] - m[72] * y[16];
-        const gic_real t735 = acc[1] + m[72] * y[17];
-        const gic_real t736 = y[17] * t733 - t732 * t48 + (t47 * t734 + t49 * t735);
+        const gic_real t734 = acc[HMMWV14_UNKNOWN_ALPHA_Z] - m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t735 = acc[HMMWV14_UNKNOWN_ALPHA_Y] + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t736 = y[HMMWV14_STATE_OMEGA_Z] * t733 - t732 * t48 + (t47 * t734 + t49 * t735);
         const gic_real t737 = t77 * t69 + (t81 * t67 + t87 * t78);
         const gic_real t738 = t69 * t737 - t78 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t739 = t738 + (t99 * t674 - t96 * t112);
-        const gic_real t740 = t731 + (t736 + t53 * t670 - R(40.476046225) * t59) + (t739 + (m[188] * t674 - m[186] * t112));
+        const gic_real t740 = t731 + (t736 + t53 * t670 - R(40.476046225) * t59) + (t739 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t674 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t112));
         const gic_real t741 = t133 * t125 + (t137 * t123 + t143 * t134);
         const gic_real t742 = t125 * t741 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t743 = t742 + (t155 * t678 - t152 * t168);
-        const gic_real t744 = m[102] + y[15];
+        const gic_real t744 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t745 = R(0.4469) * t744;
-        const gic_real t746 = acc[2] - m[102] * y[16];
-        const gic_real t747 = acc[1] + m[102] * y[17];
-        const gic_real t748 = y[17] * t745 - t744 * t182 + (t181 * t746 + t183 * t747);
-        const gic_real t749 = t740 + (t743 + (m[260] * t678 - m[258] * t168)) + (t748 + t187 * t682 - t195 * R(-40.476046225));
-        const gic_real t750 = m[132] + y[15];
+        const gic_real t746 = acc[HMMWV14_UNKNOWN_ALPHA_Z] - m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t747 = acc[HMMWV14_UNKNOWN_ALPHA_Y] + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t748 = y[HMMWV14_STATE_OMEGA_Z] * t745 - t744 * t182 + (t181 * t746 + t183 * t747);
+        const gic_real t749 = t740 + (t743 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t678 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t168)) + (t748 + t187 * t682 - t195 * R(-40.476046225));
+        const gic_real t750 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X];
         const gic_real t751 = R(0.4469) * t750;
-        const gic_real t752 = acc[2] - m[132] * y[16];
-        const gic_real t753 = acc[1] + m[132] * y[17];
-        const gic_real t754 = y[17] * t751 - t750 * t210 + (t209 * t752 + t211 * t753);
+        const gic_real t752 = acc[HMMWV14_UNKNOWN_ALPHA_Z] - m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t753 = acc[HMMWV14_UNKNOWN_ALPHA_Y] + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t754 = y[HMMWV14_STATE_OMEGA_Z] * t751 - t750 * t210 + (t209 * t752 + t211 * t753);
         const gic_real t755 = t239 * t231 + (t243 * t229 + t247 * t240);
         const gic_real t756 = t231 * t755 - t240 * t241 + (t235 * t245 + (t242 * t246 + t243 * t248));
         const gic_real t757 = t756 + (t255 * t689 - t253 * t267);
-        const gic_real t758 = t749 + (t754 + t215 * t685 - R(-40.476046225) * t221) + (t757 + (m[326] * t689 - m[324] * t267));
+        const gic_real t758 = t749 + (t754 + t215 * t685 - R(-40.476046225) * t221) + (t757 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t689 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t267));
         const gic_real t759 = t287 * t279 + (t291 * t277 + t295 * t288);
         const gic_real t760 = t279 * t759 - t288 * t289 + (t283 * t293 + (t290 * t294 + t291 * t296));
         const gic_real t761 = t760 + (t303 * t693 - t301 * t315);
         const gic_real t762 = t332 * t326 + (t336 * t324 + t342 * t333);
         const gic_real t763 = t326 * t762 - t333 * t334 + (t329 * t339 + (t335 * t341 + t336 * t344));
         const gic_real t764 = t763 + (t348 * t698 - t347 * t360);
-        const gic_real t765 = t758 + (t761 + (m[386] * t693 - m[384] * t315)) + (t764 + (t697 * R(1.2793889830000003) - t359 * R(8.8991263504)));
+        const gic_real t765 = t758 + (t761 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t693 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t315)) + (t764 + (t697 * R(1.2793889830000003) - t359 *
+            R(8.8991263504)));
         const gic_real t766 = t378 * t372 + (t382 * t370 + t388 * t379);
         const gic_real t767 = t372 * t766 - t379 * t380 + (t375 * t385 + (t381 * t387 + t382 * t390));
         const gic_real t768 = t767 + (t394 * t703 - t393 * t406);
         const gic_real t769 = t423 * t417 + (t427 * t415 + t431 * t424);
         const gic_real t770 = t417 * t769 - t424 * t425 + (t420 * t429 + (t426 * t430 + t427 * t432));
         const gic_real t771 = t770 + (t436 * t708 - t435 * t447);
-        const gic_real t772 = t765 + (t768 + (R(1.2793889830000003) * t702 - R(8.8991263504) * t405)) + (t771 + (t707 * R(1.3118720270000004) - t446 * R(-8.579168367)));
+        const gic_real t772 = t765 + (t768 + (R(1.2793889830000003) * t702 - R(8.8991263504) * t405)) + (t771 + (t707 *
+            R(1.3118720270000004) - t446 * R(-8.579168367)));
         const gic_real t773 = t464 * t458 + (t468 * t456 + t472 * t465);
         const gic_real t774 = t458 * t773 - t465 * t466 + (t461 * t470 + (t467 * t471 + t468 * t473));
         const gic_real t775 = t774 + (t477 * t712 - t476 * t488);
@@ -6391,124 +8444,192 @@ static GIC_COLD int hmmwv14_inverse(const hmmwv14 *self, gic_real time, const gi
         const gic_real t777 = t546 * t714 - t542 * t562;
         const gic_real t778 = t590 * t715 - t586 * t606;
         const gic_real t779 = t614 * t716 - t610 * t630;
-        const gic_real t780 = t649 * R(-0.002199670439359969) - R(1.792978) * t651 + (R(-0.002199670439359969) * t639 - R(1.792978) * t641);
-        const gic_real t781 = t780 + (t581 * R(0.002199670439359969) - R(-1.792978) * t583) + (R(0.002199670439359969) * t571 - R(-1.792978) * t573);
+        const gic_real t780 = t649 * R(-0.002199670439359969) - R(1.792978) * t651 + (R(-0.002199670439359969) * t639 -
+            R(1.792978) * t641);
+        const gic_real t781 = t780 + (t581 * R(0.002199670439359969) - R(-1.792978) * t583) + (R(0.002199670439359969) *
+            t571 - R(-1.792978) * t573);
         const gic_real t782 = R(0.09720579999999998) * t651 - t643 * t717 + (t781 + R(1.688965) * t651);
         const gic_real t783 = R(0.09720579999999998) * t641 - t633 * t718 + (t782 + R(1.688965) * t641);
-        const gic_real t784 = t779 + (t783 + (m[188] * t716 - m[186] * t630)) + (m[260] * t715 - m[258] * t606);
+        const gic_real t784 = t779 + (t783 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] * t716 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t630)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] * t715 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t606);
         const gic_real t785 = R(-0.09720579999999998) * t583 - t575 * t719 + (t778 + t784 + R(-1.688965) * t583);
         const gic_real t786 = R(-0.09720579999999998) * t573 - t565 * t720 + (t785 + R(-1.688965) * t573);
-        const gic_real t787 = t777 + (t786 + (m[326] * t714 - m[324] * t562)) + (m[386] * t713 - m[384] * t538);
-        const gic_real t788 = t772 + (t775 + (R(1.3118720270000004) * t711 - R(-8.579168367) * t487)) - (t776 + t787);
+        const gic_real t787 = t777 + (t786 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] * t714 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t562)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] * t713 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t538);
+        const gic_real residual_1 = t772 + (t775 + (R(1.3118720270000004) * t711 - R(-8.579168367) * t487)) - (t776 +
+            t787);
         const gic_real t789 = t15 * R(9.072);
         const gic_real t790 = t6 * R(2086.52) + t789 + t41 + t65 + t120 + t176;
         const gic_real t791 = t790 + t203 + t227 + t274 + t322 + t367 + t413;
         const gic_real t792 = t631 + (t650 + t640 + t582 + t572 - t650 - t640);
-        const gic_real t793 = t791 + t453 + t494 - (t539 + (t563 + (t607 + t792 - t582 - t572)));
-        const gic_real t794 = y[15] * t2 - y[16] * t723 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t795 = t726 * t22 - y[16] * t727 + (t16 * t728 + t19 * t729);
+        const gic_real residual_4 = t791 + t453 + t494 - (t539 + (t563 + (t607 + t792 - t582 - t572)));
+        const gic_real t794 = y[HMMWV14_STATE_OMEGA_X] * t2 - y[HMMWV14_STATE_OMEGA_Y] * t723 +
+            acc[HMMWV14_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t795 = t726 * t22 - y[HMMWV14_STATE_OMEGA_Y] * t727 + (t16 * t728 + t19 * t729);
         const gic_real t796 = t795 - t24 * t667 + (t40 * R(40.476046225) - t666 * R(7.359315990000001));
-        const gic_real t797 = t794 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t664)) + t796;
-        const gic_real t798 = t732 * t50 - y[16] * t733 + (t44 * t734 + t47 * t735);
+        const gic_real t797 = t794 + (acc[HMMWV14_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * t664)) + t796;
+        const gic_real t798 = t732 * t50 - y[HMMWV14_STATE_OMEGA_Y] * t733 + (t44 * t734 + t47 * t735);
         const gic_real t799 = t798 - t52 * t670 + (R(40.476046225) * t64 - t669 * R(-7.359315990000001));
         const gic_real t800 = t78 * t82 - t67 * t737 + (t68 * t84 + (t73 * t86 + t77 * t89));
         const gic_real t801 = t800 + (t96 * t120 - t93 * t674);
-        const gic_real t802 = t797 + t799 + (t801 + (m[186] * t120 - m[187] * t674));
+        const gic_real t802 = t797 + t799 + (t801 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t120 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t674));
         const gic_real t803 = t134 * t138 - t123 * t741 + (t124 * t140 + (t129 * t142 + t133 * t145));
         const gic_real t804 = t803 + (t152 * t176 - t149 * t678);
-        const gic_real t805 = t744 * t184 - y[16] * t745 + (t178 * t746 + t181 * t747);
+        const gic_real t805 = t744 * t184 - y[HMMWV14_STATE_OMEGA_Y] * t745 + (t178 * t746 + t181 * t747);
         const gic_real t806 = t805 - t186 * t682 + (t202 * R(-40.476046225) - R(7.359315990000001) * t681);
-        const gic_real t807 = t802 + (t804 + (m[258] * t176 - m[259] * t678)) + t806;
-        const gic_real t808 = t750 * t212 - y[16] * t751 + (t206 * t752 + t209 * t753);
+        const gic_real t807 = t802 + (t804 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t678)) + t806;
+        const gic_real t808 = t750 * t212 - y[HMMWV14_STATE_OMEGA_Y] * t751 + (t206 * t752 + t209 * t753);
         const gic_real t809 = t808 - t214 * t685 + (R(-40.476046225) * t226 - R(-7.359315990000001) * t684);
         const gic_real t810 = t240 * t244 - t229 * t755 + (t230 * t245 + (t235 * t246 + t239 * t248));
         const gic_real t811 = t810 + (t253 * t274 - t251 * t689);
-        const gic_real t812 = t807 + t809 + (t811 + (m[324] * t274 - m[325] * t689));
+        const gic_real t812 = t807 + t809 + (t811 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t274 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t689));
         const gic_real t813 = t288 * t292 - t277 * t759 + (t278 * t293 + (t283 * t294 + t287 * t296));
         const gic_real t814 = t813 + (t301 * t322 - t299 * t693);
         const gic_real t815 = t333 * t337 - t324 * t762 + (t325 * t339 + (t329 * t341 + t332 * t344));
         const gic_real t816 = t815 + (t347 * t367 - t346 * t698);
-        const gic_real t817 = t812 + (t814 + (m[384] * t322 - m[385] * t693)) + (t816 + (t366 * R(8.8991263504) - t697 * R(2.6847235865999997)));
+        const gic_real t817 = t812 + (t814 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t322 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t693)) + (t816 + (t366 * R(8.8991263504) - t697 *
+            R(2.6847235865999997)));
         const gic_real t818 = t379 * t383 - t370 * t766 + (t371 * t385 + (t375 * t387 + t378 * t390));
         const gic_real t819 = t818 + (t393 * t413 - t392 * t703);
         const gic_real t820 = t424 * t428 - t415 * t769 + (t416 * t429 + (t420 * t430 + t423 * t432));
         const gic_real t821 = t820 + (t435 * t453 - t434 * t708);
-        const gic_real t822 = t817 + (t819 + (R(8.8991263504) * t412 - t702 * R(-2.6847235865999997))) + (t821 + (t452 * R(-8.579168367) - t707 * R(2.6864953889999996)));
+        const gic_real t822 = t817 + (t819 + (R(8.8991263504) * t412 - t702 * R(-2.6847235865999997))) + (t821 + (t452 *
+            R(-8.579168367) - t707 * R(2.6864953889999996)));
         const gic_real t823 = t465 * t469 - t456 * t773 + (t457 * t470 + (t461 * t471 + t464 * t473));
         const gic_real t824 = t823 + (t476 * t494 - t475 * t712);
         const gic_real t825 = t505 * t539 - t496 * t713;
         const gic_real t826 = t542 * t563 - t541 * t714;
         const gic_real t827 = t586 * t607 - t585 * t715;
         const gic_real t828 = t610 * t631 - t609 * t716;
-        const gic_real t829 = R(1.792978) * t650 - t649 * R(-0.003388550642239951) + (R(1.792978) * t640 - t639 * R(0.003388550642239951));
-        const gic_real t830 = t829 + (R(-1.792978) * t582 - R(0.003388550642239951) * t581) + (R(-1.792978) * t572 - R(-0.003388550642239951) * t571);
-        const gic_real t831 = t644 * t717 - R(0.09720579999999998) * t650 + (t830 + (t649 * R(-0.00209039581919997) - R(1.688965) * t650));
-        const gic_real t832 = t634 * t718 - R(0.09720579999999998) * t640 + (t831 + (t639 * R(0.00209039581919997) - R(1.688965) * t640));
-        const gic_real t833 = t828 + (t832 + (m[186] * t631 - m[187] * t716)) + (m[258] * t607 - m[259] * t715);
-        const gic_real t834 = t576 * t719 - R(-0.09720579999999998) * t582 + (t827 + t833 + (t581 * R(0.00209039581919997) - R(-1.688965) * t582));
-        const gic_real t835 = t566 * t720 - R(-0.09720579999999998) * t572 + (t834 + (t571 * R(-0.00209039581919997) - R(-1.688965) * t572));
-        const gic_real t836 = t826 + (t835 + (m[324] * t563 - m[325] * t714)) + (m[384] * t539 - m[385] * t713);
-        const gic_real t837 = t822 + (t824 + (R(-8.579168367) * t493 - t711 * R(-2.6864953889999996))) - (t825 + t836);
+        const gic_real t829 = R(1.792978) * t650 - t649 * R(-0.003388550642239951) + (R(1.792978) * t640 - t639 *
+            R(0.003388550642239951));
+        const gic_real t830 = t829 + (R(-1.792978) * t582 - R(0.003388550642239951) * t581) + (R(-1.792978) * t572 -
+            R(-0.003388550642239951) * t571);
+        const gic_real t831 = t644 * t717 - R(0.09720579999999998) * t650 + (t830 + (t649 * R(-0.00209039581919997) -
+            R(1.688965) * t650));
+        const gic_real t832 = t634 * t718 - R(0.09720579999999998) * t640 + (t831 + (t639 * R(0.00209039581919997) -
+            R(1.688965) * t640));
+        const gic_real t833 = t828 + (t832 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] * t631 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] * t716)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] * t607 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] * t715);
+        const gic_real t834 = t576 * t719 - R(-0.09720579999999998) * t582 + (t827 + t833 + (t581 *
+            R(0.00209039581919997) - R(-1.688965) * t582));
+        const gic_real t835 = t566 * t720 - R(-0.09720579999999998) * t572 + (t834 + (t571 * R(-0.00209039581919997) -
+            R(-1.688965) * t572));
+        const gic_real t836 = t826 + (t835 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] * t563 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] * t714)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] * t539 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] * t713);
+        const gic_real residual_2 = t822 + (t824 + (R(-8.579168367) * t493 - t711 * R(-2.6864953889999996))) - (t825 +
+            t836);
         const gic_real t838 = t724 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
         const gic_real t839 = t838 + t196 + t222 + t267 + t315 + t360 + t406;
         const gic_real t840 = t630 + (t651 + t641 + t583 + t573 - t651 - t641);
-        const gic_real t841 = t839 + t447 + t488 - (t538 + (t562 + (t606 + t840 - t583 - t573)));
-        const gic_real t842 = m[221] * t112 + m[220] * t120 + (m[218] * t801 + (m[217] * t739 + m[216] * t121));
-        const gic_real t843 = m[54] * t42 + t842 + (m[182] * t816 + (m[181] * t764 + m[180] * t368));
-        const gic_real t844 = m[221] * t630 + m[220] * t631 + (m[218] * t828 + (m[217] * t779 + m[216] * t632));
-        const gic_real t845 = t843 - (m[54] * t652 - (x[0] - R(0.31945)) * R(167070.9) + t844);
-        const gic_real t846 = m[293] * t168 + m[292] * t176 + (m[290] * t804 + (m[289] * t743 + m[288] * t177));
-        const gic_real t847 = m[84] * t66 + t846 + (m[254] * t819 + (m[253] * t768 + m[252] * t414));
-        const gic_real t848 = m[293] * t606 + m[292] * t607 + (m[290] * t827 + (m[289] * t778 + m[288] * t608));
-        const gic_real t849 = t847 - (m[84] * t642 - R(167070.9) * (x[1] - R(0.31945)) + t848);
-        const gic_real t850 = m[353] * t267 + m[352] * t274 + (m[350] * t811 + (m[349] * t757 + m[348] * t275));
-        const gic_real t851 = m[114] * t204 + t850 + (m[320] * t821 + (m[319] * t771 + m[318] * t454));
-        const gic_real t852 = m[353] * t562 + m[352] * t563 + (m[350] * t826 + (m[349] * t777 + m[348] * t564));
-        const gic_real t853 = t851 - (m[114] * t584 - (x[2] - R(0.33757)) * R(369167.2) + t852);
-        const gic_real t854 = m[413] * t315 + m[412] * t322 + (m[410] * t814 + (m[409] * t761 + m[408] * t323));
-        const gic_real t855 = m[144] * t228 + t854 + (m[380] * t824 + (m[379] * t775 + m[378] * t495));
-        const gic_real t856 = m[413] * t538 + m[412] * t539 + (m[410] * t825 + (m[409] * t776 + m[408] * t540));
-        const gic_real t857 = t855 - (m[144] * t574 - R(369167.2) * (x[3] - R(0.33757)) + t856);
-        const gic_real t858 = t789 + (m[212] * t801 + (m[211] * t739 + m[210] * t121));
-        const gic_real t859 = t858 + (m[284] * t804 + (m[283] * t743 + m[282] * t177));
-        const gic_real t860 = t859 + (m[176] * t816 + (m[175] * t764 + m[174] * t368));
-        const gic_real t861 = t860 + (m[248] * t819 + (m[247] * t768 + m[246] * t414));
-        const gic_real t862 = m[212] * t828 + (m[211] * t779 + m[210] * t632) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t863 = t862 + (m[284] * t827 + (m[283] * t778 + m[282] * t608));
-        const gic_real t864 = t861 - t863;
-        tau[0] = t659;
-        tau[3] = t722;
-        tau[1] = t788;
-        tau[4] = t793;
-        tau[2] = t837;
-        tau[5] = t841;
-        tau[6] = t845;
-        tau[7] = t849;
-        tau[8] = t853;
-        tau[9] = t857;
-        tau[10] = t864;
+        const gic_real residual_5 = t839 + t447 + t488 - (t538 + (t562 + (t606 + t840 - t583 - t573)));
+        const gic_real t842 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] * t112 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] * t120 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t801 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t739 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t121));
+        const gic_real t843 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t42 + t842 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * t816 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * t764 +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * t368));
+        const gic_real t844 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] * t630 +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] * t631 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t828 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t779 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t632));
+        const gic_real residual_6 = t843 - (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t652 -
+            (x[HMMWV14_X_SPRING_F_L] - R(0.31945)) * R(167070.9) + t844);
+        const gic_real t846 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] * t168 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] * t176 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t804 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t743 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t177));
+        const gic_real t847 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t66 + t846 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * t819 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * t768 +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * t414));
+        const gic_real t848 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] * t606 +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] * t607 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t827 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t778 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t608));
+        const gic_real residual_7 = t847 - (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t642 - R(167070.9) *
+            (x[HMMWV14_X_SPRING_F_R] - R(0.31945)) + t848);
+        const gic_real t850 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] * t267 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] * t274 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t811 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t757 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t275));
+        const gic_real t851 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t204 + t850 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t821 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t771 +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t454));
+        const gic_real t852 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] * t562 +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] * t563 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t826 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t777 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t564));
+        const gic_real residual_8 = t851 - (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t584 -
+            (x[HMMWV14_X_SPRING_R_L] - R(0.33757)) * R(369167.2) + t852);
+        const gic_real t854 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] * t315 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] * t322 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t814 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t761 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t323));
+        const gic_real t855 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t228 + t854 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t824 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t775 +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t495));
+        const gic_real t856 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] * t538 +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] * t539 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t825 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t776 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t540));
+        const gic_real residual_9 = t855 - (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t574 - R(369167.2) *
+            (x[HMMWV14_X_SPRING_R_R] - R(0.33757)) + t856);
+        const gic_real t858 = t789 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t801 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t739 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t121));
+        const gic_real t859 = t858 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t804 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t743 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t177));
+        const gic_real t860 = t859 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t816 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t764 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t368));
+        const gic_real t861 = t860 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t819 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t768 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t414));
+        const gic_real t862 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t828 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t779 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t632) -
+            (x[HMMWV14_X_RACK] * R(100000.0) + xd[HMMWV14_X_RACK] * R(12000.0));
+        const gic_real t863 = t862 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t827 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t778 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t608));
+        const gic_real residual_10 = t861 - t863;
+        tau[HMMWV14_UNKNOWN_ALPHA_X] = residual_0;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[HMMWV14_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[HMMWV14_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[HMMWV14_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[HMMWV14_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        tau[HMMWV14_UNKNOWN_OF_RACK] = residual_10;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31945)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31945)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.33757)) * R(369167.2)) + xd[3] * (R(369167.2) * (x[3] - R(0.33757)));
-        const gic_real t3 = t2 + xd[4] * (x[4] * R(100000.0));
+        /* force spring_f_r */
+        const gic_real t1 = xd[HMMWV14_X_SPRING_F_L] * ((x[HMMWV14_X_SPRING_F_L] - R(0.31945)) * R(167070.9)) +
+            xd[HMMWV14_X_SPRING_F_R] * (R(167070.9) * (x[HMMWV14_X_SPRING_F_R] - R(0.31945)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[HMMWV14_X_SPRING_R_L] * ((x[HMMWV14_X_SPRING_R_L] - R(0.33757)) * R(369167.2)) +
+            xd[HMMWV14_X_SPRING_R_R] * (R(369167.2) * (x[HMMWV14_X_SPRING_R_R] - R(0.33757)));
+        /* force rack */
+        const gic_real t3 = t2 + xd[HMMWV14_X_RACK] * (x[HMMWV14_X_RACK] * R(100000.0));
         const gic_real t4 = e[1] + e[1];
         const gic_real t5 = e[1] * t4;
         const gic_real t6 = e[2] + e[2];
         const gic_real t7 = e[2] * t6;
         const gic_real t8 = R(1.0) - (t5 + t7);
-        const gic_real t9 = rate[14] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t9 = rate[HMMWV14_STATE_V_Z] - R(-9.81);
         const gic_real t10 = e[3] * t6;
         const gic_real t11 = e[0] * t4;
         const gic_real t12 = t10 - t11;
@@ -6516,668 +8637,1116 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t14 = e[1] * t13;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = t8 * t9 + (t12 * rate[13] + t16 * rate[12]);
-        const gic_real t18 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[16] * R(0.21300000000000008);
-        const gic_real t20 = t17 + (y[15] * t18 - y[16] * t19 - rate[16] * R(0.056));
-        const gic_real t21 = y[14] * t8 + (y[13] * t12 + y[12] * t16);
-        const gic_real t22 = y[16] * R(0.056);
+        const gic_real t17 = t8 * t9 + (t12 * rate[HMMWV14_STATE_V_Y] + t16 * rate[HMMWV14_STATE_V_X]);
+        const gic_real t18 = y[HMMWV14_STATE_OMEGA_Z] * R(0.056) - y[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008);
+        const gic_real t19 = y[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t20 = t17 + (y[HMMWV14_STATE_OMEGA_X] * t18 - y[HMMWV14_STATE_OMEGA_Y] * t19 -
+            rate[HMMWV14_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t21 = y[HMMWV14_STATE_V_Z] * t8 + (y[HMMWV14_STATE_V_Y] * t12 + y[HMMWV14_STATE_V_X] * t16);
+        const gic_real t22 = y[HMMWV14_STATE_OMEGA_Y] * R(0.056);
         const gic_real t23 = t10 + t11;
         const gic_real t24 = e[3] * t13;
         const gic_real t25 = R(1.0) - (t5 + t24);
         const gic_real t26 = e[2] * t4;
         const gic_real t27 = e[0] * t13;
         const gic_real t28 = t26 - t27;
-        const gic_real t29 = t23 * t9 + (t25 * rate[13] + t28 * rate[12]);
-        const gic_real t30 = y[15] * t22 + y[17] * t19 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
-        const gic_real t31 = y[14] * t23 + (y[13] * t25 + y[12] * t28);
+        const gic_real t29 = t23 * t9 + (t25 * rate[HMMWV14_STATE_V_Y] + t28 * rate[HMMWV14_STATE_V_X]);
+        const gic_real t30 = y[HMMWV14_STATE_OMEGA_X] * t22 + y[HMMWV14_STATE_OMEGA_Z] * t19 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV14_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t31 = y[HMMWV14_STATE_V_Z] * t23 + (y[HMMWV14_STATE_V_Y] * t25 + y[HMMWV14_STATE_V_X] * t28);
         const gic_real t32 = t14 - t15;
         const gic_real t33 = t26 + t27;
         const gic_real t34 = R(1.0) - (t7 + t24);
-        const gic_real t35 = t32 * t9 + (t33 * rate[13] + t34 * rate[12]);
-        const gic_real t36 = t35 + (rate[16] * R(0.21300000000000008) - (y[17] * t18 + y[16] * t22));
-        const gic_real t37 = y[14] * t32 + (y[13] * t33 + y[12] * t34);
+        const gic_real t35 = t32 * t9 + (t33 * rate[HMMWV14_STATE_V_Y] + t34 * rate[HMMWV14_STATE_V_X]);
+        const gic_real t36 = t35 + (rate[HMMWV14_STATE_OMEGA_Y] * R(0.21300000000000008) - (y[HMMWV14_STATE_OMEGA_Z] *
+            t18 + y[HMMWV14_STATE_OMEGA_Y] * t22));
+        const gic_real t37 = y[HMMWV14_STATE_V_Z] * t32 + (y[HMMWV14_STATE_V_Y] * t33 + y[HMMWV14_STATE_V_X] * t34);
         const gic_real t38 = (t29 + t30) * (t18 + t31) + t36 * (t19 + t37);
         const gic_real t39 = (t20 * (t21 - t22) + t38) * R(2086.52);
-        const gic_real t40 = y[17] * (rate[17] * R(3570.2)) + (y[16] * (rate[16] * R(2955.66)) + y[15] * (rate[15] * R(1078.52)));
-        const gic_real t41 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t42 = m[16] + t41;
-        const gic_real t43 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t44 = y[15] * t42 - y[16] * t43 + (m[1] * rate[15] - R(1.438648) * rate[16]);
-        const gic_real t45 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t46 = y[17] * t43 - y[15] * t45 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t47 = y[16] * t45 - y[17] * t42 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
-        const gic_real t48 = (rate[22] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
+        const gic_real t40 = y[HMMWV14_STATE_OMEGA_Z] * (rate[HMMWV14_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV14_STATE_OMEGA_Y] * (rate[HMMWV14_STATE_OMEGA_Y] * R(2955.66)) + y[HMMWV14_STATE_OMEGA_X] *
+            (rate[HMMWV14_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t41 = m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] + (R(1.438648) * y[HMMWV14_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t42 = m[HMMWV14_MOTION_RACK + HMMWV14_VELOCITY_Y] + t41;
+        const gic_real t43 = R(0.05422899999999997) * y[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t44 = y[HMMWV14_STATE_OMEGA_X] * t42 - y[HMMWV14_STATE_OMEGA_Y] * t43 +
+            (m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * rate[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV14_STATE_OMEGA_Y]);
+        const gic_real t45 = m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * y[HMMWV14_STATE_OMEGA_X] - R(1.438648) *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t46 = y[HMMWV14_STATE_OMEGA_Z] * t43 - y[HMMWV14_STATE_OMEGA_X] * t45 + (R(1.438648) *
+            rate[HMMWV14_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t47 = y[HMMWV14_STATE_OMEGA_Y] * t45 - y[HMMWV14_STATE_OMEGA_Z] * t42 + (R(0.05422899999999997) *
+            rate[HMMWV14_STATE_OMEGA_Y] - m[HMMWV14_MOTION_RACK + HMMWV14_C_Y] * rate[HMMWV14_STATE_OMEGA_Z]);
+        const gic_real t48 = (rate[HMMWV14_STATE_RACK_RATE] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
         const gic_real t49 = ((t17 + t44) * (t21 + t45) + t48) * R(9.072);
-        const gic_real t50 = y[17] * rate[17] + (y[16] * rate[16] + y[15] * rate[15]);
-        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = R(1.688965) * y[17];
-        const gic_real t55 = t54 - y[15] * t52 - t53;
+        const gic_real t50 = y[HMMWV14_STATE_OMEGA_Z] * rate[HMMWV14_STATE_OMEGA_Z] + (y[HMMWV14_STATE_OMEGA_Y] *
+            rate[HMMWV14_STATE_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_X] * rate[HMMWV14_STATE_OMEGA_X]);
+        const gic_real t51 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.24689200985615367);
+        const gic_real t52 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t52;
+        const gic_real t54 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t55 = t54 - y[HMMWV14_STATE_OMEGA_X] * t52 - t53;
         const gic_real t56 = t55 - t53;
         const gic_real t57 = R(0.307086) + t51;
-        const gic_real t58 = y[16] * t52 - y[17] * t57;
-        const gic_real t59 = R(1.688965) * rate[16];
-        const gic_real t60 = y[15] * t56 - y[16] * t58 + (rate[15] * t57 - t59);
-        const gic_real t61 = m[48] * t51 - m[42] * t53 + (t17 + t60) + rate[18] * (m[54] * t51);
-        const gic_real t62 = m[42] * t51;
-        const gic_real t63 = R(1.688965) * y[16];
-        const gic_real t64 = t62 + (y[15] * t57 - t63);
+        const gic_real t58 = y[HMMWV14_STATE_OMEGA_Y] * t52 - y[HMMWV14_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t60 = y[HMMWV14_STATE_OMEGA_X] * t56 - y[HMMWV14_STATE_OMEGA_Y] * t58 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t57 - t59);
+        const gic_real t61 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t51 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t53 + (t17 + t60) + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t51);
+        const gic_real t62 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t51;
+        const gic_real t63 = R(1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t64 = t62 + (y[HMMWV14_STATE_OMEGA_X] * t57 - t63);
         const gic_real t65 = t62 + t64;
-        const gic_real t66 = R(1.688965) * rate[17];
-        const gic_real t67 = y[17] * t58 - y[15] * t65 + (t66 - rate[15] * t52);
-        const gic_real t68 = t29 + t67 - (m[42] * t62 + m[48] * t52) - rate[18] * (m[54] * t52);
-        const gic_real t69 = y[16] * t65 - y[17] * t56 + (rate[16] * t52 - rate[17] * t57);
+        const gic_real t66 = R(1.688965) * rate[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t67 = y[HMMWV14_STATE_OMEGA_Z] * t58 - y[HMMWV14_STATE_OMEGA_X] * t65 + (t66 -
+            rate[HMMWV14_STATE_OMEGA_X] * t52);
+        const gic_real t68 = t29 + t67 - (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t62 +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] * t52) - rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * t52);
+        const gic_real t69 = y[HMMWV14_STATE_OMEGA_Y] * t65 - y[HMMWV14_STATE_OMEGA_Z] * t56 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t52 - rate[HMMWV14_STATE_OMEGA_Z] * t57);
         const gic_real t70 = t68 * (t31 + t55) + (t35 + t69) * (t37 + t58);
         const gic_real t71 = (t61 * (t21 + t64) + t70) * R(23.965);
-        const gic_real t72 = rate[17] - m[42] * y[16];
-        const gic_real t73 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t72;
-        const gic_real t74 = m[38] * R(0.8938);
-        const gic_real t75 = m[37] * R(0.4469);
-        const gic_real t76 = m[41] * t74 + m[40] * t75;
-        const gic_real t77 = rate[16] + m[42] * y[17];
-        const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
-        const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
-        const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t83 = m[72] * t82;
-        const gic_real t84 = t54 - y[15] * t82 - t83;
+        const gic_real t72 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t73 = (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            R(0.4469))) * t72;
+        const gic_real t74 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t75 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t76 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * t74 + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] *
+            t75;
+        const gic_real t77 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t78 = t76 * t72 + (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * t74 +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * t75) * t77;
+        const gic_real t79 = (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_F_L_RATE]));
+        const gic_real t80 = y[HMMWV14_STATE_OMEGA_Z] * (t73 + t76 * t77) + (y[HMMWV14_STATE_OMEGA_Y] * t78 + t79);
+        const gic_real t81 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.24689200985615367);
+        const gic_real t82 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.24689200985615367);
+        const gic_real t83 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t82;
+        const gic_real t84 = t54 - y[HMMWV14_STATE_OMEGA_X] * t82 - t83;
         const gic_real t85 = t84 - t83;
         const gic_real t86 = R(-0.307086) + t81;
-        const gic_real t87 = y[16] * t82 - y[17] * t86;
-        const gic_real t88 = y[15] * t85 - y[16] * t87 + (rate[15] * t86 - t59);
-        const gic_real t89 = m[78] * t81 - m[72] * t83 + (t17 + t88) + rate[19] * (m[84] * t81);
-        const gic_real t90 = m[72] * t81;
-        const gic_real t91 = t90 + (y[15] * t86 - t63);
+        const gic_real t87 = y[HMMWV14_STATE_OMEGA_Y] * t82 - y[HMMWV14_STATE_OMEGA_Z] * t86;
+        const gic_real t88 = y[HMMWV14_STATE_OMEGA_X] * t85 - y[HMMWV14_STATE_OMEGA_Y] * t87 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t86 - t59);
+        const gic_real t89 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t81 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t83 + (t17 + t88) + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t81);
+        const gic_real t90 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t81;
+        const gic_real t91 = t90 + (y[HMMWV14_STATE_OMEGA_X] * t86 - t63);
         const gic_real t92 = t90 + t91;
-        const gic_real t93 = y[17] * t87 - y[15] * t92 + (t66 - rate[15] * t82);
-        const gic_real t94 = t29 + t93 - (m[72] * t90 + m[78] * t82) - rate[19] * (m[84] * t82);
-        const gic_real t95 = y[16] * t92 - y[17] * t85 + (rate[16] * t82 - rate[17] * t86);
+        const gic_real t93 = y[HMMWV14_STATE_OMEGA_Z] * t87 - y[HMMWV14_STATE_OMEGA_X] * t92 + (t66 -
+            rate[HMMWV14_STATE_OMEGA_X] * t82);
+        const gic_real t94 = t29 + t93 - (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t90 +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] * t82) - rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * t82);
+        const gic_real t95 = y[HMMWV14_STATE_OMEGA_Y] * t92 - y[HMMWV14_STATE_OMEGA_Z] * t85 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t82 - rate[HMMWV14_STATE_OMEGA_Z] * t86);
         const gic_real t96 = t94 * (t31 + t84) + (t35 + t95) * (t37 + t87);
         const gic_real t97 = R(23.965) * (t89 * (t21 + t91) + t96);
-        const gic_real t98 = rate[17] - m[72] * y[16];
-        const gic_real t99 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t98;
-        const gic_real t100 = m[68] * R(0.8938);
-        const gic_real t101 = m[67] * R(0.4469);
-        const gic_real t102 = m[71] * t100 + m[70] * t101;
-        const gic_real t103 = rate[16] + m[72] * y[17];
-        const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
-        const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
+        const gic_real t98 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t99 = (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] *
+            R(0.4469))) * t98;
+        const gic_real t100 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t101 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t102 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * t100 +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * t101;
+        const gic_real t103 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t104 = t102 * t98 + (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * t100 +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * t101) * t103;
+        const gic_real t105 = (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_F_R_RATE]));
+        const gic_real t106 = y[HMMWV14_STATE_OMEGA_Z] * (t99 + t102 * t103) + (y[HMMWV14_STATE_OMEGA_Y] * t104 + t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
-        const gic_real t108 = m[191] * R(0.09182100000000004);
-        const gic_real t109 = m[189] * R(-0.004825999999999997);
-        const gic_real t110 = t108 + (t109 + m[190] * R(0.08910630000000008));
-        const gic_real t111 = m[197] * R(0.09182100000000004);
-        const gic_real t112 = m[195] * R(-0.004825999999999997);
-        const gic_real t113 = t111 + (t112 + m[196] * R(0.08910630000000008));
-        const gic_real t114 = m[200] * t110 - m[198] * t113;
-        const gic_real t115 = m[194] * R(0.09182100000000004);
-        const gic_real t116 = m[192] * R(-0.004825999999999997);
-        const gic_real t117 = t115 + (t116 + m[193] * R(0.08910630000000008));
-        const gic_real t118 = m[199] * t113 - m[200] * t117;
-        const gic_real t119 = m[198] * t114 - m[199] * t118 + (m[204] * t117 - m[205] * t110);
-        const gic_real t120 = m[202] + t114;
-        const gic_real t121 = m[186] + t110;
-        const gic_real t122 = m[188] + t113;
-        const gic_real t123 = t120 + (y[17] * t121 - y[15] * t122);
+        /* wheel tire_f_l */
+        const gic_real t108 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t109 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t110 = t108 + (t109 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.08910630000000008));
+        const gic_real t111 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t112 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t113 = t111 + (t112 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.08910630000000008));
+        const gic_real t114 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t110 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t113;
+        const gic_real t115 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t116 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = t115 + (t116 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.08910630000000008));
+        const gic_real t118 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t113 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t117;
+        const gic_real t119 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t114 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t118 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] *
+            t117 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] * t110);
+        const gic_real t120 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] + t114;
+        const gic_real t121 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t110;
+        const gic_real t122 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t113;
+        const gic_real t123 = t120 + (y[HMMWV14_STATE_OMEGA_Z] * t121 - y[HMMWV14_STATE_OMEGA_X] * t122);
         const gic_real t124 = t120 + t123;
-        const gic_real t125 = m[187] + t117;
-        const gic_real t126 = t118 + (y[16] * t122 - y[17] * t125);
+        const gic_real t125 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t117;
+        const gic_real t126 = t118 + (y[HMMWV14_STATE_OMEGA_Y] * t122 - y[HMMWV14_STATE_OMEGA_Z] * t125);
         const gic_real t127 = t118 + t126;
-        const gic_real t128 = y[15] * t124 - y[16] * t127 + (rate[15] * t125 - rate[16] * t121);
-        const gic_real t129 = m[209] + t119 + (t17 + t128) + rate[22] * (m[210] * t117 - m[211] * t110);
-        const gic_real t130 = t129 + rate[18] * (m[221] + (m[216] * t117 - m[217] * t110));
-        const gic_real t131 = m[198] * t117 - m[199] * t110;
-        const gic_real t132 = m[203] + t131;
-        const gic_real t133 = t132 + (y[15] * t125 - y[16] * t121);
-        const gic_real t134 = m[200] * t118 - m[198] * t131 + (m[206] * t110 - m[204] * t113);
+        const gic_real t128 = y[HMMWV14_STATE_OMEGA_X] * t124 - y[HMMWV14_STATE_OMEGA_Y] * t127 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t125 - rate[HMMWV14_STATE_OMEGA_Y] * t121);
+        const gic_real t129 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Z] + t119 + (t17 + t128) +
+            rate[HMMWV14_STATE_RACK_RATE] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t117 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t110);
+        const gic_real t130 = t129 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t117 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t110));
+        const gic_real t131 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t117 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t110;
+        const gic_real t132 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] + t131;
+        const gic_real t133 = t132 + (y[HMMWV14_STATE_OMEGA_X] * t125 - y[HMMWV14_STATE_OMEGA_Y] * t121);
+        const gic_real t134 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t118 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t131 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] *
+            t110 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] * t113);
         const gic_real t135 = t132 + t133;
-        const gic_real t136 = y[17] * t127 - y[15] * t135 + (rate[17] * t121 - rate[15] * t122);
-        const gic_real t137 = m[208] + t134 + (t29 + t136) + rate[22] * (m[212] * t110 - m[210] * t113);
-        const gic_real t138 = t137 + rate[18] * (m[220] + (m[218] * t110 - m[216] * t113));
-        const gic_real t139 = m[199] * t131 - m[200] * t114 + (m[205] * t113 - m[206] * t117);
-        const gic_real t140 = y[16] * t135 - y[17] * t124 + (rate[16] * t122 - rate[17] * t125);
-        const gic_real t141 = t139 + (t35 + t140) + rate[22] * (m[211] * t113 - m[212] * t117);
-        const gic_real t142 = (t141 + rate[18] * (m[217] * t113 - m[218] * t117)) * (t37 + t126);
+        const gic_real t136 = y[HMMWV14_STATE_OMEGA_Z] * t127 - y[HMMWV14_STATE_OMEGA_X] * t135 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t121 - rate[HMMWV14_STATE_OMEGA_X] * t122);
+        const gic_real t137 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ACCELERATION_Y] + t134 + (t29 + t136) +
+            rate[HMMWV14_STATE_RACK_RATE] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t110 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * t113);
+        const gic_real t138 = t137 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t110 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * t113));
+        const gic_real t139 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t131 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t114 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] *
+            t113 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] * t117);
+        const gic_real t140 = y[HMMWV14_STATE_OMEGA_Y] * t135 - y[HMMWV14_STATE_OMEGA_Z] * t124 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t122 - rate[HMMWV14_STATE_OMEGA_Z] * t125);
+        const gic_real t141 = t139 + (t35 + t140) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * t113 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * t117);
+        const gic_real t142 = (t141 + rate[HMMWV14_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * t113 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * t117)) *
+            (t37 + t126);
         const gic_real t143 = t130 * (t21 + t133) + (t138 * (t31 + t123) + t142);
         const gic_real t144 = t143 * R(90.555);
-        const gic_real t145 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t146 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t147 = t146 + m[218] * rate[18];
-        const gic_real t148 = m[194] * R(4.7728205);
-        const gic_real t149 = m[193] * R(7.58122);
-        const gic_real t150 = m[192] * R(4.8947505);
-        const gic_real t151 = m[197] * t148 + (m[196] * t149 + m[195] * t150);
-        const gic_real t152 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t153 = t152 + m[217] * rate[18];
-        const gic_real t154 = m[191] * R(4.7728205);
-        const gic_real t155 = m[190] * R(7.58122);
-        const gic_real t156 = m[189] * R(4.8947505);
-        const gic_real t157 = m[197] * t154 + (m[196] * t155 + m[195] * t156);
-        const gic_real t158 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t159 = t158 + m[216] * rate[18];
-        const gic_real t160 = (m[200] + y[17]) * (t145 * t147 + (t151 * t153 + t157 * t159));
-        const gic_real t161 = (m[194] * t148 + (m[193] * t149 + m[192] * t150)) * t153;
-        const gic_real t162 = m[194] * t154 + (m[193] * t155 + m[192] * t156);
-        const gic_real t163 = (m[199] + y[16]) * (t151 * t147 + (t161 + t162 * t159));
-        const gic_real t164 = (m[191] * t154 + (m[190] * t155 + m[189] * t156)) * t159;
-        const gic_real t165 = (m[198] + y[15]) * (t157 * t147 + (t162 * t153 + t164));
+        const gic_real t145 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t146 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t147 = t146 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t148 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t149 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t150 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t151 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t148 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t149 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t150);
+        const gic_real t152 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t153 = t152 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t154 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t155 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t156 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t157 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * t154 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * t155 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * t156);
+        const gic_real t158 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t159 = t158 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t160 = (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t145 *
+            t147 + (t151 * t153 + t157 * t159));
+        const gic_real t161 = (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t148 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t149 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t150)) *
+            t153;
+        const gic_real t162 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * t154 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * t155 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * t156);
+        const gic_real t163 = (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t151 *
+            t147 + (t161 + t162 * t159));
+        const gic_real t164 = (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * t154 +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * t155 + m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * t156)) *
+            t159;
+        const gic_real t165 = (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t157 *
+            t147 + (t162 * t153 + t164));
         const gic_real t166 = t160 + (t163 + t165);
-        const gic_real t167 = m[263] * R(0.09182100000000004);
-        const gic_real t168 = m[261] * R(-0.004825999999999997);
-        const gic_real t169 = t167 + (t168 + m[262] * R(-0.08910630000000008));
-        const gic_real t170 = m[269] * R(0.09182100000000004);
-        const gic_real t171 = m[267] * R(-0.004825999999999997);
-        const gic_real t172 = t170 + (t171 + m[268] * R(-0.08910630000000008));
-        const gic_real t173 = m[272] * t169 - m[270] * t172;
-        const gic_real t174 = m[266] * R(0.09182100000000004);
-        const gic_real t175 = m[264] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[265] * R(-0.08910630000000008));
-        const gic_real t177 = m[271] * t172 - m[272] * t176;
-        const gic_real t178 = m[270] * t173 - m[271] * t177 + (m[276] * t176 - m[277] * t169);
-        const gic_real t179 = m[274] + t173;
-        const gic_real t180 = m[258] + t169;
-        const gic_real t181 = m[260] + t172;
-        const gic_real t182 = t179 + (y[17] * t180 - y[15] * t181);
+        /* wheel tire_f_r */
+        const gic_real t167 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t168 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997);
+        const gic_real t169 = t167 + (t168 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.08910630000000008));
+        const gic_real t170 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t171 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997);
+        const gic_real t172 = t170 + (t171 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.08910630000000008));
+        const gic_real t173 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t169 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t172;
+        const gic_real t174 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t172 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t176;
+        const gic_real t178 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t173 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t177 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] *
+            t176 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] * t169);
+        const gic_real t179 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] + t173;
+        const gic_real t180 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t169;
+        const gic_real t181 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t172;
+        const gic_real t182 = t179 + (y[HMMWV14_STATE_OMEGA_Z] * t180 - y[HMMWV14_STATE_OMEGA_X] * t181);
         const gic_real t183 = t179 + t182;
-        const gic_real t184 = m[259] + t176;
-        const gic_real t185 = t177 + (y[16] * t181 - y[17] * t184);
+        const gic_real t184 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t176;
+        const gic_real t185 = t177 + (y[HMMWV14_STATE_OMEGA_Y] * t181 - y[HMMWV14_STATE_OMEGA_Z] * t184);
         const gic_real t186 = t177 + t185;
-        const gic_real t187 = y[15] * t183 - y[16] * t186 + (rate[15] * t184 - rate[16] * t180);
-        const gic_real t188 = m[281] + t178 + (t17 + t187) + rate[22] * (m[282] * t176 - m[283] * t169);
-        const gic_real t189 = t188 + rate[19] * (m[293] + (m[288] * t176 - m[289] * t169));
-        const gic_real t190 = m[270] * t176 - m[271] * t169;
-        const gic_real t191 = m[275] + t190;
-        const gic_real t192 = t191 + (y[15] * t184 - y[16] * t180);
-        const gic_real t193 = m[272] * t177 - m[270] * t190 + (m[278] * t169 - m[276] * t172);
+        const gic_real t187 = y[HMMWV14_STATE_OMEGA_X] * t183 - y[HMMWV14_STATE_OMEGA_Y] * t186 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t184 - rate[HMMWV14_STATE_OMEGA_Y] * t180);
+        const gic_real t188 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Z] + t178 + (t17 + t187) +
+            rate[HMMWV14_STATE_RACK_RATE] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t169);
+        const gic_real t189 = t188 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 11] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t169));
+        const gic_real t190 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t176 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t169;
+        const gic_real t191 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] + t190;
+        const gic_real t192 = t191 + (y[HMMWV14_STATE_OMEGA_X] * t184 - y[HMMWV14_STATE_OMEGA_Y] * t180);
+        const gic_real t193 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t177 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t190 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] *
+            t169 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] * t172);
         const gic_real t194 = t191 + t192;
-        const gic_real t195 = y[17] * t186 - y[15] * t194 + (rate[17] * t180 - rate[15] * t181);
-        const gic_real t196 = m[280] + t193 + (t29 + t195) + rate[22] * (m[284] * t169 - m[282] * t172);
-        const gic_real t197 = t196 + rate[19] * (m[292] + (m[290] * t169 - m[288] * t172));
-        const gic_real t198 = m[271] * t190 - m[272] * t173 + (m[277] * t172 - m[278] * t176);
-        const gic_real t199 = y[16] * t194 - y[17] * t183 + (rate[16] * t181 - rate[17] * t184);
-        const gic_real t200 = t198 + (t35 + t199) + rate[22] * (m[283] * t172 - m[284] * t176);
-        const gic_real t201 = (t200 + rate[19] * (m[289] * t172 - m[290] * t176)) * (t37 + t185);
+        const gic_real t195 = y[HMMWV14_STATE_OMEGA_Z] * t186 - y[HMMWV14_STATE_OMEGA_X] * t194 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t180 - rate[HMMWV14_STATE_OMEGA_X] * t181);
+        const gic_real t196 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ACCELERATION_Y] + t193 + (t29 + t195) +
+            rate[HMMWV14_STATE_RACK_RATE] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t169 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * t172);
+        const gic_real t197 = t196 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 10] + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t169 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * t172));
+        const gic_real t198 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t190 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t173 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] *
+            t172 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] * t176);
+        const gic_real t199 = y[HMMWV14_STATE_OMEGA_Y] * t194 - y[HMMWV14_STATE_OMEGA_Z] * t183 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t181 - rate[HMMWV14_STATE_OMEGA_Z] * t184);
+        const gic_real t200 = t198 + (t35 + t199) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * t172 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * t176);
+        const gic_real t201 = (t200 + rate[HMMWV14_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * t172 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * t176)) *
+            (t37 + t185);
         const gic_real t202 = t189 * (t21 + t192) + (t197 * (t31 + t182) + t201);
         const gic_real t203 = R(90.555) * t202;
-        const gic_real t204 = m[269] * (m[269] * R(4.7728205)) + (m[268] * (m[268] * R(7.58122)) + m[267] * (m[267] * R(4.8947505)));
-        const gic_real t205 = m[278] + (rate[17] + (m[271] * y[15] - m[270] * y[16])) + m[284] * rate[22];
-        const gic_real t206 = t205 + m[290] * rate[19];
-        const gic_real t207 = m[266] * R(4.7728205);
-        const gic_real t208 = m[265] * R(7.58122);
-        const gic_real t209 = m[264] * R(4.8947505);
-        const gic_real t210 = m[269] * t207 + (m[268] * t208 + m[267] * t209);
-        const gic_real t211 = m[277] + (rate[16] + (m[270] * y[17] - m[272] * y[15])) + m[283] * rate[22];
-        const gic_real t212 = t211 + m[289] * rate[19];
-        const gic_real t213 = m[263] * R(4.7728205);
-        const gic_real t214 = m[262] * R(7.58122);
-        const gic_real t215 = m[261] * R(4.8947505);
-        const gic_real t216 = m[269] * t213 + (m[268] * t214 + m[267] * t215);
-        const gic_real t217 = m[276] + (rate[15] + (m[272] * y[16] - m[271] * y[17])) + m[282] * rate[22];
-        const gic_real t218 = t217 + m[288] * rate[19];
-        const gic_real t219 = (m[272] + y[17]) * (t204 * t206 + (t210 * t212 + t216 * t218));
-        const gic_real t220 = (m[266] * t207 + (m[265] * t208 + m[264] * t209)) * t212;
-        const gic_real t221 = m[266] * t213 + (m[265] * t214 + m[264] * t215);
-        const gic_real t222 = (m[271] + y[16]) * (t210 * t206 + (t220 + t221 * t218));
-        const gic_real t223 = (m[263] * t213 + (m[262] * t214 + m[261] * t215)) * t218;
-        const gic_real t224 = (m[270] + y[15]) * (t216 * t206 + (t221 * t212 + t223));
+        const gic_real t204 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t205 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t206 = t205 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t207 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t208 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t209 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t210 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t207 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t208 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t209);
+        const gic_real t211 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t212 = t211 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t213 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t214 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t215 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t216 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * t213 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * t214 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * t215);
+        const gic_real t217 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t218 = t217 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t219 = (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t204 *
+            t206 + (t210 * t212 + t216 * t218));
+        const gic_real t220 = (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t207 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t208 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t209)) *
+            t212;
+        const gic_real t221 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * t213 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * t214 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * t215);
+        const gic_real t222 = (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t210 *
+            t206 + (t220 + t221 * t218));
+        const gic_real t223 = (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * t213 +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * t214 + m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * t215)) *
+            t218;
+        const gic_real t224 = (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t216 *
+            t206 + (t221 * t212 + t223));
         const gic_real t225 = t219 + (t222 + t224);
-        const gic_real t226 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t227 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t228 = m[102] * t227;
-        const gic_real t229 = R(-1.688965) * y[17];
-        const gic_real t230 = t229 - y[15] * t227 - t228;
+        const gic_real t226 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.246867347245056);
+        const gic_real t227 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.246867347245056);
+        const gic_real t228 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t227;
+        const gic_real t229 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t230 = t229 - y[HMMWV14_STATE_OMEGA_X] * t227 - t228;
         const gic_real t231 = t230 - t228;
         const gic_real t232 = R(0.307086) + t226;
-        const gic_real t233 = y[16] * t227 - y[17] * t232;
-        const gic_real t234 = R(-1.688965) * rate[16];
-        const gic_real t235 = y[15] * t231 - y[16] * t233 + (rate[15] * t232 - t234);
-        const gic_real t236 = m[108] * t226 - m[102] * t228 + (t17 + t235) + rate[20] * (m[114] * t226);
-        const gic_real t237 = m[102] * t226;
-        const gic_real t238 = R(-1.688965) * y[16];
-        const gic_real t239 = t237 + (y[15] * t232 - t238);
+        const gic_real t233 = y[HMMWV14_STATE_OMEGA_Y] * t227 - y[HMMWV14_STATE_OMEGA_Z] * t232;
+        const gic_real t234 = R(-1.688965) * rate[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t235 = y[HMMWV14_STATE_OMEGA_X] * t231 - y[HMMWV14_STATE_OMEGA_Y] * t233 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t232 - t234);
+        const gic_real t236 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t226 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t228 + (t17 + t235) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t226);
+        const gic_real t237 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t226;
+        const gic_real t238 = R(-1.688965) * y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t239 = t237 + (y[HMMWV14_STATE_OMEGA_X] * t232 - t238);
         const gic_real t240 = t237 + t239;
-        const gic_real t241 = R(-1.688965) * rate[17];
-        const gic_real t242 = y[17] * t233 - y[15] * t240 + (t241 - rate[15] * t227);
-        const gic_real t243 = t29 + t242 - (m[102] * t237 + m[108] * t227) - rate[20] * (m[114] * t227);
-        const gic_real t244 = y[16] * t240 - y[17] * t231 + (rate[16] * t227 - rate[17] * t232);
+        const gic_real t241 = R(-1.688965) * rate[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t242 = y[HMMWV14_STATE_OMEGA_Z] * t233 - y[HMMWV14_STATE_OMEGA_X] * t240 + (t241 -
+            rate[HMMWV14_STATE_OMEGA_X] * t227);
+        const gic_real t243 = t29 + t242 - (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t237 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] * t227) - rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * t227);
+        const gic_real t244 = y[HMMWV14_STATE_OMEGA_Y] * t240 - y[HMMWV14_STATE_OMEGA_Z] * t231 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t227 - rate[HMMWV14_STATE_OMEGA_Z] * t232);
         const gic_real t245 = t243 * (t31 + t230) + (t35 + t244) * (t37 + t233);
         const gic_real t246 = R(23.965) * (t236 * (t21 + t239) + t245);
-        const gic_real t247 = rate[17] - m[102] * y[16];
-        const gic_real t248 = (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469))) * t247;
-        const gic_real t249 = m[98] * R(0.8938);
-        const gic_real t250 = m[97] * R(0.4469);
-        const gic_real t251 = m[101] * t249 + m[100] * t250;
-        const gic_real t252 = rate[16] + m[102] * y[17];
-        const gic_real t253 = t251 * t247 + (m[98] * t249 + m[97] * t250) * t252;
-        const gic_real t254 = (m[102] + y[15]) * (R(0.4469) * (m[108] + rate[15] + m[114] * rate[20]));
-        const gic_real t255 = y[17] * (t248 + t251 * t252) + (y[16] * t253 + t254);
+        const gic_real t247 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t248 = (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] *
+            R(0.4469))) * t247;
+        const gic_real t249 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t250 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t251 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * t249 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * t250;
+        const gic_real t252 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t253 = t251 * t247 + (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * t249 +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * t250) * t252;
+        const gic_real t254 = (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE]));
+        const gic_real t255 = y[HMMWV14_STATE_OMEGA_Z] * (t248 + t251 * t252) + (y[HMMWV14_STATE_OMEGA_Y] * t253 +
+            t254);
         const gic_real t256 = t107 + (t144 + t166) + (t203 + t225) + (t246 + t255);
-        const gic_real t257 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t258 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t259 = m[132] * t258;
-        const gic_real t260 = t229 - y[15] * t258 - t259;
+        const gic_real t257 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.246867347245056);
+        const gic_real t258 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.246867347245056);
+        const gic_real t259 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t258;
+        const gic_real t260 = t229 - y[HMMWV14_STATE_OMEGA_X] * t258 - t259;
         const gic_real t261 = t260 - t259;
         const gic_real t262 = R(-0.307086) + t257;
-        const gic_real t263 = y[16] * t258 - y[17] * t262;
-        const gic_real t264 = y[15] * t261 - y[16] * t263 + (rate[15] * t262 - t234);
-        const gic_real t265 = m[138] * t257 - m[132] * t259 + (t17 + t264) + rate[21] * (m[144] * t257);
-        const gic_real t266 = m[132] * t257;
-        const gic_real t267 = t266 + (y[15] * t262 - t238);
+        const gic_real t263 = y[HMMWV14_STATE_OMEGA_Y] * t258 - y[HMMWV14_STATE_OMEGA_Z] * t262;
+        const gic_real t264 = y[HMMWV14_STATE_OMEGA_X] * t261 - y[HMMWV14_STATE_OMEGA_Y] * t263 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t262 - t234);
+        const gic_real t265 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t257 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t259 + (t17 + t264) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t257);
+        const gic_real t266 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t257;
+        const gic_real t267 = t266 + (y[HMMWV14_STATE_OMEGA_X] * t262 - t238);
         const gic_real t268 = t266 + t267;
-        const gic_real t269 = y[17] * t263 - y[15] * t268 + (t241 - rate[15] * t258);
-        const gic_real t270 = t29 + t269 - (m[132] * t266 + m[138] * t258) - rate[21] * (m[144] * t258);
-        const gic_real t271 = y[16] * t268 - y[17] * t261 + (rate[16] * t258 - rate[17] * t262);
+        const gic_real t269 = y[HMMWV14_STATE_OMEGA_Z] * t263 - y[HMMWV14_STATE_OMEGA_X] * t268 + (t241 -
+            rate[HMMWV14_STATE_OMEGA_X] * t258);
+        const gic_real t270 = t29 + t269 - (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t266 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] * t258) - rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * t258);
+        const gic_real t271 = y[HMMWV14_STATE_OMEGA_Y] * t268 - y[HMMWV14_STATE_OMEGA_Z] * t261 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t258 - rate[HMMWV14_STATE_OMEGA_Z] * t262);
         const gic_real t272 = t270 * (t31 + t260) + (t35 + t271) * (t37 + t263);
         const gic_real t273 = R(23.965) * (t265 * (t21 + t267) + t272);
-        const gic_real t274 = rate[17] - m[132] * y[16];
-        const gic_real t275 = (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469))) * t274;
-        const gic_real t276 = m[128] * R(0.8938);
-        const gic_real t277 = m[127] * R(0.4469);
-        const gic_real t278 = m[131] * t276 + m[130] * t277;
-        const gic_real t279 = rate[16] + m[132] * y[17];
-        const gic_real t280 = t278 * t274 + (m[128] * t276 + m[127] * t277) * t279;
-        const gic_real t281 = (m[132] + y[15]) * (R(0.4469) * (m[138] + rate[15] + m[144] * rate[21]));
-        const gic_real t282 = y[17] * (t275 + t278 * t279) + (y[16] * t280 + t281);
-        const gic_real t283 = m[329] * R(0.09182100000000004);
-        const gic_real t284 = t283 + m[328] * R(0.08910630000000008);
-        const gic_real t285 = m[335] * R(0.09182100000000004);
-        const gic_real t286 = t285 + m[334] * R(0.08910630000000008);
-        const gic_real t287 = m[338] * t284 - m[336] * t286;
-        const gic_real t288 = m[332] * R(0.09182100000000004);
-        const gic_real t289 = t288 + m[331] * R(0.08910630000000008);
-        const gic_real t290 = m[337] * t286 - m[338] * t289;
-        const gic_real t291 = m[336] * t287 - m[337] * t290 + (m[342] * t289 - m[343] * t284);
-        const gic_real t292 = m[340] + t287;
-        const gic_real t293 = m[324] + t284;
-        const gic_real t294 = m[326] + t286;
-        const gic_real t295 = t292 + (y[17] * t293 - y[15] * t294);
+        const gic_real t274 = rate[HMMWV14_STATE_OMEGA_Z] - m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t275 = (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] *
+            R(0.8938)) + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] *
+            R(0.4469))) * t274;
+        const gic_real t276 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.8938);
+        const gic_real t277 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(0.4469);
+        const gic_real t278 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * t276 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * t277;
+        const gic_real t279 = rate[HMMWV14_STATE_OMEGA_Y] + m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] *
+            y[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t280 = t278 * t274 + (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * t276 +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * t277) * t279;
+        const gic_real t281 = (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (R(0.4469) *
+            (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_ALPHA_X] + rate[HMMWV14_STATE_OMEGA_X] +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE]));
+        const gic_real t282 = y[HMMWV14_STATE_OMEGA_Z] * (t275 + t278 * t279) + (y[HMMWV14_STATE_OMEGA_Y] * t280 +
+            t281);
+        /* wheel tire_r_l */
+        const gic_real t283 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t284 = t283 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.08910630000000008);
+        const gic_real t285 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t286 = t285 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.08910630000000008);
+        const gic_real t287 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t284 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t286;
+        const gic_real t288 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t289 = t288 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.08910630000000008);
+        const gic_real t290 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t286 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t289;
+        const gic_real t291 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t287 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t290 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] *
+            t289 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] * t284);
+        const gic_real t292 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] + t287;
+        const gic_real t293 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t284;
+        const gic_real t294 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t286;
+        const gic_real t295 = t292 + (y[HMMWV14_STATE_OMEGA_Z] * t293 - y[HMMWV14_STATE_OMEGA_X] * t294);
         const gic_real t296 = t292 + t295;
-        const gic_real t297 = m[325] + t289;
-        const gic_real t298 = t290 + (y[16] * t294 - y[17] * t297);
+        const gic_real t297 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t289;
+        const gic_real t298 = t290 + (y[HMMWV14_STATE_OMEGA_Y] * t294 - y[HMMWV14_STATE_OMEGA_Z] * t297);
         const gic_real t299 = t290 + t298;
-        const gic_real t300 = y[15] * t296 - y[16] * t299 + (rate[15] * t297 - rate[16] * t293);
-        const gic_real t301 = m[347] + t291 + (t17 + t300) + rate[20] * (m[353] + (m[348] * t289 - m[349] * t284));
-        const gic_real t302 = m[336] * t289 - m[337] * t284;
-        const gic_real t303 = m[341] + t302;
-        const gic_real t304 = t303 + (y[15] * t297 - y[16] * t293);
-        const gic_real t305 = m[338] * t290 - m[336] * t302 + (m[344] * t284 - m[342] * t286);
+        const gic_real t300 = y[HMMWV14_STATE_OMEGA_X] * t296 - y[HMMWV14_STATE_OMEGA_Y] * t299 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t297 - rate[HMMWV14_STATE_OMEGA_Y] * t293);
+        const gic_real t301 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Z] + t291 + (t17 + t300) +
+            rate[HMMWV14_STATE_SPRING_R_L_RATE] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 5] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t289 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t284));
+        const gic_real t302 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t289 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t284;
+        const gic_real t303 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] + t302;
+        const gic_real t304 = t303 + (y[HMMWV14_STATE_OMEGA_X] * t297 - y[HMMWV14_STATE_OMEGA_Y] * t293);
+        const gic_real t305 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t290 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t302 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] *
+            t284 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] * t286);
         const gic_real t306 = t303 + t304;
-        const gic_real t307 = y[17] * t299 - y[15] * t306 + (rate[17] * t293 - rate[15] * t294);
-        const gic_real t308 = m[346] + t305 + (t29 + t307) + rate[20] * (m[352] + (m[350] * t284 - m[348] * t286));
-        const gic_real t309 = m[337] * t302 - m[338] * t287 + (m[343] * t286 - m[344] * t289);
-        const gic_real t310 = y[16] * t306 - y[17] * t296 + (rate[16] * t294 - rate[17] * t297);
-        const gic_real t311 = t309 + (t35 + t310) + rate[20] * (m[349] * t286 - m[350] * t289);
+        const gic_real t307 = y[HMMWV14_STATE_OMEGA_Z] * t299 - y[HMMWV14_STATE_OMEGA_X] * t306 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t293 - rate[HMMWV14_STATE_OMEGA_X] * t294);
+        const gic_real t308 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ACCELERATION_Y] + t305 + (t29 + t307) +
+            rate[HMMWV14_STATE_SPRING_R_L_RATE] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 4] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t284 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * t286));
+        const gic_real t309 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t302 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t287 + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] *
+            t286 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] * t289);
+        const gic_real t310 = y[HMMWV14_STATE_OMEGA_Y] * t306 - y[HMMWV14_STATE_OMEGA_Z] * t296 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t294 - rate[HMMWV14_STATE_OMEGA_Z] * t297);
+        const gic_real t311 = t309 + (t35 + t310) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * t286 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * t289);
         const gic_real t312 = t301 * (t21 + t304) + (t308 * (t31 + t295) + t311 * (t37 + t298));
         const gic_real t313 = R(90.555) * t312;
-        const gic_real t314 = m[335] * (m[335] * R(4.7728205)) + (m[334] * (m[334] * R(7.58122)) + m[333] * (m[333] * R(4.8947505)));
-        const gic_real t315 = m[344] + (rate[17] + (m[337] * y[15] - m[336] * y[16])) + m[350] * rate[20];
-        const gic_real t316 = m[332] * R(4.7728205);
-        const gic_real t317 = m[331] * R(7.58122);
-        const gic_real t318 = m[330] * R(4.8947505);
-        const gic_real t319 = m[335] * t316 + (m[334] * t317 + m[333] * t318);
-        const gic_real t320 = m[343] + (rate[16] + (m[336] * y[17] - m[338] * y[15])) + m[349] * rate[20];
-        const gic_real t321 = m[329] * R(4.7728205);
-        const gic_real t322 = m[328] * R(7.58122);
-        const gic_real t323 = m[327] * R(4.8947505);
-        const gic_real t324 = m[335] * t321 + (m[334] * t322 + m[333] * t323);
-        const gic_real t325 = m[342] + (rate[15] + (m[338] * y[16] - m[337] * y[17])) + m[348] * rate[20];
-        const gic_real t326 = (m[338] + y[17]) * (t314 * t315 + (t319 * t320 + t324 * t325));
-        const gic_real t327 = (m[332] * t316 + (m[331] * t317 + m[330] * t318)) * t320;
-        const gic_real t328 = m[332] * t321 + (m[331] * t322 + m[330] * t323);
-        const gic_real t329 = (m[337] + y[16]) * (t319 * t315 + (t327 + t328 * t325));
-        const gic_real t330 = (m[329] * t321 + (m[328] * t322 + m[327] * t323)) * t325;
-        const gic_real t331 = (m[336] + y[15]) * (t324 * t315 + (t328 * t320 + t330));
+        const gic_real t314 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t315 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t316 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t317 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t318 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t319 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t316 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t317 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t318);
+        const gic_real t320 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t321 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t322 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t323 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t324 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * t321 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * t322 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZX] * t323);
+        const gic_real t325 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t326 = (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t314 *
+            t315 + (t319 * t320 + t324 * t325));
+        const gic_real t327 = (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t316 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t317 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t318)) *
+            t320;
+        const gic_real t328 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * t321 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * t322 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YX] * t323);
+        const gic_real t329 = (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t319 *
+            t315 + (t327 + t328 * t325));
+        const gic_real t330 = (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * t321 +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * t322 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XX] * t323)) *
+            t325;
+        const gic_real t331 = (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t324 *
+            t315 + (t328 * t320 + t330));
         const gic_real t332 = t326 + (t329 + t331);
-        const gic_real t333 = m[389] * R(0.09182100000000004);
-        const gic_real t334 = t333 + m[388] * R(-0.08910630000000008);
-        const gic_real t335 = m[395] * R(0.09182100000000004);
-        const gic_real t336 = t335 + m[394] * R(-0.08910630000000008);
-        const gic_real t337 = m[398] * t334 - m[396] * t336;
-        const gic_real t338 = m[392] * R(0.09182100000000004);
-        const gic_real t339 = t338 + m[391] * R(-0.08910630000000008);
-        const gic_real t340 = m[397] * t336 - m[398] * t339;
-        const gic_real t341 = m[396] * t337 - m[397] * t340 + (m[402] * t339 - m[403] * t334);
-        const gic_real t342 = m[400] + t337;
-        const gic_real t343 = m[384] + t334;
-        const gic_real t344 = m[386] + t336;
-        const gic_real t345 = t342 + (y[17] * t343 - y[15] * t344);
+        /* wheel tire_r_r */
+        const gic_real t333 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004);
+        const gic_real t334 = t333 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.08910630000000008);
+        const gic_real t335 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004);
+        const gic_real t336 = t335 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.08910630000000008);
+        const gic_real t337 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t334 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t336;
+        const gic_real t338 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004);
+        const gic_real t339 = t338 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.08910630000000008);
+        const gic_real t340 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t336 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t339;
+        const gic_real t341 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t337 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t340 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] *
+            t339 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] * t334);
+        const gic_real t342 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] + t337;
+        const gic_real t343 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t334;
+        const gic_real t344 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t336;
+        const gic_real t345 = t342 + (y[HMMWV14_STATE_OMEGA_Z] * t343 - y[HMMWV14_STATE_OMEGA_X] * t344);
         const gic_real t346 = t342 + t345;
-        const gic_real t347 = m[385] + t339;
-        const gic_real t348 = t340 + (y[16] * t344 - y[17] * t347);
+        const gic_real t347 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t339;
+        const gic_real t348 = t340 + (y[HMMWV14_STATE_OMEGA_Y] * t344 - y[HMMWV14_STATE_OMEGA_Z] * t347);
         const gic_real t349 = t340 + t348;
-        const gic_real t350 = y[15] * t346 - y[16] * t349 + (rate[15] * t347 - rate[16] * t343);
-        const gic_real t351 = m[407] + t341 + (t17 + t350) + rate[21] * (m[413] + (m[408] * t339 - m[409] * t334));
-        const gic_real t352 = m[396] * t339 - m[397] * t334;
-        const gic_real t353 = m[401] + t352;
-        const gic_real t354 = t353 + (y[15] * t347 - y[16] * t343);
-        const gic_real t355 = m[398] * t340 - m[396] * t352 + (m[404] * t334 - m[402] * t336);
+        const gic_real t350 = y[HMMWV14_STATE_OMEGA_X] * t346 - y[HMMWV14_STATE_OMEGA_Y] * t349 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t347 - rate[HMMWV14_STATE_OMEGA_Y] * t343);
+        const gic_real t351 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Z] + t341 + (t17 + t350) +
+            rate[HMMWV14_STATE_SPRING_R_R_RATE] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 5] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t339 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t334));
+        const gic_real t352 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t339 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t334;
+        const gic_real t353 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] + t352;
+        const gic_real t354 = t353 + (y[HMMWV14_STATE_OMEGA_X] * t347 - y[HMMWV14_STATE_OMEGA_Y] * t343);
+        const gic_real t355 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t340 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t352 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] *
+            t334 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] * t336);
         const gic_real t356 = t353 + t354;
-        const gic_real t357 = y[17] * t349 - y[15] * t356 + (rate[17] * t343 - rate[15] * t344);
-        const gic_real t358 = m[406] + t355 + (t29 + t357) + rate[21] * (m[412] + (m[410] * t334 - m[408] * t336));
-        const gic_real t359 = m[397] * t352 - m[398] * t337 + (m[403] * t336 - m[404] * t339);
-        const gic_real t360 = y[16] * t356 - y[17] * t346 + (rate[16] * t344 - rate[17] * t347);
-        const gic_real t361 = t359 + (t35 + t360) + rate[21] * (m[409] * t336 - m[410] * t339);
+        const gic_real t357 = y[HMMWV14_STATE_OMEGA_Z] * t349 - y[HMMWV14_STATE_OMEGA_X] * t356 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t343 - rate[HMMWV14_STATE_OMEGA_X] * t344);
+        const gic_real t358 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ACCELERATION_Y] + t355 + (t29 + t357) +
+            rate[HMMWV14_STATE_SPRING_R_R_RATE] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 4] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t334 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * t336));
+        const gic_real t359 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t352 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t337 + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] *
+            t336 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] * t339);
+        const gic_real t360 = y[HMMWV14_STATE_OMEGA_Y] * t356 - y[HMMWV14_STATE_OMEGA_Z] * t346 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t344 - rate[HMMWV14_STATE_OMEGA_Z] * t347);
+        const gic_real t361 = t359 + (t35 + t360) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * t336 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * t339);
         const gic_real t362 = t351 * (t21 + t354) + (t358 * (t31 + t345) + t361 * (t37 + t348));
         const gic_real t363 = R(90.555) * t362;
-        const gic_real t364 = m[395] * (m[395] * R(4.7728205)) + (m[394] * (m[394] * R(7.58122)) + m[393] * (m[393] * R(4.8947505)));
-        const gic_real t365 = m[404] + (rate[17] + (m[397] * y[15] - m[396] * y[16])) + m[410] * rate[21];
-        const gic_real t366 = m[392] * R(4.7728205);
-        const gic_real t367 = m[391] * R(7.58122);
-        const gic_real t368 = m[390] * R(4.8947505);
-        const gic_real t369 = m[395] * t366 + (m[394] * t367 + m[393] * t368);
-        const gic_real t370 = m[403] + (rate[16] + (m[396] * y[17] - m[398] * y[15])) + m[409] * rate[21];
-        const gic_real t371 = m[389] * R(4.7728205);
-        const gic_real t372 = m[388] * R(7.58122);
-        const gic_real t373 = m[387] * R(4.8947505);
-        const gic_real t374 = m[395] * t371 + (m[394] * t372 + m[393] * t373);
-        const gic_real t375 = m[402] + (rate[15] + (m[398] * y[16] - m[397] * y[17])) + m[408] * rate[21];
-        const gic_real t376 = (m[398] + y[17]) * (t364 * t365 + (t369 * t370 + t374 * t375));
-        const gic_real t377 = (m[392] * t366 + (m[391] * t367 + m[390] * t368)) * t370;
-        const gic_real t378 = m[392] * t371 + (m[391] * t372 + m[390] * t373);
-        const gic_real t379 = (m[397] + y[16]) * (t369 * t365 + (t377 + t378 * t375));
-        const gic_real t380 = (m[389] * t371 + (m[388] * t372 + m[387] * t373)) * t375;
-        const gic_real t381 = (m[396] + y[15]) * (t374 * t365 + (t378 * t370 + t380));
+        const gic_real t364 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] *
+            R(4.7728205)) + (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] *
+            R(7.58122)) + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] *
+            R(4.8947505)));
+        const gic_real t365 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t366 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(4.7728205);
+        const gic_real t367 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(7.58122);
+        const gic_real t368 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * R(4.8947505);
+        const gic_real t369 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t366 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t367 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t368);
+        const gic_real t370 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t371 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(4.7728205);
+        const gic_real t372 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(7.58122);
+        const gic_real t373 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * R(4.8947505);
+        const gic_real t374 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * t371 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * t372 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZX] * t373);
+        const gic_real t375 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t376 = (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t364 *
+            t365 + (t369 * t370 + t374 * t375));
+        const gic_real t377 = (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t366 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t367 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t368)) *
+            t370;
+        const gic_real t378 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * t371 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * t372 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YX] * t373);
+        const gic_real t379 = (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t369 *
+            t365 + (t377 + t378 * t375));
+        const gic_real t380 = (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * t371 +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * t372 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XX] * t373)) *
+            t375;
+        const gic_real t381 = (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t374 *
+            t365 + (t378 * t370 + t380));
         const gic_real t382 = t376 + (t379 + t381);
         const gic_real t383 = t256 + (t273 + t282) + (t313 + t332) + (t363 + t382);
-        const gic_real t384 = m[155] * R(8.518978193491379e-06) + (m[154] * R(0.1333626625632361) + R(0.031507339809937016));
-        const gic_real t385 = m[161] * R(8.518978193491379e-06) + (m[160] * R(0.1333626625632361) + R(0.007016966063240429));
-        const gic_real t386 = m[164] * t384 - m[162] * t385;
-        const gic_real t387 = m[158] * R(8.518978193491379e-06) + (m[157] * R(0.1333626625632361) + R(-0.004544539087734648));
-        const gic_real t388 = m[163] * t385 - m[164] * t387;
-        const gic_real t389 = m[162] * t386 - m[163] * t388 + (m[168] * t387 - m[169] * t384);
+        const gic_real t384 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.1333626625632361) + R(0.031507339809937016));
+        const gic_real t385 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * R(0.1333626625632361) + R(0.007016966063240429));
+        const gic_real t386 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t384 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t385;
+        const gic_real t387 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.1333626625632361) + R(-0.004544539087734648));
+        const gic_real t388 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t385 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t387;
+        const gic_real t389 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t386 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t388 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t387 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t384);
         const gic_real t390 = R(1.5309008) + t384;
         const gic_real t391 = R(0.22009100000000004) + t385;
-        const gic_real t392 = t386 + (y[17] * t390 - y[15] * t391);
+        const gic_real t392 = t386 + (y[HMMWV14_STATE_OMEGA_Z] * t390 - y[HMMWV14_STATE_OMEGA_X] * t391);
         const gic_real t393 = t386 + t392;
         const gic_real t394 = R(0.4618482) + t387;
-        const gic_real t395 = t388 + (y[16] * t391 - y[17] * t394);
+        const gic_real t395 = t388 + (y[HMMWV14_STATE_OMEGA_Y] * t391 - y[HMMWV14_STATE_OMEGA_Z] * t394);
         const gic_real t396 = t388 + t395;
-        const gic_real t397 = y[15] * t393 - y[16] * t396 + (rate[15] * t394 - rate[16] * t390);
-        const gic_real t398 = t389 + (t17 + t397) + rate[22] * (m[174] * t387 - m[175] * t384);
-        const gic_real t399 = m[162] * t387 - m[163] * t384;
-        const gic_real t400 = t399 + (y[15] * t394 - y[16] * t390);
-        const gic_real t401 = (t398 + rate[18] * (m[180] * t387 - m[181] * t384)) * (t21 + t400);
-        const gic_real t402 = m[164] * t388 - m[162] * t399 + (m[170] * t384 - m[168] * t385);
+        const gic_real t397 = y[HMMWV14_STATE_OMEGA_X] * t393 - y[HMMWV14_STATE_OMEGA_Y] * t396 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t394 - rate[HMMWV14_STATE_OMEGA_Y] * t390);
+        const gic_real t398 = t389 + (t17 + t397) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t387 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t384);
+        const gic_real t399 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t387 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t384;
+        const gic_real t400 = t399 + (y[HMMWV14_STATE_OMEGA_X] * t394 - y[HMMWV14_STATE_OMEGA_Y] * t390);
+        const gic_real t401 = (t398 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] *
+            t387 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * t384)) * (t21 + t400);
+        const gic_real t402 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t388 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * t399 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t384 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] * t385);
         const gic_real t403 = t399 + t400;
-        const gic_real t404 = y[17] * t396 - y[15] * t403 + (rate[17] * t390 - rate[15] * t391);
-        const gic_real t405 = t402 + (t29 + t404) + rate[22] * (m[176] * t384 - m[174] * t385);
-        const gic_real t406 = (t405 + rate[18] * (m[182] * t384 - m[180] * t385)) * (t31 + t392);
-        const gic_real t407 = m[163] * t399 - m[164] * t386 + (m[169] * t385 - m[170] * t387);
-        const gic_real t408 = y[16] * t403 - y[17] * t393 + (rate[16] * t391 - rate[17] * t394);
-        const gic_real t409 = t407 + (t35 + t408) + rate[22] * (m[175] * t385 - m[176] * t387);
-        const gic_real t410 = (t409 + rate[18] * (m[181] * t385 - m[182] * t387)) * (t37 + t395);
+        const gic_real t404 = y[HMMWV14_STATE_OMEGA_Z] * t396 - y[HMMWV14_STATE_OMEGA_X] * t403 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t390 - rate[HMMWV14_STATE_OMEGA_X] * t391);
+        const gic_real t405 = t402 + (t29 + t404) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t384 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * t385);
+        const gic_real t406 = (t405 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] *
+            t384 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * t385)) * (t31 + t392);
+        const gic_real t407 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * t399 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * t386 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] * t385 -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] * t387);
+        const gic_real t408 = y[HMMWV14_STATE_OMEGA_Y] * t403 - y[HMMWV14_STATE_OMEGA_Z] * t393 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t391 - rate[HMMWV14_STATE_OMEGA_Z] * t394);
+        const gic_real t409 = t407 + (t35 + t408) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * t385 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * t387);
+        const gic_real t410 = (t409 + rate[HMMWV14_STATE_SPRING_F_L_RATE] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] *
+            t385 - m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * t387)) * (t37 + t395);
         const gic_real t411 = (t401 + (t406 + t410)) * R(5.813);
-        const gic_real t412 = m[161] * (m[161] * R(0.06276)) + (m[160] * (m[160] * R(0.03138)) + R(0.0014540542454566034));
-        const gic_real t413 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t414 = t413 + m[182] * rate[18];
-        const gic_real t415 = m[158] * R(0.06276);
-        const gic_real t416 = m[157] * R(0.03138);
-        const gic_real t417 = m[161] * t415 + (m[160] * t416 + R(-0.0009417184427870059));
-        const gic_real t418 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t419 = t418 + m[181] * rate[18];
-        const gic_real t420 = m[155] * R(0.06276);
-        const gic_real t421 = m[154] * R(0.03138);
-        const gic_real t422 = m[161] * t420 + (m[160] * t421 + R(0.0065289443900383055));
-        const gic_real t423 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t424 = t423 + m[180] * rate[18];
-        const gic_real t425 = (m[164] + y[17]) * (t412 * t414 + (t417 * t419 + t422 * t424));
-        const gic_real t426 = m[158] * t420 + (m[157] * t421 + R(-0.004228471780362703));
-        const gic_real t427 = (m[158] * t415 + (m[157] * t416 + R(0.0006099040859419237))) * t419 + t426 * t424;
-        const gic_real t428 = t426 * t419 + (m[155] * t420 + (m[154] * t421 + R(0.029316041668601474))) * t424;
-        const gic_real t429 = (m[163] + y[16]) * (t417 * t414 + t427) + (m[162] + y[15]) * (t422 * t414 + t428);
+        const gic_real t412 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(0.0014540542454566034));
+        const gic_real t413 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t414 = t413 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t415 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t416 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t417 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t415 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t416 + R(-0.0009417184427870059));
+        const gic_real t418 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t419 = t418 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t420 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t421 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t422 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZZ] * t420 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_ZY] * t421 + R(0.0065289443900383055));
+        const gic_real t423 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t424 = t423 + m[HMMWV14_MOTION_UCA_F_L + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t425 = (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t412 * t414 +
+            (t417 * t419 + t422 * t424));
+        const gic_real t426 = m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t420 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t421 + R(-0.004228471780362703));
+        const gic_real t427 = (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YZ] * t415 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_YY] * t416 + R(0.0006099040859419237))) * t419 + t426 * t424;
+        const gic_real t428 = t426 * t419 + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XZ] * t420 +
+            (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_A_XY] * t421 + R(0.029316041668601474))) * t424;
+        const gic_real t429 = (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t417 * t414 +
+            t427) + (m[HMMWV14_MOTION_UCA_F_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t422 * t414 + t428);
         const gic_real t430 = t425 + t429;
-        const gic_real t431 = m[227] * R(8.518978193491379e-06) + (R(0.031507339809937016) + m[226] * R(-0.1333626625632361));
-        const gic_real t432 = m[233] * R(8.518978193491379e-06) + (R(0.007016966063240429) + m[232] * R(-0.1333626625632361));
-        const gic_real t433 = m[236] * t431 - m[234] * t432;
-        const gic_real t434 = m[230] * R(8.518978193491379e-06) + (m[229] * R(-0.1333626625632361) + R(0.004544539087734648));
-        const gic_real t435 = m[235] * t432 - m[236] * t434;
-        const gic_real t436 = m[234] * t433 - m[235] * t435 + (m[240] * t434 - m[241] * t431);
+        const gic_real t431 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(8.518978193491379e-06) +
+            (R(0.031507339809937016) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(-0.1333626625632361));
+        const gic_real t432 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * R(8.518978193491379e-06) +
+            (R(0.007016966063240429) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(-0.1333626625632361));
+        const gic_real t433 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t431 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t432;
+        const gic_real t434 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(8.518978193491379e-06) +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(-0.1333626625632361) + R(0.004544539087734648));
+        const gic_real t435 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t432 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t434;
+        const gic_real t436 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t433 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t435 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t434 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t431);
         const gic_real t437 = R(1.5309008) + t431;
         const gic_real t438 = R(0.22009100000000004) + t432;
-        const gic_real t439 = t433 + (y[17] * t437 - y[15] * t438);
+        const gic_real t439 = t433 + (y[HMMWV14_STATE_OMEGA_Z] * t437 - y[HMMWV14_STATE_OMEGA_X] * t438);
         const gic_real t440 = t433 + t439;
         const gic_real t441 = R(-0.4618482) + t434;
-        const gic_real t442 = t435 + (y[16] * t438 - y[17] * t441);
+        const gic_real t442 = t435 + (y[HMMWV14_STATE_OMEGA_Y] * t438 - y[HMMWV14_STATE_OMEGA_Z] * t441);
         const gic_real t443 = t435 + t442;
-        const gic_real t444 = y[15] * t440 - y[16] * t443 + (rate[15] * t441 - rate[16] * t437);
-        const gic_real t445 = t436 + (t17 + t444) + rate[22] * (m[246] * t434 - m[247] * t431);
-        const gic_real t446 = m[234] * t434 - m[235] * t431;
-        const gic_real t447 = t446 + (y[15] * t441 - y[16] * t437);
-        const gic_real t448 = (t445 + rate[19] * (m[252] * t434 - m[253] * t431)) * (t21 + t447);
-        const gic_real t449 = m[236] * t435 - m[234] * t446 + (m[242] * t431 - m[240] * t432);
+        const gic_real t444 = y[HMMWV14_STATE_OMEGA_X] * t440 - y[HMMWV14_STATE_OMEGA_Y] * t443 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t441 - rate[HMMWV14_STATE_OMEGA_Y] * t437);
+        const gic_real t445 = t436 + (t17 + t444) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t434 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t431);
+        const gic_real t446 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t434 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t431;
+        const gic_real t447 = t446 + (y[HMMWV14_STATE_OMEGA_X] * t441 - y[HMMWV14_STATE_OMEGA_Y] * t437);
+        const gic_real t448 = (t445 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] *
+            t434 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * t431)) * (t21 + t447);
+        const gic_real t449 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t435 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * t446 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t431 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] * t432);
         const gic_real t450 = t446 + t447;
-        const gic_real t451 = y[17] * t443 - y[15] * t450 + (rate[17] * t437 - rate[15] * t438);
-        const gic_real t452 = t449 + (t29 + t451) + rate[22] * (m[248] * t431 - m[246] * t432);
-        const gic_real t453 = (t452 + rate[19] * (m[254] * t431 - m[252] * t432)) * (t31 + t439);
-        const gic_real t454 = m[235] * t446 - m[236] * t433 + (m[241] * t432 - m[242] * t434);
-        const gic_real t455 = y[16] * t450 - y[17] * t440 + (rate[16] * t438 - rate[17] * t441);
-        const gic_real t456 = t454 + (t35 + t455) + rate[22] * (m[247] * t432 - m[248] * t434);
-        const gic_real t457 = (t456 + rate[19] * (m[253] * t432 - m[254] * t434)) * (t37 + t442);
+        const gic_real t451 = y[HMMWV14_STATE_OMEGA_Z] * t443 - y[HMMWV14_STATE_OMEGA_X] * t450 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t437 - rate[HMMWV14_STATE_OMEGA_X] * t438);
+        const gic_real t452 = t449 + (t29 + t451) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t431 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * t432);
+        const gic_real t453 = (t452 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] *
+            t431 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * t432)) * (t31 + t439);
+        const gic_real t454 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * t446 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * t433 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] * t432 -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] * t434);
+        const gic_real t455 = y[HMMWV14_STATE_OMEGA_Y] * t450 - y[HMMWV14_STATE_OMEGA_Z] * t440 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t438 - rate[HMMWV14_STATE_OMEGA_Z] * t441);
+        const gic_real t456 = t454 + (t35 + t455) + rate[HMMWV14_STATE_RACK_RATE] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * t432 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * t434);
+        const gic_real t457 = (t456 + rate[HMMWV14_STATE_SPRING_F_R_RATE] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] *
+            t432 - m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * t434)) * (t37 + t442);
         const gic_real t458 = R(5.813) * (t448 + (t453 + t457));
-        const gic_real t459 = m[233] * (m[233] * R(0.06276)) + (R(0.0014540542454566034) + m[232] * (m[232] * R(0.03138)));
-        const gic_real t460 = m[242] + (rate[17] + (m[235] * y[15] - m[234] * y[16])) + m[248] * rate[22];
-        const gic_real t461 = t460 + m[254] * rate[19];
-        const gic_real t462 = m[230] * R(0.06276);
-        const gic_real t463 = m[229] * R(0.03138);
-        const gic_real t464 = m[233] * t462 + (m[232] * t463 + R(0.0009417184427870059));
-        const gic_real t465 = m[241] + (rate[16] + (m[234] * y[17] - m[236] * y[15])) + m[247] * rate[22];
-        const gic_real t466 = t465 + m[253] * rate[19];
-        const gic_real t467 = m[227] * R(0.06276);
-        const gic_real t468 = m[226] * R(0.03138);
-        const gic_real t469 = m[233] * t467 + (R(0.0065289443900383055) + m[232] * t468);
-        const gic_real t470 = m[240] + (rate[15] + (m[236] * y[16] - m[235] * y[17])) + m[246] * rate[22];
-        const gic_real t471 = t470 + m[252] * rate[19];
-        const gic_real t472 = (m[236] + y[17]) * (t459 * t461 + (t464 * t466 + t469 * t471));
-        const gic_real t473 = m[230] * t467 + (m[229] * t468 + R(0.004228471780362703));
-        const gic_real t474 = (m[230] * t462 + (R(0.0006099040859419237) + m[229] * t463)) * t466 + t473 * t471;
-        const gic_real t475 = t473 * t466 + (m[227] * t467 + (R(0.029316041668601474) + m[226] * t468)) * t471;
-        const gic_real t476 = (m[235] + y[16]) * (t464 * t461 + t474) + (m[234] + y[15]) * (t469 * t461 + t475);
+        const gic_real t459 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(0.0014540542454566034) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t460 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t461 = t460 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 8] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t462 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t463 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t464 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t462 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t463 + R(0.0009417184427870059));
+        const gic_real t465 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t466 = t465 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 7] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t467 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t468 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t469 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZZ] * t467 + (R(0.0065289443900383055) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_ZY] * t468);
+        const gic_real t470 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_RACK_RATE];
+        const gic_real t471 = t470 + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_S + 6] * rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t472 = (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t459 * t461 +
+            (t464 * t466 + t469 * t471));
+        const gic_real t473 = m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t467 +
+            (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t468 + R(0.004228471780362703));
+        const gic_real t474 = (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YZ] * t462 + (R(0.0006099040859419237) +
+            m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_YY] * t463)) * t466 + t473 * t471;
+        const gic_real t475 = t473 * t466 + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XZ] * t467 +
+            (R(0.029316041668601474) + m[HMMWV14_MOTION_UCA_F_R + HMMWV14_A_XY] * t468)) * t471;
+        const gic_real t476 = (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t464 * t461 +
+            t474) + (m[HMMWV14_MOTION_UCA_F_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t469 * t461 + t475);
         const gic_real t477 = t472 + t476;
-        const gic_real t478 = m[299] * R(-1.232760342215547e-05) + (m[298] * R(0.1268157381236126) + R(-0.0887274110323348));
-        const gic_real t479 = m[305] * R(-1.232760342215547e-05) + (m[304] * R(0.1268157381236126) + R(-0.0012494512130067036));
-        const gic_real t480 = m[308] * t478 - m[306] * t479;
-        const gic_real t481 = m[302] * R(-1.232760342215547e-05) + (m[301] * R(0.1268157381236126) + R(-6.79134666217616e-05));
-        const gic_real t482 = m[307] * t479 - m[308] * t481;
-        const gic_real t483 = m[306] * t480 - m[307] * t482 + (m[312] * t481 - m[313] * t478);
+        const gic_real t478 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.1268157381236126) + R(-0.0887274110323348));
+        const gic_real t479 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * R(0.1268157381236126) + R(-0.0012494512130067036));
+        const gic_real t480 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t478 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t479;
+        const gic_real t481 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.1268157381236126) + R(-6.79134666217616e-05));
+        const gic_real t482 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t479 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t481;
+        const gic_real t483 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t480 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t482 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t481 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t478);
         const gic_real t484 = R(-1.475859) + t478;
         const gic_real t485 = R(0.22567900000000007) + t479;
-        const gic_real t486 = t480 + (y[17] * t484 - y[15] * t485);
+        const gic_real t486 = t480 + (y[HMMWV14_STATE_OMEGA_Z] * t484 - y[HMMWV14_STATE_OMEGA_X] * t485);
         const gic_real t487 = t480 + t486;
         const gic_real t488 = R(0.462153) + t481;
-        const gic_real t489 = t482 + (y[16] * t485 - y[17] * t488);
+        const gic_real t489 = t482 + (y[HMMWV14_STATE_OMEGA_Y] * t485 - y[HMMWV14_STATE_OMEGA_Z] * t488);
         const gic_real t490 = t482 + t489;
-        const gic_real t491 = y[15] * t487 - y[16] * t490 + (rate[15] * t488 - rate[16] * t484);
-        const gic_real t492 = t483 + (t17 + t491) + rate[20] * (m[318] * t481 - m[319] * t478);
-        const gic_real t493 = m[306] * t481 - m[307] * t478;
-        const gic_real t494 = t493 + (y[15] * t488 - y[16] * t484);
-        const gic_real t495 = m[308] * t482 - m[306] * t493 + (m[314] * t478 - m[312] * t479);
+        const gic_real t491 = y[HMMWV14_STATE_OMEGA_X] * t487 - y[HMMWV14_STATE_OMEGA_Y] * t490 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t488 - rate[HMMWV14_STATE_OMEGA_Y] * t484);
+        const gic_real t492 = t483 + (t17 + t491) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t481 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t478);
+        const gic_real t493 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t481 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t478;
+        const gic_real t494 = t493 + (y[HMMWV14_STATE_OMEGA_X] * t488 - y[HMMWV14_STATE_OMEGA_Y] * t484);
+        const gic_real t495 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t482 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * t493 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t478 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] * t479);
         const gic_real t496 = t493 + t494;
-        const gic_real t497 = y[17] * t490 - y[15] * t496 + (rate[17] * t484 - rate[15] * t485);
-        const gic_real t498 = t495 + (t29 + t497) + rate[20] * (m[320] * t478 - m[318] * t479);
-        const gic_real t499 = m[307] * t493 - m[308] * t480 + (m[313] * t479 - m[314] * t481);
-        const gic_real t500 = y[16] * t496 - y[17] * t487 + (rate[16] * t485 - rate[17] * t488);
-        const gic_real t501 = t499 + (t35 + t500) + rate[20] * (m[319] * t479 - m[320] * t481);
+        const gic_real t497 = y[HMMWV14_STATE_OMEGA_Z] * t490 - y[HMMWV14_STATE_OMEGA_X] * t496 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t484 - rate[HMMWV14_STATE_OMEGA_X] * t485);
+        const gic_real t498 = t495 + (t29 + t497) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t478 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * t479);
+        const gic_real t499 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * t493 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * t480 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] * t479 -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] * t481);
+        const gic_real t500 = y[HMMWV14_STATE_OMEGA_Y] * t496 - y[HMMWV14_STATE_OMEGA_Z] * t487 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t485 - rate[HMMWV14_STATE_OMEGA_Z] * t488);
+        const gic_real t501 = t499 + (t35 + t500) + rate[HMMWV14_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * t479 - m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * t481);
         const gic_real t502 = t492 * (t21 + t494) + (t498 * (t31 + t486) + t501 * (t37 + t489));
         const gic_real t503 = R(5.813) * t502;
-        const gic_real t504 = m[305] * (m[305] * R(0.06276)) + (m[304] * (m[304] * R(0.03138)) + R(6.221420556416178e-06));
-        const gic_real t505 = m[314] + (rate[17] + (m[307] * y[15] - m[306] * y[16])) + m[320] * rate[20];
-        const gic_real t506 = m[302] * R(0.06276);
-        const gic_real t507 = m[301] * R(0.03138);
-        const gic_real t508 = m[305] * t506 + (m[304] * t507 + R(3.3816305342675644e-07));
-        const gic_real t509 = m[313] + (rate[16] + (m[306] * y[17] - m[308] * y[15])) + m[319] * rate[20];
-        const gic_real t510 = m[299] * R(0.06276);
-        const gic_real t511 = m[298] * R(0.03138);
-        const gic_real t512 = m[305] * t510 + (m[304] * t511 + R(0.00044180239545791184));
-        const gic_real t513 = m[312] + (rate[15] + (m[308] * y[16] - m[307] * y[17])) + m[318] * rate[20];
-        const gic_real t514 = (m[308] + y[17]) * (t504 * t505 + (t508 * t509 + t512 * t513));
-        const gic_real t515 = m[302] * t510 + (m[301] * t511 + R(2.4014008650359553e-05));
-        const gic_real t516 = (m[302] * t506 + (m[301] * t507 + R(1.838072987767614e-08))) * t509 + t515 * t513;
-        const gic_real t517 = t515 * t509 + (m[299] * t510 + (m[298] * t511 + R(0.0313737601987137))) * t513;
-        const gic_real t518 = (m[307] + y[16]) * (t508 * t505 + t516) + (m[306] + y[15]) * (t512 * t505 + t517);
+        const gic_real t504 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] *
+            R(0.06276)) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] *
+            R(0.03138)) + R(6.221420556416178e-06));
+        const gic_real t505 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t506 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t507 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t508 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t506 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t507 + R(3.3816305342675644e-07));
+        const gic_real t509 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t510 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t511 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t512 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZZ] * t510 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_ZY] * t511 + R(0.00044180239545791184));
+        const gic_real t513 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_L + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t514 = (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t504 * t505 +
+            (t508 * t509 + t512 * t513));
+        const gic_real t515 = m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t510 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t511 + R(2.4014008650359553e-05));
+        const gic_real t516 = (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YZ] * t506 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_YY] * t507 + R(1.838072987767614e-08))) * t509 + t515 * t513;
+        const gic_real t517 = t515 * t509 + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XZ] * t510 +
+            (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_A_XY] * t511 + R(0.0313737601987137))) * t513;
+        const gic_real t518 = (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t508 * t505 +
+            t516) + (m[HMMWV14_MOTION_UCA_R_L + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t512 * t505 + t517);
         const gic_real t519 = t514 + t518;
         const gic_real t520 = t383 + (t411 + t430) + (t458 + t477) + (t503 + t519);
-        const gic_real t521 = m[359] * R(-1.232760342215547e-05) + (R(-0.0887274110323348) + m[358] * R(-0.1268157381236126));
-        const gic_real t522 = m[365] * R(-1.232760342215547e-05) + (R(-0.0012494512130067036) + m[364] * R(-0.1268157381236126));
-        const gic_real t523 = m[368] * t521 - m[366] * t522;
-        const gic_real t524 = m[362] * R(-1.232760342215547e-05) + (m[361] * R(-0.1268157381236126) + R(6.79134666217616e-05));
-        const gic_real t525 = m[367] * t522 - m[368] * t524;
-        const gic_real t526 = m[366] * t523 - m[367] * t525 + (m[372] * t524 - m[373] * t521);
+        const gic_real t521 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(-1.232760342215547e-05) +
+            (R(-0.0887274110323348) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(-0.1268157381236126));
+        const gic_real t522 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * R(-1.232760342215547e-05) +
+            (R(-0.0012494512130067036) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(-0.1268157381236126));
+        const gic_real t523 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t521 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t522;
+        const gic_real t524 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(-1.232760342215547e-05) +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(-0.1268157381236126) + R(6.79134666217616e-05));
+        const gic_real t525 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t522 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t524;
+        const gic_real t526 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t523 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t525 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t524 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t521);
         const gic_real t527 = R(-1.475859) + t521;
         const gic_real t528 = R(0.22567900000000007) + t522;
-        const gic_real t529 = t523 + (y[17] * t527 - y[15] * t528);
+        const gic_real t529 = t523 + (y[HMMWV14_STATE_OMEGA_Z] * t527 - y[HMMWV14_STATE_OMEGA_X] * t528);
         const gic_real t530 = t523 + t529;
         const gic_real t531 = R(-0.462153) + t524;
-        const gic_real t532 = t525 + (y[16] * t528 - y[17] * t531);
+        const gic_real t532 = t525 + (y[HMMWV14_STATE_OMEGA_Y] * t528 - y[HMMWV14_STATE_OMEGA_Z] * t531);
         const gic_real t533 = t525 + t532;
-        const gic_real t534 = y[15] * t530 - y[16] * t533 + (rate[15] * t531 - rate[16] * t527);
-        const gic_real t535 = t526 + (t17 + t534) + rate[21] * (m[378] * t524 - m[379] * t521);
-        const gic_real t536 = m[366] * t524 - m[367] * t521;
-        const gic_real t537 = t536 + (y[15] * t531 - y[16] * t527);
-        const gic_real t538 = m[368] * t525 - m[366] * t536 + (m[374] * t521 - m[372] * t522);
+        const gic_real t534 = y[HMMWV14_STATE_OMEGA_X] * t530 - y[HMMWV14_STATE_OMEGA_Y] * t533 +
+            (rate[HMMWV14_STATE_OMEGA_X] * t531 - rate[HMMWV14_STATE_OMEGA_Y] * t527);
+        const gic_real t535 = t526 + (t17 + t534) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t524 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t521);
+        const gic_real t536 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t524 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t521;
+        const gic_real t537 = t536 + (y[HMMWV14_STATE_OMEGA_X] * t531 - y[HMMWV14_STATE_OMEGA_Y] * t527);
+        const gic_real t538 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t525 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * t536 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t521 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] * t522);
         const gic_real t539 = t536 + t537;
-        const gic_real t540 = y[17] * t533 - y[15] * t539 + (rate[17] * t527 - rate[15] * t528);
-        const gic_real t541 = t538 + (t29 + t540) + rate[21] * (m[380] * t521 - m[378] * t522);
-        const gic_real t542 = m[367] * t536 - m[368] * t523 + (m[373] * t522 - m[374] * t524);
-        const gic_real t543 = y[16] * t539 - y[17] * t530 + (rate[16] * t528 - rate[17] * t531);
-        const gic_real t544 = t542 + (t35 + t543) + rate[21] * (m[379] * t522 - m[380] * t524);
+        const gic_real t540 = y[HMMWV14_STATE_OMEGA_Z] * t533 - y[HMMWV14_STATE_OMEGA_X] * t539 +
+            (rate[HMMWV14_STATE_OMEGA_Z] * t527 - rate[HMMWV14_STATE_OMEGA_X] * t528);
+        const gic_real t541 = t538 + (t29 + t540) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t521 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * t522);
+        const gic_real t542 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * t536 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * t523 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] * t522 -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] * t524);
+        const gic_real t543 = y[HMMWV14_STATE_OMEGA_Y] * t539 - y[HMMWV14_STATE_OMEGA_Z] * t530 +
+            (rate[HMMWV14_STATE_OMEGA_Y] * t528 - rate[HMMWV14_STATE_OMEGA_Z] * t531);
+        const gic_real t544 = t542 + (t35 + t543) + rate[HMMWV14_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * t522 - m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * t524);
         const gic_real t545 = t535 * (t21 + t537) + (t541 * (t31 + t529) + t544 * (t37 + t532));
         const gic_real t546 = R(5.813) * t545;
-        const gic_real t547 = m[365] * (m[365] * R(0.06276)) + (R(6.221420556416178e-06) + m[364] * (m[364] * R(0.03138)));
-        const gic_real t548 = m[374] + (rate[17] + (m[367] * y[15] - m[366] * y[16])) + m[380] * rate[21];
-        const gic_real t549 = m[362] * R(0.06276);
-        const gic_real t550 = m[361] * R(0.03138);
-        const gic_real t551 = m[365] * t549 + (m[364] * t550 + R(-3.3816305342675644e-07));
-        const gic_real t552 = m[373] + (rate[16] + (m[366] * y[17] - m[368] * y[15])) + m[379] * rate[21];
-        const gic_real t553 = m[359] * R(0.06276);
-        const gic_real t554 = m[358] * R(0.03138);
-        const gic_real t555 = m[365] * t553 + (R(0.00044180239545791184) + m[364] * t554);
-        const gic_real t556 = m[372] + (rate[15] + (m[368] * y[16] - m[367] * y[17])) + m[378] * rate[21];
-        const gic_real t557 = (m[368] + y[17]) * (t547 * t548 + (t551 * t552 + t555 * t556));
-        const gic_real t558 = m[362] * t553 + (m[361] * t554 + R(-2.4014008650359553e-05));
-        const gic_real t559 = (m[362] * t549 + (R(1.838072987767614e-08) + m[361] * t550)) * t552 + t558 * t556;
-        const gic_real t560 = t558 * t552 + (m[359] * t553 + (R(0.0313737601987137) + m[358] * t554)) * t556;
-        const gic_real t561 = (m[367] + y[16]) * (t551 * t548 + t559) + (m[366] + y[15]) * (t555 * t548 + t560);
+        const gic_real t547 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] *
+            R(0.06276)) + (R(6.221420556416178e-06) + m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] *
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * R(0.03138)));
+        const gic_real t548 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Z] + (rate[HMMWV14_STATE_OMEGA_Z] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_X] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Y])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 2] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t549 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * R(0.06276);
+        const gic_real t550 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * R(0.03138);
+        const gic_real t551 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t549 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t550 + R(-3.3816305342675644e-07));
+        const gic_real t552 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_Y] + (rate[HMMWV14_STATE_OMEGA_Y] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] * y[HMMWV14_STATE_OMEGA_Z] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_X])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 1] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t553 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * R(0.06276);
+        const gic_real t554 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * R(0.03138);
+        const gic_real t555 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZZ] * t553 + (R(0.00044180239545791184) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_ZY] * t554);
+        const gic_real t556 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_ALPHA_X] + (rate[HMMWV14_STATE_OMEGA_X] +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] * y[HMMWV14_STATE_OMEGA_Y] -
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] * y[HMMWV14_STATE_OMEGA_Z])) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_S + 0] * rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t557 = (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Z] + y[HMMWV14_STATE_OMEGA_Z]) * (t547 * t548 +
+            (t551 * t552 + t555 * t556));
+        const gic_real t558 = m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t553 +
+            (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t554 + R(-2.4014008650359553e-05));
+        const gic_real t559 = (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YZ] * t549 + (R(1.838072987767614e-08) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_YY] * t550)) * t552 + t558 * t556;
+        const gic_real t560 = t558 * t552 + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XZ] * t553 + (R(0.0313737601987137) +
+            m[HMMWV14_MOTION_UCA_R_R + HMMWV14_A_XY] * t554)) * t556;
+        const gic_real t561 = (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_Y] + y[HMMWV14_STATE_OMEGA_Y]) * (t551 * t548 +
+            t559) + (m[HMMWV14_MOTION_UCA_R_R + HMMWV14_OMEGA_X] + y[HMMWV14_STATE_OMEGA_X]) * (t555 * t548 + t560);
         const gic_real t562 = t557 + t561;
-        const gic_real t563 = t115 + (m[193] * R(0.12319000000000002) + t116);
-        const gic_real t564 = t108 + (m[190] * R(0.12319000000000002) + t109);
-        const gic_real t565 = m[187] + t563;
-        const gic_real t566 = m[186] + t564;
-        const gic_real t567 = m[203] + (m[198] * t563 - m[199] * t564) + (y[15] * t565 - y[16] * t566);
-        const gic_real t568 = t111 + (m[196] * R(0.12319000000000002) + t112);
-        const gic_real t569 = m[188] + t568;
-        const gic_real t570 = m[202] + (m[200] * t564 - m[198] * t568) + (y[17] * t566 - y[15] * t569);
-        const gic_real t571 = m[199] * t568 - m[200] * t563 + (y[16] * t569 - y[17] * t565);
-        const gic_real t572 = y[14] + (t8 * t567 + (t23 * t570 + t32 * t571));
-        const gic_real t573 = y[13] + (t12 * t567 + (t25 * t570 + t33 * t571));
-        const gic_real t574 = y[0] + (t16 * t569 + (t28 * t565 + t34 * t566));
-        const gic_real t575 = y[1] + (t12 * t569 + (t25 * t565 + t33 * t566));
+        const gic_real t563 = t115 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) + t116);
+        const gic_real t564 = t108 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) + t109);
+        const gic_real t565 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t563;
+        const gic_real t566 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t564;
+        const gic_real t567 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t563 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] *
+            t564) + (y[HMMWV14_STATE_OMEGA_X] * t565 - y[HMMWV14_STATE_OMEGA_Y] * t566);
+        const gic_real t568 = t111 + (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) + t112);
+        const gic_real t569 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t568;
+        const gic_real t570 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t564 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] *
+            t568) + (y[HMMWV14_STATE_OMEGA_Z] * t566 - y[HMMWV14_STATE_OMEGA_X] * t569);
+        const gic_real t571 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t568 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t563 + (y[HMMWV14_STATE_OMEGA_Y] * t569 -
+            y[HMMWV14_STATE_OMEGA_Z] * t565);
+        const gic_real t572 = y[HMMWV14_STATE_V_Z] + (t8 * t567 + (t23 * t570 + t32 * t571));
+        const gic_real t573 = y[HMMWV14_STATE_V_Y] + (t12 * t567 + (t25 * t570 + t33 * t571));
+        const gic_real t574 = y[HMMWV14_STATE_R_X] + (t16 * t569 + (t28 * t565 + t34 * t566));
+        const gic_real t575 = y[HMMWV14_STATE_R_Y] + (t12 * t569 + (t25 * t565 + t33 * t566));
         gic_real road576[3];
         if (!hmmwv14_road_height(self, time, t574, t575, road576))
             return GIC_ERROR_ROAD;
-        const gic_real t577 = y[12] + (t16 * t567 + (t28 * t570 + t34 * t571));
+        const gic_real t577 = y[HMMWV14_STATE_V_X] + (t16 * t567 + (t28 * t570 + t34 * t571));
         const gic_real t578 = t573 * road576[2] + t577 * road576[1] - t572;
-        const gic_real t579 = y[2] + (t8 * t569 + (t23 * t565 + t32 * t566));
+        const gic_real t579 = y[HMMWV14_STATE_R_Z] + (t8 * t569 + (t23 * t565 + t32 * t566));
         const gic_real t580 = road576[0] + R(0.4699) - t579;
         const gic_real t581 = GIC_MIN(GIC_MAX(t580 * R(100.0), R(0.0)), R(1.0));
         const gic_real t582 = t578 * ((R(3.0) - (t581 + t581)) * (t581 * t581) * R(500.0));
-        const gic_real t583 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t583 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_ZY] * R(0.2403881036540444);
         const gic_real t584 = t583 - R(0.32313880000000006);
-        const gic_real t585 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t585 = m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_A_YY] * R(0.2403881036540444);
         const gic_real t586 = R(0.307086) + t585 - R(0.4977892);
         const gic_real t587 = R(1.0) / GIC_SQRT(t584 * t584 + (t586 * t586 + R(4.633797183999867e-05)));
-        const gic_real t588 = t587 * (m[42] * t585 * t584 - m[42] * t583 * t586);
-        const gic_real t589 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t588 = t587 * (m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t585 * t584 -
+            m[HMMWV14_MOTION_LCA_F_L + HMMWV14_OMEGA_X] * t583 * t586);
+        /* force shock_f_r */
+        const gic_real t589 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_ZY] * R(-0.2403881036540444);
         const gic_real t590 = t589 - R(0.32313880000000006);
-        const gic_real t591 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t591 = m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YZ] * R(0.01121887479261392) +
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_A_YY] * R(-0.2403881036540444);
         const gic_real t592 = R(-0.307086) + t591 - R(-0.4977892);
         const gic_real t593 = R(1.0) / GIC_SQRT(t590 * t590 + (R(4.633797183999867e-05) + t592 * t592));
-        const gic_real t594 = t593 * (m[72] * t591 * t590 - m[72] * t589 * t592);
-        const gic_real t595 = m[101] * R(0.01939183545039609) + m[100] * R(0.23915941563573181);
+        const gic_real t594 = t593 * (m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t591 * t590 -
+            m[HMMWV14_MOTION_LCA_F_R + HMMWV14_OMEGA_X] * t589 * t592);
+        /* force shock_r_l */
+        const gic_real t595 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_ZY] * R(0.23915941563573181);
         const gic_real t596 = t595 - R(0.32313880000000006);
-        const gic_real t597 = m[98] * R(0.01939183545039609) + m[97] * R(0.23915941563573181);
+        const gic_real t597 = m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_A_YY] * R(0.23915941563573181);
         const gic_real t598 = R(0.307086) + t597 - R(0.4977892);
         const gic_real t599 = R(1.0) / GIC_SQRT(t596 * t596 + (R(4.633797183999867e-05) + t598 * t598));
-        const gic_real t600 = t599 * (m[102] * t597 * t596 - m[102] * t595 * t598);
+        const gic_real t600 = t599 * (m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t597 * t596 -
+            m[HMMWV14_MOTION_LCA_R_L + HMMWV14_OMEGA_X] * t595 * t598);
         const gic_real t601 = t588 * (t588 * R(17490.8)) + t594 * (R(17490.8) * t594) + t600 * (t600 * R(24780.4));
-        const gic_real t602 = m[131] * R(0.01939183545039609) + m[130] * R(-0.23915941563573181);
+        /* force shock_r_r */
+        const gic_real t602 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_ZY] * R(-0.23915941563573181);
         const gic_real t603 = t602 - R(0.32313880000000006);
-        const gic_real t604 = m[128] * R(0.01939183545039609) + m[127] * R(-0.23915941563573181);
+        const gic_real t604 = m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YZ] * R(0.01939183545039609) +
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_A_YY] * R(-0.23915941563573181);
         const gic_real t605 = R(-0.307086) + t604 - R(-0.4977892);
         const gic_real t606 = R(1.0) / GIC_SQRT(t603 * t603 + (R(4.633797183999867e-05) + t605 * t605));
-        const gic_real t607 = t606 * (m[132] * t604 * t603 - m[132] * t602 * t605);
-        const gic_real t608 = t601 + t607 * (R(24780.4) * t607) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t609 = t174 + (m[265] * R(-0.12319000000000002) + t175);
-        const gic_real t610 = t167 + (m[262] * R(-0.12319000000000002) + t168);
-        const gic_real t611 = m[259] + t609;
-        const gic_real t612 = m[258] + t610;
-        const gic_real t613 = m[275] + (m[270] * t609 - m[271] * t610) + (y[15] * t611 - y[16] * t612);
-        const gic_real t614 = t170 + (m[268] * R(-0.12319000000000002) + t171);
-        const gic_real t615 = m[260] + t614;
-        const gic_real t616 = m[274] + (m[272] * t610 - m[270] * t614) + (y[17] * t612 - y[15] * t615);
-        const gic_real t617 = m[271] * t614 - m[272] * t609 + (y[16] * t615 - y[17] * t611);
-        const gic_real t618 = y[14] + (t8 * t613 + (t23 * t616 + t32 * t617));
-        const gic_real t619 = y[13] + (t12 * t613 + (t25 * t616 + t33 * t617));
-        const gic_real t620 = y[0] + (t16 * t615 + (t28 * t611 + t34 * t612));
-        const gic_real t621 = y[1] + (t12 * t615 + (t25 * t611 + t33 * t612));
+        const gic_real t607 = t606 * (m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t604 * t603 -
+            m[HMMWV14_MOTION_LCA_R_R + HMMWV14_OMEGA_X] * t602 * t605);
+        const gic_real t608 = t601 + t607 * (R(24780.4) * t607) + xd[HMMWV14_X_RACK] * (xd[HMMWV14_X_RACK] *
+            R(12000.0));
+        const gic_real t609 = t174 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) + t175);
+        const gic_real t610 = t167 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) + t168);
+        const gic_real t611 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t609;
+        const gic_real t612 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t610;
+        const gic_real t613 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t609 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t610) + (y[HMMWV14_STATE_OMEGA_X] * t611 - y[HMMWV14_STATE_OMEGA_Y] * t612);
+        const gic_real t614 = t170 + (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) + t171);
+        const gic_real t615 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t614;
+        const gic_real t616 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t610 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t614) + (y[HMMWV14_STATE_OMEGA_Z] * t612 - y[HMMWV14_STATE_OMEGA_X] * t615);
+        const gic_real t617 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t614 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t609 + (y[HMMWV14_STATE_OMEGA_Y] * t615 -
+            y[HMMWV14_STATE_OMEGA_Z] * t611);
+        const gic_real t618 = y[HMMWV14_STATE_V_Z] + (t8 * t613 + (t23 * t616 + t32 * t617));
+        const gic_real t619 = y[HMMWV14_STATE_V_Y] + (t12 * t613 + (t25 * t616 + t33 * t617));
+        const gic_real t620 = y[HMMWV14_STATE_R_X] + (t16 * t615 + (t28 * t611 + t34 * t612));
+        const gic_real t621 = y[HMMWV14_STATE_R_Y] + (t12 * t615 + (t25 * t611 + t33 * t612));
         gic_real road622[3];
         if (!hmmwv14_road_height(self, time, t620, t621, road622))
             return GIC_ERROR_ROAD;
-        const gic_real t623 = y[12] + (t16 * t613 + (t28 * t616 + t34 * t617));
+        const gic_real t623 = y[HMMWV14_STATE_V_X] + (t16 * t613 + (t28 * t616 + t34 * t617));
         const gic_real t624 = t619 * road622[2] + t623 * road622[1] - t618;
-        const gic_real t625 = y[2] + (t8 * t615 + (t23 * t611 + t32 * t612));
+        const gic_real t625 = y[HMMWV14_STATE_R_Z] + (t8 * t615 + (t23 * t611 + t32 * t612));
         const gic_real t626 = R(0.4699) + road622[0] - t625;
         const gic_real t627 = GIC_MIN(GIC_MAX(R(100.0) * t626, R(0.0)), R(1.0));
         const gic_real t628 = t624 * (R(500.0) * ((R(3.0) - (t627 + t627)) * (t627 * t627)));
-        const gic_real t629 = t572 * GIC_MAX(t582 + t580 * R(283000.0), R(0.0)) - t608 + t618 * GIC_MAX(t628 + R(283000.0) * t626, R(0.0));
-        const gic_real t630 = t288 + m[331] * R(0.12319000000000002);
-        const gic_real t631 = t283 + m[328] * R(0.12319000000000002);
-        const gic_real t632 = m[325] + t630;
-        const gic_real t633 = m[324] + t631;
-        const gic_real t634 = m[341] + (m[336] * t630 - m[337] * t631) + (y[15] * t632 - y[16] * t633);
-        const gic_real t635 = t285 + m[334] * R(0.12319000000000002);
-        const gic_real t636 = m[326] + t635;
-        const gic_real t637 = m[340] + (m[338] * t631 - m[336] * t635) + (y[17] * t633 - y[15] * t636);
-        const gic_real t638 = m[337] * t635 - m[338] * t630 + (y[16] * t636 - y[17] * t632);
-        const gic_real t639 = y[14] + (t8 * t634 + (t23 * t637 + t32 * t638));
-        const gic_real t640 = y[13] + (t12 * t634 + (t25 * t637 + t33 * t638));
-        const gic_real t641 = y[0] + (t16 * t636 + (t28 * t632 + t34 * t633));
-        const gic_real t642 = y[1] + (t12 * t636 + (t25 * t632 + t33 * t633));
+        const gic_real t629 = t572 * GIC_MAX(t582 + t580 * R(283000.0), R(0.0)) - t608 + t618 * GIC_MAX(t628 +
+            R(283000.0) * t626, R(0.0));
+        const gic_real t630 = t288 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t631 = t283 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t632 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t630;
+        const gic_real t633 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t631;
+        const gic_real t634 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t630 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t631) + (y[HMMWV14_STATE_OMEGA_X] * t632 - y[HMMWV14_STATE_OMEGA_Y] * t633);
+        const gic_real t635 = t285 + m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t636 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t635;
+        const gic_real t637 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t631 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t635) + (y[HMMWV14_STATE_OMEGA_Z] * t633 - y[HMMWV14_STATE_OMEGA_X] * t636);
+        const gic_real t638 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t635 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t630 + (y[HMMWV14_STATE_OMEGA_Y] * t636 -
+            y[HMMWV14_STATE_OMEGA_Z] * t632);
+        const gic_real t639 = y[HMMWV14_STATE_V_Z] + (t8 * t634 + (t23 * t637 + t32 * t638));
+        const gic_real t640 = y[HMMWV14_STATE_V_Y] + (t12 * t634 + (t25 * t637 + t33 * t638));
+        const gic_real t641 = y[HMMWV14_STATE_R_X] + (t16 * t636 + (t28 * t632 + t34 * t633));
+        const gic_real t642 = y[HMMWV14_STATE_R_Y] + (t12 * t636 + (t25 * t632 + t33 * t633));
         gic_real road643[3];
         if (!hmmwv14_road_height(self, time, t641, t642, road643))
             return GIC_ERROR_ROAD;
-        const gic_real t644 = y[12] + (t16 * t634 + (t28 * t637 + t34 * t638));
+        const gic_real t644 = y[HMMWV14_STATE_V_X] + (t16 * t634 + (t28 * t637 + t34 * t638));
         const gic_real t645 = t640 * road643[2] + t644 * road643[1] - t639;
-        const gic_real t646 = y[2] + (t8 * t636 + (t23 * t632 + t32 * t633));
+        const gic_real t646 = y[HMMWV14_STATE_R_Z] + (t8 * t636 + (t23 * t632 + t32 * t633));
         const gic_real t647 = R(0.4699) + road643[0] - t646;
         const gic_real t648 = GIC_MIN(GIC_MAX(R(100.0) * t647, R(0.0)), R(1.0));
         const gic_real t649 = t645 * (R(500.0) * ((R(3.0) - (t648 + t648)) * (t648 * t648)));
-        const gic_real t650 = t338 + m[391] * R(-0.12319000000000002);
-        const gic_real t651 = t333 + m[388] * R(-0.12319000000000002);
-        const gic_real t652 = m[385] + t650;
-        const gic_real t653 = m[384] + t651;
-        const gic_real t654 = m[401] + (m[396] * t650 - m[397] * t651) + (y[15] * t652 - y[16] * t653);
-        const gic_real t655 = t335 + m[394] * R(-0.12319000000000002);
-        const gic_real t656 = m[386] + t655;
-        const gic_real t657 = m[400] + (m[398] * t651 - m[396] * t655) + (y[17] * t653 - y[15] * t656);
-        const gic_real t658 = m[397] * t655 - m[398] * t650 + (y[16] * t656 - y[17] * t652);
-        const gic_real t659 = y[14] + (t8 * t654 + (t23 * t657 + t32 * t658));
-        const gic_real t660 = y[13] + (t12 * t654 + (t25 * t657 + t33 * t658));
-        const gic_real t661 = y[0] + (t16 * t656 + (t28 * t652 + t34 * t653));
-        const gic_real t662 = y[1] + (t12 * t656 + (t25 * t652 + t33 * t653));
+        const gic_real t650 = t338 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
+        const gic_real t651 = t333 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t652 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t650;
+        const gic_real t653 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t651;
+        const gic_real t654 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t650 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t651) + (y[HMMWV14_STATE_OMEGA_X] * t652 - y[HMMWV14_STATE_OMEGA_Y] * t653);
+        const gic_real t655 = t335 + m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t656 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t655;
+        const gic_real t657 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t651 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t655) + (y[HMMWV14_STATE_OMEGA_Z] * t653 - y[HMMWV14_STATE_OMEGA_X] * t656);
+        const gic_real t658 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t655 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t650 + (y[HMMWV14_STATE_OMEGA_Y] * t656 -
+            y[HMMWV14_STATE_OMEGA_Z] * t652);
+        const gic_real t659 = y[HMMWV14_STATE_V_Z] + (t8 * t654 + (t23 * t657 + t32 * t658));
+        const gic_real t660 = y[HMMWV14_STATE_V_Y] + (t12 * t654 + (t25 * t657 + t33 * t658));
+        const gic_real t661 = y[HMMWV14_STATE_R_X] + (t16 * t656 + (t28 * t652 + t34 * t653));
+        const gic_real t662 = y[HMMWV14_STATE_R_Y] + (t12 * t656 + (t25 * t652 + t33 * t653));
         gic_real road663[3];
         if (!hmmwv14_road_height(self, time, t661, t662, road663))
             return GIC_ERROR_ROAD;
-        const gic_real t664 = y[12] + (t16 * t654 + (t28 * t657 + t34 * t658));
+        const gic_real t664 = y[HMMWV14_STATE_V_X] + (t16 * t654 + (t28 * t657 + t34 * t658));
         const gic_real t665 = t660 * road663[2] + t664 * road663[1] - t659;
-        const gic_real t666 = y[2] + (t8 * t656 + (t23 * t652 + t32 * t653));
+        const gic_real t666 = y[HMMWV14_STATE_R_Z] + (t8 * t656 + (t23 * t652 + t32 * t653));
         const gic_real t667 = R(0.4699) + road663[0] - t666;
         const gic_real t668 = GIC_MIN(GIC_MAX(R(100.0) * t667, R(0.0)), R(1.0));
         const gic_real t669 = t665 * (R(500.0) * ((R(3.0) - (t668 + t668)) * (t668 * t668)));
-        const gic_real t670 = t629 + t639 * GIC_MAX(t649 + R(283000.0) * t647, R(0.0)) + t659 * GIC_MAX(t669 + R(283000.0) * t667, R(0.0));
+        const gic_real t670 = t629 + t639 * GIC_MAX(t649 + R(283000.0) * t647, R(0.0)) + t659 * GIC_MAX(t669 +
+            R(283000.0) * t667, R(0.0));
         const gic_real t671 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t672 = t671 + (GIC_FABS(t80) + GIC_FABS(t71)) + (GIC_FABS(t106) + GIC_FABS(t97));
         const gic_real t673 = t672 + (GIC_FABS(t166) + GIC_FABS(t144)) + (GIC_FABS(t225) + GIC_FABS(t203));
@@ -7187,35 +9756,36 @@ static GIC_COLD int hmmwv14_energy(const hmmwv14 *self, gic_real time, const gic
         const gic_real t677 = t676 + (GIC_FABS(t519) + GIC_FABS(t503)) + (GIC_FABS(t562) + GIC_FABS(t546));
         const gic_real t678 = t3 + (t520 + (t546 + t562));
         const gic_real t679 = t677 + (GIC_FABS(t670) + GIC_FABS(t3));
-        const gic_real t680 = rate[15];
-        const gic_real t681 = rate[16];
-        const gic_real t682 = rate[17];
-        const gic_real t683 = rate[18];
-        const gic_real t684 = rate[19];
-        const gic_real t685 = rate[20];
-        const gic_real t686 = rate[21];
-        const gic_real t687 = rate[22];
-        energy[0] = t678;
-        energy[1] = t670;
-        energy[2] = t679;
-        acc[0] = t680;
-        acc[3] = t35;
-        acc[1] = t681;
-        acc[4] = t29;
-        acc[2] = t682;
-        acc[5] = t17;
-        acc[6] = t683;
-        acc[7] = t684;
-        acc[8] = t685;
-        acc[9] = t686;
-        acc[10] = t687;
+        const gic_real t680 = rate[HMMWV14_STATE_OMEGA_X];
+        const gic_real t681 = rate[HMMWV14_STATE_OMEGA_Y];
+        const gic_real t682 = rate[HMMWV14_STATE_OMEGA_Z];
+        const gic_real t683 = rate[HMMWV14_STATE_SPRING_F_L_RATE];
+        const gic_real t684 = rate[HMMWV14_STATE_SPRING_F_R_RATE];
+        const gic_real t685 = rate[HMMWV14_STATE_SPRING_R_L_RATE];
+        const gic_real t686 = rate[HMMWV14_STATE_SPRING_R_R_RATE];
+        const gic_real t687 = rate[HMMWV14_STATE_RACK_RATE];
+        energy[HMMWV14_ENERGY_RATE] = t678;
+        energy[HMMWV14_ENERGY_POWER] = t670;
+        energy[HMMWV14_ENERGY_MAGNITUDES] = t679;
+        acc[HMMWV14_UNKNOWN_ALPHA_X] = t680;
+        acc[HMMWV14_UNKNOWN_ACCELERATION_X] = t35;
+        acc[HMMWV14_UNKNOWN_ALPHA_Y] = t681;
+        acc[HMMWV14_UNKNOWN_ACCELERATION_Y] = t29;
+        acc[HMMWV14_UNKNOWN_ALPHA_Z] = t682;
+        acc[HMMWV14_UNKNOWN_ACCELERATION_Z] = t17;
+        acc[HMMWV14_UNKNOWN_OF_SPRING_F_L] = t683;
+        acc[HMMWV14_UNKNOWN_OF_SPRING_F_R] = t684;
+        acc[HMMWV14_UNKNOWN_OF_SPRING_R_L] = t685;
+        acc[HMMWV14_UNKNOWN_OF_SPRING_R_R] = t686;
+        acc[HMMWV14_UNKNOWN_OF_RACK] = t687;
     }
     return GIC_OK;
 }
 
 GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
 {
-    gic_real e[4], acc[HMMWV14_UNKNOWN_ROOM], unit[HMMWV14_UNKNOWN_ROOM], tau0[HMMWV14_UNKNOWN_ROOM], tau[HMMWV14_UNKNOWN_ROOM];
+    gic_real e[4], acc[HMMWV14_UNKNOWN_ROOM], unit[HMMWV14_UNKNOWN_ROOM], tau0[HMMWV14_UNKNOWN_ROOM],
+        tau[HMMWV14_UNKNOWN_ROOM];
     gic_real M[HMMWV14_UNKNOWN_ROOM][HMMWV14_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv14_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -7276,7 +9846,7 @@ GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv14_any_setup(void *self)
 {

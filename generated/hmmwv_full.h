@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x7d47e46f
+#define HMMWV_FULL_H 0xf1ff36a1
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "hmmwv_full.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "hmmwv_full.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_FULL_ABI = 6,
+    HMMWV_FULL_ABI = 7,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,
@@ -128,7 +128,8 @@ enum {
     HMMWV_FULL_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[HMMWV_FULL_STATE_...], .input[HMMWV_FULL_INPUT_...], .output[HMMWV_FULL_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[HMMWV_FULL_STATE_...], .input[HMMWV_FULL_INPUT_...],
+ * .output[HMMWV_FULL_OUTPUT_...]. */
 enum {
     HMMWV_FULL_STATE_R_X = 0, /* m */
     HMMWV_FULL_STATE_R_Y = 1, /* m */
@@ -235,40 +236,50 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv_full {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[HMMWV_FULL_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][HMMWV_FULL_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[HMMWV_FULL_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][HMMWV_FULL_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[HMMWV_FULL_STATE_ROOM];
     gic_real input[HMMWV_FULL_INPUT_ROOM];
     gic_real output[HMMWV_FULL_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_FULL_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (hmmwv_full_model.parameter_geometric) by hmmwv_full_setup_with */
+    gic_real parameter[HMMWV_FULL_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (hmmwv_full_model.parameter_geometric) by
+                                                    * hmmwv_full_setup_with */
     gic_real port[HMMWV_FULL_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_FULL_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[HMMWV_FULL_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[HMMWV_FULL_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_STATES - HMMWV_FULL_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_FULL_STATE_ROOM, HMMWV_FULL_INPUT_ROOM)];
     gic_real x[HMMWV_FULL_COORDINATE_ROOM], xd[HMMWV_FULL_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * HMMWV_FULL_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * HMMWV_FULL_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[HMMWV_FULL_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } hmmwv_full;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_full_setup(hmmwv_full *self);
 
-/* The same as if the file had these numbers (HMMWV_FULL_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (HMMWV_FULL_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_FULL_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_FULL_STATES numbers. rate is
+ * written only on GIC_OK. */
 int hmmwv_full_rhs(hmmwv_full *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int hmmwv_full_step(hmmwv_full *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -280,19 +291,20 @@ int hmmwv_full_poses(hmmwv_full *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_full_time(const hmmwv_full *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *hmmwv_full_status_text(int status);
 const char *hmmwv_full_status_subset(const hmmwv_full *self);
 const char *hmmwv_full_status_state(const hmmwv_full *self);
 const char *hmmwv_full_status_condition(const hmmwv_full *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void hmmwv_full_snapshot(const hmmwv_full *self, hmmwv_full *copy);
 void hmmwv_full_restore(hmmwv_full *self, const hmmwv_full *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

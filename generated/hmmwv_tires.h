@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x72b432a7
+#define HMMWV_TIRES_H 0x5c6b48a3
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "hmmwv_tires.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "hmmwv_tires.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,7 +98,7 @@ enum {
     HMMWV_TIRES_ROLLING = 4,
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 27,
-    HMMWV_TIRES_ABI = 6,
+    HMMWV_TIRES_ABI = 7,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,
@@ -135,7 +135,8 @@ enum {
     HMMWV_TIRES_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[HMMWV_TIRES_STATE_...], .input[HMMWV_TIRES_INPUT_...], .output[HMMWV_TIRES_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[HMMWV_TIRES_STATE_...], .input[HMMWV_TIRES_INPUT_...],
+ * .output[HMMWV_TIRES_OUTPUT_...]. */
 enum {
     HMMWV_TIRES_STATE_R_X = 0, /* m */
     HMMWV_TIRES_STATE_R_Y = 1, /* m */
@@ -313,27 +314,34 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv_tires {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][HMMWV_TIRES_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[HMMWV_TIRES_STATE_ROOM];
     gic_real input[HMMWV_TIRES_INPUT_ROOM];
     gic_real output[HMMWV_TIRES_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_TIRES_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (hmmwv_tires_model.parameter_geometric) by hmmwv_tires_setup_with */
+    gic_real parameter[HMMWV_TIRES_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (hmmwv_tires_model.parameter_geometric) by
+                                                    * hmmwv_tires_setup_with */
     gic_real port[HMMWV_TIRES_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_TIRES_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[HMMWV_TIRES_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[HMMWV_TIRES_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_TIRES_STATE_ROOM, HMMWV_TIRES_INPUT_ROOM)];
     gic_real x[HMMWV_TIRES_COORDINATE_ROOM], xd[HMMWV_TIRES_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
+        last recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TIRES_GRIP * HMMWV_TIRES_ROLLING]; /* what the wheels do, HMMWV_TIRES_GRIP numbers each */
@@ -342,13 +350,16 @@ typedef struct hmmwv_tires {
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_tires_setup(hmmwv_tires *self);
 
-/* The same as if the file had these numbers (HMMWV_TIRES_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (HMMWV_TIRES_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_TIRES_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_TIRES_STATES numbers. rate is
+ * written only on GIC_OK. */
 int hmmwv_tires_rhs(hmmwv_tires *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int hmmwv_tires_step(hmmwv_tires *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -360,19 +371,20 @@ int hmmwv_tires_poses(hmmwv_tires *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_tires_time(const hmmwv_tires *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *hmmwv_tires_status_text(int status);
 const char *hmmwv_tires_status_subset(const hmmwv_tires *self);
 const char *hmmwv_tires_status_state(const hmmwv_tires *self);
 const char *hmmwv_tires_status_condition(const hmmwv_tires *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void hmmwv_tires_snapshot(const hmmwv_tires *self, hmmwv_tires *copy);
 void hmmwv_tires_restore(hmmwv_tires *self, const hmmwv_tires *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xb0a95025
+#if HMMWV_TMEASY_H != 0xfdfd23ad
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -143,16 +143,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -172,10 +173,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -197,13 +214,219 @@
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_tmeasy_links {
     const gic_real *known[HMMWV_TMEASY_KNOWN_ROOM];
-    gic_real x[HMMWV_TMEASY_DEPENDENCE_ROOM], rate[HMMWV_TMEASY_DEPENDENCE_ROOM], change[HMMWV_TMEASY_DEPENDENCE_ROOM], turn[3];
+    gic_real x[HMMWV_TMEASY_DEPENDENCE_ROOM], rate[HMMWV_TMEASY_DEPENDENCE_ROOM], change[HMMWV_TMEASY_DEPENDENCE_ROOM],
+        turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[HMMWV_TMEASY_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[HMMWV_TMEASY_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } hmmwv_tmeasy_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef HMMWV_TMEASY_LAYOUT_NAMES
+#define HMMWV_TMEASY_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    HMMWV_TMEASY_C_X = 0,
+    HMMWV_TMEASY_C_Y = 1,
+    HMMWV_TMEASY_C_Z = 2,
+    HMMWV_TMEASY_A_XX = 3,
+    HMMWV_TMEASY_A_XY = 4,
+    HMMWV_TMEASY_A_XZ = 5,
+    HMMWV_TMEASY_A_YX = 6,
+    HMMWV_TMEASY_A_YY = 7,
+    HMMWV_TMEASY_A_YZ = 8,
+    HMMWV_TMEASY_A_ZX = 9,
+    HMMWV_TMEASY_A_ZY = 10,
+    HMMWV_TMEASY_A_ZZ = 11,
+    HMMWV_TMEASY_OMEGA_X = 12,
+    HMMWV_TMEASY_OMEGA_Y = 13,
+    HMMWV_TMEASY_OMEGA_Z = 14,
+    HMMWV_TMEASY_VELOCITY_X = 15,
+    HMMWV_TMEASY_VELOCITY_Y = 16,
+    HMMWV_TMEASY_VELOCITY_Z = 17,
+    HMMWV_TMEASY_ALPHA_X = 18,
+    HMMWV_TMEASY_ALPHA_Y = 19,
+    HMMWV_TMEASY_ALPHA_Z = 20,
+    HMMWV_TMEASY_ACCELERATION_X = 21,
+    HMMWV_TMEASY_ACCELERATION_Y = 22,
+    HMMWV_TMEASY_ACCELERATION_Z = 23,
+    HMMWV_TMEASY_S = 24, /* unit velocities, 6 numbers a coordinate */
+    HMMWV_TMEASY_I_FIRST_X = 0,
+    HMMWV_TMEASY_I_FIRST_Y = 1,
+    HMMWV_TMEASY_I_FIRST_Z = 2,
+    HMMWV_TMEASY_I_SECOND_XX = 3,
+    HMMWV_TMEASY_I_SECOND_YY = 4,
+    HMMWV_TMEASY_I_SECOND_ZZ = 5,
+    HMMWV_TMEASY_I_SECOND_XY = 6,
+    HMMWV_TMEASY_I_SECOND_XZ = 7,
+    HMMWV_TMEASY_I_SECOND_YZ = 8,
+    HMMWV_TMEASY_I_FORCE_X = 9,
+    HMMWV_TMEASY_I_FORCE_Y = 10,
+    HMMWV_TMEASY_I_FORCE_Z = 11,
+    HMMWV_TMEASY_I_MOMENT_X = 12,
+    HMMWV_TMEASY_I_MOMENT_Y = 13,
+    HMMWV_TMEASY_I_MOMENT_Z = 14,
+    HMMWV_TMEASY_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    HMMWV_TMEASY_MOTION_RACK = 0,
+    HMMWV_TMEASY_MOTION_LCA_F_L = 30,
+    HMMWV_TMEASY_MOTION_LCA_F_R = 60,
+    HMMWV_TMEASY_MOTION_WHEEL_F_L = 150,
+    HMMWV_TMEASY_MOTION_WHEEL_F_R = 186,
+    HMMWV_TMEASY_MOTION_LCA_R_L = 90,
+    HMMWV_TMEASY_MOTION_LCA_R_R = 120,
+    HMMWV_TMEASY_MOTION_WHEEL_R_L = 222,
+    HMMWV_TMEASY_MOTION_WHEEL_R_R = 252,
+    HMMWV_TMEASY_INERTIA_RACK = 0,
+    HMMWV_TMEASY_INERTIA_LCA_F_L = 23,
+    HMMWV_TMEASY_INERTIA_LCA_F_R = 46,
+    HMMWV_TMEASY_INERTIA_LCA_R_L = 69,
+    HMMWV_TMEASY_INERTIA_LCA_R_R = 92,
+    HMMWV_TMEASY_INERTIA_WHEEL_F_L = 115,
+    HMMWV_TMEASY_INERTIA_WHEEL_F_R = 147,
+    HMMWV_TMEASY_INERTIA_WHEEL_R_L = 179,
+    HMMWV_TMEASY_INERTIA_WHEEL_R_R = 202,
+    HMMWV_TMEASY_SUBSET_CHASSIS = 0,
+    HMMWV_TMEASY_SUBSET_RACK = 1,
+    HMMWV_TMEASY_SUBSET_LCA_F_L = 2,
+    HMMWV_TMEASY_SUBSET_LCA_F_R = 3,
+    HMMWV_TMEASY_SUBSET_LCA_R_L = 4,
+    HMMWV_TMEASY_SUBSET_LCA_R_R = 5,
+    HMMWV_TMEASY_SUBSET_WHEEL_F_L = 6,
+    HMMWV_TMEASY_SUBSET_WHEEL_F_R = 7,
+    HMMWV_TMEASY_SUBSET_WHEEL_R_L = 8,
+    HMMWV_TMEASY_SUBSET_WHEEL_R_R = 9,
+    HMMWV_TMEASY_X_SPRING_F_L = 0,
+    HMMWV_TMEASY_X_SPRING_F_R = 1,
+    HMMWV_TMEASY_X_SPRING_R_L = 2,
+    HMMWV_TMEASY_X_SPRING_R_R = 3,
+    HMMWV_TMEASY_X_RACK = 4,
+    HMMWV_TMEASY_Q_X = 0,
+    HMMWV_TMEASY_Q_Y = 1,
+    HMMWV_TMEASY_Q_Z = 2,
+    HMMWV_TMEASY_Q_P0 = 3,
+    HMMWV_TMEASY_Q_P1 = 4,
+    HMMWV_TMEASY_Q_P2 = 5,
+    HMMWV_TMEASY_Q_P3 = 6,
+    HMMWV_TMEASY_POSE_CHASSIS = 0,
+    HMMWV_TMEASY_POSE_RACK = 7,
+    HMMWV_TMEASY_POSE_LCA_F_L = 14,
+    HMMWV_TMEASY_POSE_LCA_F_R = 21,
+    HMMWV_TMEASY_POSE_WHEEL_F_L = 28,
+    HMMWV_TMEASY_POSE_WHEEL_F_R = 35,
+    HMMWV_TMEASY_POSE_LCA_R_L = 42,
+    HMMWV_TMEASY_POSE_LCA_R_R = 49,
+    HMMWV_TMEASY_POSE_WHEEL_R_L = 56,
+    HMMWV_TMEASY_POSE_WHEEL_R_R = 63,
+    HMMWV_TMEASY_UNKNOWN_ALPHA_X = 0,
+    HMMWV_TMEASY_UNKNOWN_ALPHA_Y = 1,
+    HMMWV_TMEASY_UNKNOWN_ALPHA_Z = 2,
+    HMMWV_TMEASY_UNKNOWN_ACCELERATION_X = 3,
+    HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y = 4,
+    HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z = 5,
+    HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L = 6,
+    HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R = 7,
+    HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L = 8,
+    HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R = 9,
+    HMMWV_TMEASY_ENERGY_RATE = 0,
+    HMMWV_TMEASY_ENERGY_POWER = 1,
+    HMMWV_TMEASY_ENERGY_MAGNITUDES = 2,
+    HMMWV_TMEASY_LINK_C_X = 0,
+    HMMWV_TMEASY_LINK_C_Y = 1,
+    HMMWV_TMEASY_LINK_C_Z = 2,
+    HMMWV_TMEASY_LINK_V_X = 3,
+    HMMWV_TMEASY_LINK_V_Y = 4,
+    HMMWV_TMEASY_LINK_V_Z = 5,
+    HMMWV_TMEASY_LINK_S_X = 6,
+    HMMWV_TMEASY_LINK_S_Y = 7,
+    HMMWV_TMEASY_LINK_S_Z = 8,
+    HMMWV_TMEASY_LINK_OMEGA_X = 9,
+    HMMWV_TMEASY_LINK_OMEGA_Y = 10,
+    HMMWV_TMEASY_LINK_OMEGA_Z = 11,
+    HMMWV_TMEASY_GRIP_FORCE_X = 0,
+    HMMWV_TMEASY_GRIP_FORCE_Y = 1,
+    HMMWV_TMEASY_GRIP_FORCE_Z = 2,
+    HMMWV_TMEASY_GRIP_TORQUE_X = 3,
+    HMMWV_TMEASY_GRIP_TORQUE_Y = 4,
+    HMMWV_TMEASY_GRIP_TORQUE_Z = 5,
+    HMMWV_TMEASY_GRIP_DRIVE = 6,
+    HMMWV_TMEASY_GRIP_BRAKE = 7,
+    HMMWV_TMEASY_GRIP_LOAD = 8,
+    HMMWV_TMEASY_GRIP_DEFLECTION = 9,
+    HMMWV_TMEASY_GRIP_DEFLECTION_RATE = 10,
+    HMMWV_TMEASY_GRIP_HEIGHT = 11,
+    HMMWV_TMEASY_GRIP_FX = 12,
+    HMMWV_TMEASY_GRIP_FY = 13,
+    HMMWV_TMEASY_GRIP_MX = 14,
+    HMMWV_TMEASY_GRIP_MY = 15,
+    HMMWV_TMEASY_GRIP_MZ = 16,
+    HMMWV_TMEASY_GRIP_KAPPA = 17,
+    HMMWV_TMEASY_GRIP_TANGENT = 18,
+    HMMWV_TMEASY_GRIP_CAMBER = 19,
+    HMMWV_TMEASY_GRIP_POINT_X = 20,
+    HMMWV_TMEASY_GRIP_POINT_Y = 21,
+    HMMWV_TMEASY_GRIP_POINT_Z = 22,
+    HMMWV_TMEASY_GRIP_SPEED_X = 23,
+    HMMWV_TMEASY_GRIP_SPEED_Y = 24,
+    HMMWV_TMEASY_GRIP_RADIUS = 25,
+    HMMWV_TMEASY_GRIP_POWER = 26,
+    HMMWV_TMEASY_CONTACT_LOAD = 0,
+    HMMWV_TMEASY_CONTACT_KAPPA = 1,
+    HMMWV_TMEASY_CONTACT_TANGENT = 2,
+    HMMWV_TMEASY_CONTACT_CAMBER = 3,
+    HMMWV_TMEASY_CONTACT_FRICTION = 4,
+    HMMWV_TMEASY_CONTACT_SPEED = 5,
+    HMMWV_TMEASY_CONTACT_DEFLECTION = 6,
+    HMMWV_TMEASY_CONTACT_RADIUS = 7,
+    HMMWV_TMEASY_CONTACT_X_X = 8,
+    HMMWV_TMEASY_CONTACT_X_Y = 9,
+    HMMWV_TMEASY_CONTACT_X_Z = 10,
+    HMMWV_TMEASY_CONTACT_Y_X = 11,
+    HMMWV_TMEASY_CONTACT_Y_Y = 12,
+    HMMWV_TMEASY_CONTACT_Y_Z = 13,
+    HMMWV_TMEASY_CONTACT_N_X = 14,
+    HMMWV_TMEASY_CONTACT_N_Y = 15,
+    HMMWV_TMEASY_CONTACT_N_Z = 16,
+    HMMWV_TMEASY_CONTACT_ARM_X = 17,
+    HMMWV_TMEASY_CONTACT_ARM_Y = 18,
+    HMMWV_TMEASY_CONTACT_ARM_Z = 19,
+    HMMWV_TMEASY_TIRE_FX = 0,
+    HMMWV_TMEASY_TIRE_FY = 1,
+    HMMWV_TMEASY_TIRE_MX = 2,
+    HMMWV_TMEASY_TIRE_MY = 3,
+    HMMWV_TMEASY_TIRE_MZ = 4,
+    HMMWV_TMEASY_TORQUE_DRIVE = 0,
+    HMMWV_TMEASY_TORQUE_BRAKE = 1,
+    HMMWV_TMEASY_FAST_SPIN = 0,
+    HMMWV_TMEASY_FAST_SLIP_X = 1,
+    HMMWV_TMEASY_FAST_SLIP_Y = 2,
+    HMMWV_TMEASY_FAST_BRAKE = 3,
+    HMMWV_TMEASY_LINK_OF_TIRE_F_L = 0,
+    HMMWV_TMEASY_GRIP_OF_TIRE_F_L = 0,
+    HMMWV_TMEASY_TORQUE_OF_TIRE_F_L = 0,
+    HMMWV_TMEASY_FAST_OF_TIRE_F_L = 0,
+    HMMWV_TMEASY_LINK_OF_TIRE_F_R = 12,
+    HMMWV_TMEASY_GRIP_OF_TIRE_F_R = 27,
+    HMMWV_TMEASY_TORQUE_OF_TIRE_F_R = 2,
+    HMMWV_TMEASY_FAST_OF_TIRE_F_R = 4,
+    HMMWV_TMEASY_LINK_OF_TIRE_R_L = 24,
+    HMMWV_TMEASY_GRIP_OF_TIRE_R_L = 54,
+    HMMWV_TMEASY_TORQUE_OF_TIRE_R_L = 4,
+    HMMWV_TMEASY_FAST_OF_TIRE_R_L = 8,
+    HMMWV_TMEASY_LINK_OF_TIRE_R_R = 36,
+    HMMWV_TMEASY_GRIP_OF_TIRE_R_R = 81,
+    HMMWV_TMEASY_TORQUE_OF_TIRE_R_R = 6,
+    HMMWV_TMEASY_FAST_OF_TIRE_R_R = 12,
+    HMMWV_TMEASY_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real hmmwv_tmeasy_k_rack[1][1] = {
     { /* rack */
@@ -214,48 +437,50 @@ static const gic_real hmmwv_tmeasy_k_rack[1][1] = {
 /* Class 'rack': 6 unknowns of rack.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_tmeasy_solve_rack(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_tmeasy_solve_rack(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[HMMWV_TMEASY_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[HMMWV_TMEASY_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[HMMWV_TMEASY_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[HMMWV_TMEASY_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[HMMWV_TMEASY_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[HMMWV_TMEASY_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[HMMWV_TMEASY_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[HMMWV_TMEASY_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[HMMWV_TMEASY_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[HMMWV_TMEASY_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[HMMWV_TMEASY_I_FORCE_Y] = inertia_force_y;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[HMMWV_TMEASY_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[HMMWV_TMEASY_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -266,20 +491,52 @@ static int hmmwv_tmeasy_solve_rack(hmmwv_tmeasy *self, const gic_real *GIC_RESTR
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_tmeasy_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_tmeasy_residual_rack(const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[HMMWV_TMEASY_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  spring_f_l.arm^2 + spring_f_l.distance^2
+ *    1  (a^2 + b^2 of spring_f_l)
+ *    2  (a^2 + b^2 of spring_f_l) * 0.0001
+ *    3  spring_f_l.a
+ *    4  spring_f_l.b * sign
+ *    5  spring_f_l.a * sign
+ *    6  spring_f_l.b
+ *    7  from arm_f_l.side_b, spring_f_l.point_b, 1 / (a^2 + b^2 of spring_f_l)
+ *    8  1 / (a^2 + b^2 of spring_f_l) * 0.046609
+ *    9  (-0.046609) * 1 / (a^2 + b^2 of spring_f_l)
+ *   10  -arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   11  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   12  (-0.970969) * 1 / (a^2 + b^2 of spring_f_l)
+ *   13  arm_f_l.side_b_z * 1 / (a^2 + b^2 of spring_f_l)
+ *   14  arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   15  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   16  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *   17  spring_f_l.point_a_z
+ *   18  lca_f_l.com_z
+ *   19  lca_f_l.com_y
+ *   20  arm_f_l.point_a_y
+ *   21  arm_f_l.point_a_x * 23.965
+ *   22  scale of the determinant
+ *   23  arm_f_l.point_a_x
+ *   24  spring_f_l.point_b_z
+ *   25  spring_f_l.point_b_y
+ *   26  spring_f_l.point_a_y
+ *   27  scale of spring_f_l
+ */
 static const gic_real hmmwv_tmeasy_k_lca_f_l[4][28] = {
     { /* lca_f_l */
         R(0.1582643473416399), R(0.004637870464427621), R(4.6378704644276215e-07), R(0.038649583990999964),
@@ -322,15 +579,17 @@ static const gic_real hmmwv_tmeasy_k_lca_f_l[4][28] = {
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r, lca_r_l, lca_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -342,100 +601,105 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
         const gic_real t5 = t3 * k[5] + k[6] * t1;
         const gic_real t6 = t4 * k[7] + t5 * k[8];
         const gic_real t7 = t4 * k[9] + t5 * k[7];
-        const gic_real t8 = t5 * k[10] + t4 * k[11];
-        motion[7] = t8;
-        const gic_real t9 = t5 * k[12] + t4 * k[13];
-        motion[8] = t9;
-        const gic_real t10 = t5 * k[11] + t4 * k[14];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[13] + t4 * k[15];
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[10] + t4 * k[11];
+        motion[HMMWV_TMEASY_A_YY] = a_yy;
+        const gic_real a_yz = t5 * k[12] + t4 * k[13];
+        motion[HMMWV_TMEASY_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * k[11] + t4 * k[14];
+        motion[HMMWV_TMEASY_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[13] + t4 * k[15];
+        motion[HMMWV_TMEASY_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[16];
         const gic_real t13 = t7 - k[17];
-        const gic_real t14 = t9 * k[18] + t8 * k[19];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * k[18] + a_yy * k[19];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * k[18] + t10 * k[19];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * k[18] + a_zy * k[19];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[20] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * k[21]);
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * k[21]);
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[HMMWV_TMEASY_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[HMMWV_TMEASY_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * k[21]);
+        inertia[HMMWV_TMEASY_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * k[21]);
+        inertia[HMMWV_TMEASY_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[22] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[HMMWV_TMEASY_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[HMMWV_TMEASY_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[HMMWV_TMEASY_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[HMMWV_TMEASY_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_TMEASY_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[HMMWV_TMEASY_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[22] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - k[23] * turn[1] + t44);
         const gic_real t52 = k[23] * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[HMMWV_TMEASY_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(k[21] * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(k[21] * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = k[21] * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - k[21] * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[HMMWV_TMEASY_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(k[21] * t38);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(k[21] * t37);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[HMMWV_TMEASY_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = k[21] * t59 + (t58 - t19 * inertia_force_x);
+        inertia[HMMWV_TMEASY_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[HMMWV_TMEASY_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - k[21] * t60;
+        inertia[HMMWV_TMEASY_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[HMMWV_TMEASY_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -446,38 +710,60 @@ static int hmmwv_tmeasy_solve_lca_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RE
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_tmeasy_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_tmeasy_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = k[24] * motion[HMMWV_TMEASY_A_ZZ] + k[25] * motion[HMMWV_TMEASY_A_ZY];
         const gic_real t2 = t1 - k[17];
-        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t3 = k[24] * motion[HMMWV_TMEASY_A_YZ] + k[25] * motion[HMMWV_TMEASY_A_YY];
         const gic_real t4 = k[20] + t3 - k[26];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
         const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[HMMWV_TMEASY_A_ZY] *
+            motion[HMMWV_TMEASY_A_ZY] + motion[HMMWV_TMEASY_A_YY] * motion[HMMWV_TMEASY_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[HMMWV_TMEASY_A_YZ] + motion[HMMWV_TMEASY_A_ZY])) +
+            GIC_FABS(motion[HMMWV_TMEASY_A_YY] - motion[HMMWV_TMEASY_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[HMMWV_TMEASY_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[HMMWV_TMEASY_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X] - rate[0] * motion[HMMWV_TMEASY_S + 0]) / (R(1e-30) +
+            (t12 + t13));
+        const gic_real t15 = t3 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t16 = t1 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[HMMWV_TMEASY_ALPHA_X] - motion[HMMWV_TMEASY_OMEGA_X] * t16) - t4 *
+            (motion[HMMWV_TMEASY_OMEGA_X] * t15 + t1 * motion[HMMWV_TMEASY_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[HMMWV_TMEASY_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.axis_a_y
+ *    5  upper_f_l.axis_a_y * (-0.059522)
+ *    6  sign
+ *    7  sign * 2.92808
+ *    8  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *    9  upper_f_l.point_b_y * 8.57363
+ *   10  from tierod_f_l.point_b, upper_f_l.point_b
+ *   11  from upper_f_l.point_b, tierod_f_l.point_b
+ *   12  wheel_f_l.com_y
+ *   13  tierod_f_l.point_b_y
+ *   14  upper_f_l.point_b_y
+ */
 static const gic_real hmmwv_tmeasy_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
@@ -496,8 +782,9 @@ static const gic_real hmmwv_tmeasy_k_wheel_f_l[2][15] = {
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -506,37 +793,40 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = t1 + k[2];
-        motion[1] = t4;
-        const gic_real t5 = R(0.23411769999999998) - t2;
-        const gic_real t6 = R(0.05422899999999997) - t2;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = k[3] - t4;
+        const gic_real t1 = k[0] * m1[HMMWV_TMEASY_A_YY];
+        const gic_real c_z = k[0] * m1[HMMWV_TMEASY_A_ZY];
+        motion[HMMWV_TMEASY_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[HMMWV_TMEASY_C_Y];
+        const gic_real c_y = t1 + k[2];
+        motion[HMMWV_TMEASY_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t5 = R(0.23411769999999998) - c_z;
+        const gic_real t6 = R(0.05422899999999997) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[HMMWV_TMEASY_S + 0] * c_z;
+        const gic_real s_1_5 = m1[HMMWV_TMEASY_S + 0] * t1;
+        motion[HMMWV_TMEASY_S + 11] = s_1_5;
+        const gic_real t9 = m1[HMMWV_TMEASY_OMEGA_X] * (m1[HMMWV_TMEASY_OMEGA_X] * t1) + m1[HMMWV_TMEASY_ALPHA_X] * c_z;
+        const gic_real t10 = k[3] - c_y;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
-        const gic_real t12 = t3 - t4;
-        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t12 = t3 - c_y;
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * s_1_5;
         const gic_real t14 = rate[1] * t7;
         const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
         const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t19;
-        const gic_real t20 = rate[1] * t8;
-        motion[17] = t20;
-        const gic_real t21 = -t14;
-        motion[16] = t21;
-        const gic_real t22 = -t9;
-        motion[22] = t22;
-        const gic_real t23 = -t7;
-        motion[34] = t23;
+        const gic_real acceleration_z = m1[HMMWV_TMEASY_ALPHA_X] * t1 - m1[HMMWV_TMEASY_OMEGA_X] *
+            (m1[HMMWV_TMEASY_OMEGA_X] * c_z);
+        motion[HMMWV_TMEASY_ACCELERATION_Z] = acceleration_z;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[HMMWV_TMEASY_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t14;
+        motion[HMMWV_TMEASY_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t9;
+        motion[HMMWV_TMEASY_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[HMMWV_TMEASY_S + 10] = s_1_4;
         const gic_real t24 = R(0.5) * (R(0.04548219048831004) + t15);
         const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
         const gic_real t26 = R(4.3116545195287515e-08) + t16;
@@ -554,8 +844,9 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
         const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
         const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
-        const gic_real t37 = t34 + (t2 - R(0.23411769999999998));
-        const gic_real t38 = t35 + (t4 - k[3]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t37 = t34 + (c_z - R(0.23411769999999998));
+        const gic_real t38 = t35 + (c_y - k[3]);
         const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
         const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
         const gic_real t41 = t36 + R(0.059522000000000075);
@@ -564,7 +855,7 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t44 = t35 * t37 - t34 * t38;
         const gic_real t45 = t36 * t38 - t35 * t41;
         const gic_real t46 = t34 * t41 - t36 * t37;
-        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t47 = t7 * t38 - s_1_5 * t37;
         const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
         const gic_real t49 = R(8.573627050492615) * t40;
         const gic_real t50 = t44 * t43 - t45 * t39;
@@ -590,39 +881,41 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t66 = t35 * t62 - t34 * t61;
         const gic_real t67 = t63 + R(0.2910617987184667) * t36;
         const gic_real t68 = t34 * t63 - t36 * t62;
-        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t69 = t64 + (c_y - t3);
         const gic_real t70 = t36 * t61 - t35 * t63;
-        const gic_real t71 = t65 + (t2 - R(0.05422899999999997));
-        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
-        motion[4] = t72;
+        const gic_real t71 = t65 + (c_z - R(0.05422899999999997));
+        const gic_real a_xy = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[HMMWV_TMEASY_A_XY] = a_xy;
         const gic_real t73 = t67 + R(0.2147570000000001);
-        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
-        motion[7] = t74;
-        const gic_real t75 = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
-        motion[8] = t75;
+        const gic_real a_yy = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[HMMWV_TMEASY_A_YY] = a_yy;
+        const gic_real a_yz = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
+        motion[HMMWV_TMEASY_A_YZ] = a_yz;
         const gic_real t76 = t67 * t69 - t64 * t73;
         const gic_real t77 = t65 * t73 - t67 * t71;
         const gic_real t78 = t64 * t71 - t65 * t69;
-        const gic_real t79 = t7 * t69 - t8 * t71;
-        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
-        motion[10] = t80;
-        const gic_real t81 = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
-        motion[11] = t81;
+        const gic_real t79 = t7 * t69 - s_1_5 * t71;
+        const gic_real a_zy = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[HMMWV_TMEASY_A_ZY] = a_zy;
+        const gic_real a_zz = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
+        motion[HMMWV_TMEASY_A_ZZ] = a_zz;
         const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
-        const gic_real t83 = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
-        motion[5] = t83;
-        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
-        motion[6] = t84;
-        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
-        motion[9] = t85;
-        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
-        motion[3] = t86;
+        const gic_real a_xz = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
+        motion[HMMWV_TMEASY_A_XZ] = a_xz;
+        const gic_real a_yx = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
+        motion[HMMWV_TMEASY_A_YX] = a_yx;
+        const gic_real a_zx = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
+        motion[HMMWV_TMEASY_A_ZX] = a_zx;
+        const gic_real a_xx = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
+        motion[HMMWV_TMEASY_A_XX] = a_xx;
         const gic_real t87 = R(1.0) / t82;
-        const gic_real t88 = R(-4.5794204999999994) * t74;
-        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182100000000004) * t75 + k[12] * t74);
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182100000000004) * t81 + k[12] * t80);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t83 + k[12] * t72);
-        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(-4.5794204999999994) * t80));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t88 = R(-4.5794204999999994) * a_yy;
+        const gic_real t89 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + k[12] * a_yy);
+        const gic_real t90 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz + k[12] * a_zy);
+        const gic_real t91 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + k[12] * a_xy);
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(-4.5794204999999994) *
+            a_zy));
         const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
         const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
         const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
@@ -632,173 +925,175 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
         const gic_real t99 = t51 * t87;
         const gic_real t100 = t52 * t87;
         const gic_real t101 = t50 * t87;
-        const gic_real t102 = t4 + t89;
-        const gic_real t103 = t2 + t90;
+        const gic_real t102 = c_y + t89;
+        const gic_real t103 = c_z + t90;
         const gic_real t104 = R(1.653405) + t91;
-        const gic_real t105 = R(0.12192999999999987) * t86;
-        const gic_real t106 = R(-4.5794204999999994) * t72;
-        const gic_real t107 = t69 * t99;
-        motion[26] = t107;
-        const gic_real t108 = t69 * t100;
-        motion[24] = t108;
-        const gic_real t109 = t69 * t101;
-        motion[25] = t109;
-        const gic_real t110 = R(0.12192999999999987) * t84;
-        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
-        motion[32] = t111;
-        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
-        motion[30] = t112;
-        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
-        motion[31] = t113;
-        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
-        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
-        const gic_real t116 = t74 * t106 + t84 * t105;
-        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
-        motion[14] = t117;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[12] = t118;
-        const gic_real t119 = t80 * t106 + t85 * t105;
-        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
-        motion[13] = t120;
-        const gic_real t121 = t80 * t88 + t85 * t110;
-        const gic_real t122 = t108 * t89 - t109 * t91;
-        const gic_real t123 = turn[2] + t117;
-        const gic_real t124 = t36 * t117 - t34 * t118;
-        const gic_real t125 = t67 * t117 - t65 * t118;
-        const gic_real t126 = t65 * t120 - t64 * t117;
-        const gic_real t127 = t64 * t118 - t67 * t120;
-        const gic_real t128 = t34 * t120 - t35 * t117;
-        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t105 = R(0.12192999999999987) * a_xx;
+        const gic_real t106 = R(-4.5794204999999994) * a_xy;
+        const gic_real s_0_2 = t69 * t99;
+        motion[HMMWV_TMEASY_S + 2] = s_0_2;
+        const gic_real s_0_0 = t69 * t100;
+        motion[HMMWV_TMEASY_S + 0] = s_0_0;
+        const gic_real s_0_1 = t69 * t101;
+        motion[HMMWV_TMEASY_S + 1] = s_0_1;
+        const gic_real t110 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[HMMWV_TMEASY_S + 8] = s_1_2;
+        const gic_real s_1_0 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[HMMWV_TMEASY_S + 6] = s_1_0;
+        const gic_real s_1_1 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[HMMWV_TMEASY_S + 7] = s_1_1;
+        const gic_real t114 = a_yx * t110 + (R(4.7728205) + a_yy * t88);
+        const gic_real t115 = a_xx * t105 + (R(4.7728205) + a_xy * t106);
+        const gic_real t116 = a_yy * t106 + a_yx * t105;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[HMMWV_TMEASY_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[HMMWV_TMEASY_OMEGA_X] = omega_x;
+        const gic_real t119 = a_zy * t106 + a_zx * t105;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[HMMWV_TMEASY_OMEGA_Y] = omega_y;
+        const gic_real t121 = a_zy * t88 + a_zx * t110;
+        const gic_real t122 = s_0_0 * t89 - s_0_1 * t91;
+        const gic_real t123 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t124 = t36 * omega_z - t34 * omega_x;
+        const gic_real t125 = t67 * omega_z - t65 * omega_x;
+        const gic_real t126 = t65 * omega_y - t64 * omega_z;
+        const gic_real t127 = t64 * omega_x - t67 * omega_y;
+        const gic_real t128 = t34 * omega_y - t35 * omega_z;
+        const gic_real t129 = t35 * omega_x - t36 * omega_y;
         const gic_real t130 = t124 - t14;
-        const gic_real t131 = t125 - (m0[16] + t14);
-        const gic_real t132 = t118 * t89 - t120 * t91;
-        const gic_real t133 = t117 * t91 - t118 * t90;
-        const gic_real t134 = t20 + t127;
-        const gic_real t135 = t118 * t124 - t120 * t128;
-        const gic_real t136 = t20 + t129;
-        const gic_real t137 = t120 * t129 - t117 * t124;
-        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
-        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
-        const gic_real t140 = t117 * t128 - t118 * t129;
-        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
-        const gic_real t142 = t120 * t90 - t117 * t89;
-        const gic_real t143 = t20 + t132;
-        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
-        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t131 = t125 - (m0[HMMWV_TMEASY_VELOCITY_Y] + t14);
+        const gic_real t132 = omega_x * t89 - omega_y * t91;
+        const gic_real t133 = omega_z * t91 - omega_x * t90;
+        const gic_real t134 = velocity_z + t127;
+        const gic_real t135 = omega_x * t124 - omega_y * t128;
+        const gic_real t136 = velocity_z + t129;
+        const gic_real t137 = omega_y * t129 - omega_z * t124;
+        const gic_real t138 = t9 * t69 - acceleration_z * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - acceleration_z * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = omega_z * t128 - omega_x * t129;
+        const gic_real t141 = t71 * (omega_x * t125 - omega_y * t126) + t69 * (omega_z * t126 - omega_x * t127);
+        const gic_real t142 = omega_y * t90 - omega_z * t89;
+        const gic_real t143 = velocity_z + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * acceleration_z - R(0.21526024724178433) * t135 -
+            (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (omega_y * t127 - omega_z * t125);
         const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
         const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
         const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
         const gic_real t149 = t133 - t14;
-        const gic_real t150 = turn[1] + t120;
-        const gic_real t151 = turn[0] + t118;
-        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t150 = turn[1] + omega_y;
+        const gic_real t151 = turn[0] + omega_x;
+        const gic_real t152 = s_0_0 * t115 + (s_0_2 * t119 + s_0_1 * t116);
         const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
         const gic_real t154 = t145 - t141;
         const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
         const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
-        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
-        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
-        motion[18] = t158;
-        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
-        motion[19] = t159;
-        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
-        motion[20] = t160;
-        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t157 = acceleration_z + omega_x * t133 - omega_y * t142 - turn[1] * t147;
+        const gic_real alpha_x = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[HMMWV_TMEASY_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[HMMWV_TMEASY_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[HMMWV_TMEASY_ALPHA_Z] = alpha_z;
+        const gic_real t161 = turn[2] * t147 + (omega_z * t142 - t9 - omega_x * t132);
         const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
-        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
-        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
-        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
-        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
-        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
-        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
-        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
-        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
-        inertia[9] = t170;
+        const gic_real t163 = turn[1] * t148 + (omega_y * t132 - omega_z * t133) - turn[2] * t153;
+        const gic_real t164 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t165 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t166 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t167 = alpha_x * t89 + (turn[0] * t153 + t157) - alpha_y * t91;
+        const gic_real t168 = alpha_z * t91 + (t161 - turn[0] * t148) - alpha_x * t90;
+        const gic_real t169 = s_0_0 * t116 + (s_0_2 * t121 + s_0_1 * t114);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t90 + t163 - alpha_z * t89);
+        inertia[HMMWV_TMEASY_I_FORCE_X] = inertia_force_x;
         const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
         const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
         const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
-        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
-        const gic_real t175 = t113 * t90 - t111 * t89;
-        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
-        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
-        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
-        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
-        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
-        const gic_real t181 = t109 * t90 - t107 * t89;
-        const gic_real t182 = t107 * t91 - t108 * t90;
-        const gic_real t183 = R(90.555) * t167;
-        inertia[11] = t183;
-        const gic_real t184 = R(90.555) * t122;
-        inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t175;
-        inertia[22] = t185;
-        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
-        const gic_real t187 = R(90.555) * t104;
-        inertia[0] = t187;
-        const gic_real t188 = R(90.555) * t102;
-        inertia[1] = t188;
-        const gic_real t189 = R(90.555) * t168;
-        inertia[10] = t189;
-        const gic_real t190 = R(90.555) * t181;
-        inertia[15] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[16] = t191;
-        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
-        const gic_real t193 = R(90.555) * t176;
-        inertia[23] = t193;
-        const gic_real t194 = R(90.555) * t177;
-        inertia[24] = t194;
-        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        const gic_real t174 = s_0_0 * t119 + (s_0_2 * t92 + s_0_1 * t121);
+        const gic_real t175 = s_1_1 * t90 - s_1_2 * t89;
+        const gic_real t176 = s_1_2 * t91 - t7 - s_1_0 * t90;
+        const gic_real t177 = s_1_5 + s_1_0 * t89 - s_1_1 * t91;
+        const gic_real t178 = s_1_0 * t115 + (s_1_2 * t119 + s_1_1 * t116);
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t121 + s_1_1 * t114);
+        const gic_real t180 = s_1_0 * t119 + (s_1_2 * t92 + s_1_1 * t121);
+        const gic_real t181 = s_0_1 * t90 - s_0_2 * t89;
+        const gic_real t182 = s_0_2 * t91 - s_0_0 * t90;
+        const gic_real inertia_force_z = R(90.555) * t167;
+        inertia[HMMWV_TMEASY_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t122;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t175;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t186 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t104;
+        inertia[HMMWV_TMEASY_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t102;
+        inertia[HMMWV_TMEASY_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t168;
+        inertia[HMMWV_TMEASY_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t181;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t182;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t192 = s_0_2 * t173 + s_0_1 * t172 + (s_0_0 * t171 + inertia_force_z * t122);
+        const gic_real along_1_force_y = R(90.555) * t176;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t177;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t195 = s_1_2 * t173 + s_1_1 * t172 + (s_1_0 * t171 + inertia_force_z * t177);
         if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
-        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
-        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
-        const gic_real t199 = R(90.555) * t103;
-        inertia[2] = t199;
-        const gic_real t200 = t102 * t188;
-        const gic_real t201 = t104 * t187;
-        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
-        inertia[12] = t202;
-        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
-        inertia[13] = t203;
-        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
-        inertia[14] = t204;
-        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
-        inertia[18] = t205;
-        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
-        inertia[19] = t206;
-        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
-        inertia[20] = t207;
-        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
-        inertia[21] = t208;
-        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
-        inertia[25] = t209;
-        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
-        inertia[26] = t210;
-        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
-        inertia[27] = t211;
-        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
-        inertia[28] = t212;
-        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
-        inertia[29] = t213;
-        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
-        inertia[30] = t214;
-        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
-        inertia[31] = t215;
-        const gic_real t216 = t103 * t199;
-        const gic_real t217 = t200 + (t92 + t201);
-        inertia[5] = t217;
-        const gic_real t218 = t116 - t102 * t187;
-        inertia[6] = t218;
-        const gic_real t219 = t119 - t103 * t187;
-        inertia[7] = t219;
-        const gic_real t220 = t121 - t103 * t188;
-        inertia[8] = t220;
-        const gic_real t221 = t216 + (t115 + t200);
-        inertia[3] = t221;
-        const gic_real t222 = t216 + (t114 + t201);
-        inertia[4] = t222;
+        const gic_real t196 = s_0_2 * t174 + s_0_1 * t169 + (s_0_0 * t152 + t122 * along_0_force_z);
+        const gic_real t197 = s_0_2 * t180 + s_0_1 * t179 + (s_0_0 * t178 + t181 * along_1_force_x);
+        const gic_real t198 = s_1_2 * t180 + s_1_1 * t179 + (s_1_0 * t178 + t175 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t103;
+        inertia[HMMWV_TMEASY_I_FIRST_Z] = inertia_first_z;
+        const gic_real t200 = t102 * inertia_first_y;
+        const gic_real t201 = t104 * inertia_first_x;
+        const gic_real inertia_moment_x = t171 + t102 * inertia_force_z - t103 * inertia_force_y;
+        inertia[HMMWV_TMEASY_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t172 + t103 * inertia_force_x - t104 * inertia_force_z;
+        inertia[HMMWV_TMEASY_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t173 + t104 * inertia_force_y - t102 * inertia_force_x;
+        inertia[HMMWV_TMEASY_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t152 + t102 * along_0_force_z - t103 * along_0_force_y;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t169 + t103 * along_0_force_x - t104 * along_0_force_z;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t174 + t104 * along_0_force_y - t102 * along_0_force_x;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t182 + inertia_force_x * t181 + t192;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t178 + t102 * along_1_force_z - t103 * along_1_force_y;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t179 + t103 * along_1_force_x - t104 * along_1_force_z;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t104 * along_1_force_y + (t180 - t102 * along_1_force_x);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t176 + inertia_force_x * t175 + t195;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t182 * along_0_force_y + t181 * along_0_force_x + t196;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t197 + (t122 * along_1_force_z + t182 * along_1_force_y);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t198 + (t177 * along_1_force_z + t176 * along_1_force_y);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 16] = mass_2;
+        const gic_real t216 = t103 * inertia_first_z;
+        const gic_real inertia_second_zz = t200 + (t92 + t201);
+        inertia[HMMWV_TMEASY_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t116 - t102 * inertia_first_x;
+        inertia[HMMWV_TMEASY_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t119 - t103 * inertia_first_x;
+        inertia[HMMWV_TMEASY_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t121 - t103 * inertia_first_y;
+        inertia[HMMWV_TMEASY_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t216 + (t115 + t200);
+        inertia[HMMWV_TMEASY_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t216 + (t114 + t201);
+        inertia[HMMWV_TMEASY_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -809,106 +1104,154 @@ static int hmmwv_tmeasy_solve_wheel_f_l(hmmwv_tmeasy *self, const gic_real *GIC_
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_tmeasy_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_tmeasy_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[HMMWV_TMEASY_A_YY];
+        const gic_real t2 = k[0] * m1[HMMWV_TMEASY_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[HMMWV_TMEASY_C_Y] - (t1 + k[2]))) +
+            GIC_FABS(R(2.928075656552032) * (motion[HMMWV_TMEASY_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[HMMWV_TMEASY_A_ZZ] + (k[13] * motion[HMMWV_TMEASY_A_ZY] +
+            R(-0.14025880000000002) * motion[HMMWV_TMEASY_A_ZX]);
+        const gic_real t5 = motion[HMMWV_TMEASY_C_Z] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[HMMWV_TMEASY_A_YZ] + (k[13] * motion[HMMWV_TMEASY_A_YY] +
+            R(-0.14025880000000002) * motion[HMMWV_TMEASY_A_YX]);
+        const gic_real t7 = motion[HMMWV_TMEASY_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[HMMWV_TMEASY_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[HMMWV_TMEASY_A_XZ] + (k[13] * motion[HMMWV_TMEASY_A_XY] +
+            R(-0.14025880000000002) * motion[HMMWV_TMEASY_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
-        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[3];
-        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.33360360000000006) * motion[HMMWV_TMEASY_A_ZZ] + (k[14] * motion[HMMWV_TMEASY_A_ZY] +
+            R(-0.017475200000000024) * motion[HMMWV_TMEASY_A_ZX]);
+        const gic_real t16 = motion[HMMWV_TMEASY_C_Z] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[HMMWV_TMEASY_A_YZ] + (k[14] * motion[HMMWV_TMEASY_A_YY] +
+            R(-0.017475200000000024) * motion[HMMWV_TMEASY_A_YX]);
+        const gic_real t18 = motion[HMMWV_TMEASY_C_Y] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[HMMWV_TMEASY_A_XZ] + (k[14] * motion[HMMWV_TMEASY_A_XY] +
+            R(-0.017475200000000024) * motion[HMMWV_TMEASY_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[HMMWV_TMEASY_A_ZX] * motion[HMMWV_TMEASY_A_ZX] + (motion[HMMWV_TMEASY_A_YX] *
+            motion[HMMWV_TMEASY_A_YX] + motion[HMMWV_TMEASY_A_XX] * motion[HMMWV_TMEASY_A_XX]) - R(1.0);
+        const gic_real t27 = motion[HMMWV_TMEASY_A_ZY] * motion[HMMWV_TMEASY_A_ZY] + (motion[HMMWV_TMEASY_A_YY] *
+            motion[HMMWV_TMEASY_A_YY] + motion[HMMWV_TMEASY_A_XY] * motion[HMMWV_TMEASY_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[HMMWV_TMEASY_A_ZX] * motion[HMMWV_TMEASY_A_ZY] +
+            (motion[HMMWV_TMEASY_A_YX] * motion[HMMWV_TMEASY_A_YY] + motion[HMMWV_TMEASY_A_XX] *
+            motion[HMMWV_TMEASY_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[HMMWV_TMEASY_A_YX] * motion[HMMWV_TMEASY_A_ZY] -
+            motion[HMMWV_TMEASY_A_YY] * motion[HMMWV_TMEASY_A_ZX] - motion[HMMWV_TMEASY_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[HMMWV_TMEASY_A_XY] * motion[HMMWV_TMEASY_A_ZX] -
+            motion[HMMWV_TMEASY_A_XX] * motion[HMMWV_TMEASY_A_ZY] - motion[HMMWV_TMEASY_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[HMMWV_TMEASY_A_XX] * motion[HMMWV_TMEASY_A_YY] -
+            motion[HMMWV_TMEASY_A_XY] * motion[HMMWV_TMEASY_A_YX] - motion[HMMWV_TMEASY_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[HMMWV_TMEASY_S + 0] + t34 * motion[HMMWV_TMEASY_S + 1] + t35 *
+            motion[HMMWV_TMEASY_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[HMMWV_TMEASY_S + 0] + t38 * motion[HMMWV_TMEASY_S + 1] + t39 *
+            motion[HMMWV_TMEASY_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[HMMWV_TMEASY_S + 0] + t42 *
+            motion[HMMWV_TMEASY_S + 1] + t43 * motion[HMMWV_TMEASY_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
-        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t53 = t52 + GIC_FABS(m1[24]);
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[HMMWV_TMEASY_S + 0]) +
+            GIC_FABS(motion[HMMWV_TMEASY_S + 1]) + GIC_FABS(motion[HMMWV_TMEASY_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[HMMWV_TMEASY_S + 0] * t2 +
+            motion[HMMWV_TMEASY_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[HMMWV_TMEASY_S + 11] -
+            m1[HMMWV_TMEASY_S + 0] * t1));
+        const gic_real t48 = t33 * motion[HMMWV_TMEASY_S + 6] + t34 * motion[HMMWV_TMEASY_S + 7] + t35 *
+            motion[HMMWV_TMEASY_S + 8] + t9 * motion[HMMWV_TMEASY_S + 10];
+        const gic_real t49 = t37 * motion[HMMWV_TMEASY_S + 6] + t38 * motion[HMMWV_TMEASY_S + 7] + t39 *
+            motion[HMMWV_TMEASY_S + 8] + t18 * motion[HMMWV_TMEASY_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[HMMWV_TMEASY_S + 11])) + GIC_FABS(t23 * (t49 +
+            t16 * motion[HMMWV_TMEASY_S + 11]));
+        const gic_real t51 = t41 * motion[HMMWV_TMEASY_S + 6] + t42 * motion[HMMWV_TMEASY_S + 7] + t43 *
+            motion[HMMWV_TMEASY_S + 8] + k[4] * motion[HMMWV_TMEASY_S + 10];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_TMEASY_S + 10]) +
+            GIC_FABS(motion[HMMWV_TMEASY_S + 11])) + (GIC_FABS(motion[HMMWV_TMEASY_S + 6]) +
+            GIC_FABS(motion[HMMWV_TMEASY_S + 7]) + GIC_FABS(motion[HMMWV_TMEASY_S + 8]));
+        const gic_real t53 = t52 + GIC_FABS(m1[HMMWV_TMEASY_S + 0]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[HMMWV_TMEASY_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X] - rate[0] * motion[HMMWV_TMEASY_S + 0] - rate[1] *
+            motion[HMMWV_TMEASY_S + 6]) + GIC_FABS(motion[HMMWV_TMEASY_OMEGA_Y] - rate[0] * motion[HMMWV_TMEASY_S + 1] -
+            rate[1] * motion[HMMWV_TMEASY_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[HMMWV_TMEASY_OMEGA_Z] - rate[0] * motion[HMMWV_TMEASY_S + 2] -
+            rate[1] * motion[HMMWV_TMEASY_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[HMMWV_TMEASY_VELOCITY_Y] - rate[1] *
+            motion[HMMWV_TMEASY_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[HMMWV_TMEASY_VELOCITY_Z] - rate[1] *
+            motion[HMMWV_TMEASY_S + 11]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X]) + GIC_FABS(motion[HMMWV_TMEASY_OMEGA_Y]) +
+            GIC_FABS(motion[HMMWV_TMEASY_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t66 = motion[17] + t65;
-        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t68 = motion[16] + t67 - m0[16];
-        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t63 = R(2.928075656552032) * (m1[HMMWV_TMEASY_OMEGA_X] * (m1[HMMWV_TMEASY_OMEGA_X] * t1) +
+            m1[HMMWV_TMEASY_ALPHA_X] * t2 + motion[HMMWV_TMEASY_ACCELERATION_Y]);
+        const gic_real t64 = R(2.928075656552032) * (motion[HMMWV_TMEASY_ACCELERATION_Z] - (m1[HMMWV_TMEASY_ALPHA_X] *
+            t1 - m1[HMMWV_TMEASY_OMEGA_X] * (m1[HMMWV_TMEASY_OMEGA_X] * t2)));
+        const gic_real t65 = t6 * motion[HMMWV_TMEASY_OMEGA_X] - t10 * motion[HMMWV_TMEASY_OMEGA_Y];
+        const gic_real t66 = motion[HMMWV_TMEASY_VELOCITY_Z] + t65;
+        const gic_real t67 = t10 * motion[HMMWV_TMEASY_OMEGA_Z] - t4 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t68 = motion[HMMWV_TMEASY_VELOCITY_Y] + t67 - m0[HMMWV_TMEASY_VELOCITY_Y];
+        const gic_real t69 = t4 * motion[HMMWV_TMEASY_OMEGA_Y] - t6 * motion[HMMWV_TMEASY_OMEGA_Z];
+        const gic_real t70 = motion[HMMWV_TMEASY_OMEGA_X] * t67 - motion[HMMWV_TMEASY_OMEGA_Y] * t69 + (t6 *
+            motion[HMMWV_TMEASY_ALPHA_X] - t10 * motion[HMMWV_TMEASY_ALPHA_Y]);
+        const gic_real t71 = motion[HMMWV_TMEASY_OMEGA_Z] * t69 - motion[HMMWV_TMEASY_OMEGA_X] * t65 + (t10 *
+            motion[HMMWV_TMEASY_ALPHA_Z] - t4 * motion[HMMWV_TMEASY_ALPHA_X]);
+        const gic_real t72 = motion[HMMWV_TMEASY_OMEGA_Y] * t65 - motion[HMMWV_TMEASY_OMEGA_Z] * t67 + (t4 *
+            motion[HMMWV_TMEASY_ALPHA_Y] - t6 * motion[HMMWV_TMEASY_ALPHA_Z]);
+        const gic_real t73 = t5 * (motion[HMMWV_TMEASY_ACCELERATION_Z] + t70) + (t9 *
+            (motion[HMMWV_TMEASY_ACCELERATION_Y] + t71) + t11 * t72);
         const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
         const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
-        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t77 = motion[17] + t76;
-        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t79 = motion[16] + t78;
-        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t82 = motion[23] + t81;
-        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t84 = motion[22] + t83;
-        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t76 = t17 * motion[HMMWV_TMEASY_OMEGA_X] - t19 * motion[HMMWV_TMEASY_OMEGA_Y];
+        const gic_real t77 = motion[HMMWV_TMEASY_VELOCITY_Z] + t76;
+        const gic_real t78 = t19 * motion[HMMWV_TMEASY_OMEGA_Z] - t15 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t79 = motion[HMMWV_TMEASY_VELOCITY_Y] + t78;
+        const gic_real t80 = t15 * motion[HMMWV_TMEASY_OMEGA_Y] - t17 * motion[HMMWV_TMEASY_OMEGA_Z];
+        const gic_real t81 = motion[HMMWV_TMEASY_OMEGA_X] * t78 - motion[HMMWV_TMEASY_OMEGA_Y] * t80 + (t17 *
+            motion[HMMWV_TMEASY_ALPHA_X] - t19 * motion[HMMWV_TMEASY_ALPHA_Y]);
+        const gic_real t82 = motion[HMMWV_TMEASY_ACCELERATION_Z] + t81;
+        const gic_real t83 = motion[HMMWV_TMEASY_OMEGA_Z] * t80 - motion[HMMWV_TMEASY_OMEGA_X] * t76 + (t19 *
+            motion[HMMWV_TMEASY_ALPHA_Z] - t15 * motion[HMMWV_TMEASY_ALPHA_X]);
+        const gic_real t84 = motion[HMMWV_TMEASY_ACCELERATION_Y] + t83;
+        const gic_real t85 = motion[HMMWV_TMEASY_OMEGA_Y] * t76 - motion[HMMWV_TMEASY_OMEGA_Z] * t78 + (t15 *
+            motion[HMMWV_TMEASY_ALPHA_Y] - t17 * motion[HMMWV_TMEASY_ALPHA_Z]);
         const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
-        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
-        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) *
+            R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[HMMWV_TMEASY_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_TMEASY_ACCELERATION_Z])) + (GIC_FABS(motion[HMMWV_TMEASY_ALPHA_X]) +
+            GIC_FABS(motion[HMMWV_TMEASY_ALPHA_Y]) + GIC_FABS(motion[HMMWV_TMEASY_ALPHA_Z]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[HMMWV_TMEASY_VELOCITY_Y]);
         const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
-        const gic_real t91 = GIC_FABS(m1[12]);
-        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t91 = GIC_FABS(m1[HMMWV_TMEASY_OMEGA_X]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[HMMWV_TMEASY_ALPHA_X])) + t60 * t60;
         const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
         const gic_real t94 = t62 + t93;
         worst[0] = t32;
@@ -916,6 +1259,16 @@ static GIC_COLD void hmmwv_tmeasy_residual_wheel_f_l(const gic_real *GIC_RESTRIC
     }
 }
 
+/* Columns, with the names of wheel_r_l:
+ *    0  hinge_r_l.point_a_y
+ *    1  lca_r_l.C_Y
+ *    2  upper_r_l.point_a_y
+ *    3  upper_r_l.point_b_y
+ *    4  sign
+ *    5  -upper_r_l.point_b_y
+ *    6  wheel_r_l.com_y
+ *    7  scale of the determinant
+ */
 static const gic_real hmmwv_tmeasy_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
@@ -930,8 +1283,9 @@ static const gic_real hmmwv_tmeasy_k_wheel_r_l[2][8] = {
 /* Class 'wheel_r_l': 6 unknowns of wheel_r_l, wheel_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
@@ -939,32 +1293,35 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        motion[2] = t2;
-        const gic_real t3 = t1 + k[1];
-        motion[1] = t3;
-        const gic_real t4 = R(0.22567900000000007) - t2;
-        const gic_real t5 = m0[24] * t2;
-        const gic_real t6 = m0[24] * t1;
-        motion[29] = t6;
-        const gic_real t7 = m0[12] * (m0[12] * t1) + m0[18] * t2;
-        const gic_real t8 = k[2] - t3;
-        const gic_real t9 = t3 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_TMEASY_A_YY];
+        const gic_real c_z = k[0] * m0[HMMWV_TMEASY_A_ZY];
+        motion[HMMWV_TMEASY_C_Z] = c_z;
+        const gic_real c_y = t1 + k[1];
+        motion[HMMWV_TMEASY_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t4 = R(0.22567900000000007) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t5 = m0[HMMWV_TMEASY_S + 0] * c_z;
+        const gic_real s_0_5 = m0[HMMWV_TMEASY_S + 0] * t1;
+        motion[HMMWV_TMEASY_S + 5] = s_0_5;
+        const gic_real t7 = m0[HMMWV_TMEASY_OMEGA_X] * (m0[HMMWV_TMEASY_OMEGA_X] * t1) + m0[HMMWV_TMEASY_ALPHA_X] * c_z;
+        const gic_real t8 = k[2] - c_y;
+        const gic_real t9 = c_y - k[2];
         const gic_real t10 = rate[0] * t5;
-        const gic_real t11 = rate[0] * t6;
-        motion[17] = t11;
-        const gic_real t12 = m0[18] * t1 - m0[12] * (m0[12] * t2);
-        motion[23] = t12;
+        const gic_real velocity_z = rate[0] * s_0_5;
+        motion[HMMWV_TMEASY_VELOCITY_Z] = velocity_z;
+        const gic_real acceleration_z = m0[HMMWV_TMEASY_ALPHA_X] * t1 - m0[HMMWV_TMEASY_OMEGA_X] *
+            (m0[HMMWV_TMEASY_OMEGA_X] * c_z);
+        motion[HMMWV_TMEASY_ACCELERATION_Z] = acceleration_z;
         const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.05231323408299997)));
         const gic_real t14 = k[3] * t9 - R(0.33401) * t4;
         const gic_real t15 = R(0.33401) * t9 + k[3] * t4;
-        const gic_real t16 = -t10;
-        motion[16] = t16;
-        const gic_real t17 = -t7;
-        motion[22] = t17;
-        const gic_real t18 = -t5;
-        motion[28] = t18;
+        const gic_real velocity_y = -t10;
+        motion[HMMWV_TMEASY_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t7;
+        motion[HMMWV_TMEASY_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_0_4 = -t5;
+        motion[HMMWV_TMEASY_S + 4] = s_0_4;
         const gic_real t19 = t14 * t14 + t15 * t15;
         const gic_real t20 = t19 - t13 * t13;
         if (!(t20 > R(0.0)))
@@ -973,110 +1330,113 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
             return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[4] * GIC_SQRT(t20);
         const gic_real t22 = R(1.0) / t19;
-        const gic_real t23 = t22 * (t15 * t13 - t14 * t21);
-        motion[10] = t23;
+        const gic_real a_zy = t22 * (t15 * t13 - t14 * t21);
+        motion[HMMWV_TMEASY_A_ZY] = a_zy;
         const gic_real t24 = t22 * (t15 * t21 + t14 * t13);
-        const gic_real t25 = R(4.7728205) + t23 * (R(-4.5794204999999994) * t23);
-        const gic_real t26 = -t23;
-        motion[8] = t26;
-        const gic_real t27 = R(-0.33401) * t23 + k[5] * t24;
-        const gic_real t28 = k[3] * t23 + R(-0.33401) * t24;
-        const gic_real t29 = R(0.09182100000000004) * t23 + k[6] * t24;
-        const gic_real t30 = k[6] * t23 - R(0.09182100000000004) * t24;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t25 = R(4.7728205) + a_zy * (R(-4.5794204999999994) * a_zy);
+        const gic_real a_yz = -a_zy;
+        motion[HMMWV_TMEASY_A_YZ] = a_yz;
+        const gic_real t27 = R(-0.33401) * a_zy + k[5] * t24;
+        const gic_real t28 = k[3] * a_zy + R(-0.33401) * t24;
+        const gic_real t29 = R(0.09182100000000004) * a_zy + k[6] * t24;
+        const gic_real t30 = k[6] * a_zy - R(0.09182100000000004) * t24;
         const gic_real t31 = R(-4.5794204999999994) * t24;
-        const gic_real t32 = -t24;
-        motion[7] = t32;
-        motion[11] = t32;
+        const gic_real a_yy = -t24;
+        motion[HMMWV_TMEASY_A_YY] = a_yy;
+        motion[HMMWV_TMEASY_A_ZZ] = a_yy;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t33 = t9 + t27;
-        const gic_real t34 = t2 - R(0.22567900000000007) + t28;
+        const gic_real t34 = c_z - R(0.22567900000000007) + t28;
         const gic_real t35 = R(4.7728205) + t24 * t31;
-        const gic_real t36 = t3 - t29;
-        const gic_real t37 = t23 * t31;
-        const gic_real t38 = t2 + t30;
-        const gic_real t39 = R(90.555) * t36;
-        inertia[1] = t39;
+        const gic_real t36 = c_y - t29;
+        const gic_real t37 = a_zy * t31;
+        const gic_real t38 = c_z + t30;
+        const gic_real inertia_first_y = R(90.555) * t36;
+        inertia[HMMWV_TMEASY_I_FIRST_Y] = inertia_first_y;
         const gic_real t40 = turn[2] * t25 - turn[1] * t37;
         const gic_real t41 = t27 * t34 - t28 * t33;
         const gic_real t42 = turn[1] * t38 - turn[2] * t36;
         const gic_real t43 = turn[1] * t35 - turn[2] * t37;
-        const gic_real t44 = R(90.555) * t38;
-        inertia[2] = t44;
-        const gic_real t45 = t36 * t39;
-        const gic_real t46 = -(t37 + t38 * t39);
-        inertia[8] = t46;
-        const gic_real t47 = -(R(-149.724089775) * t36);
-        inertia[6] = t47;
+        const gic_real inertia_first_z = R(90.555) * t38;
+        inertia[HMMWV_TMEASY_I_FIRST_Z] = inertia_first_z;
+        const gic_real t45 = t36 * inertia_first_y;
+        const gic_real inertia_second_yz = -(t37 + t38 * inertia_first_y);
+        inertia[HMMWV_TMEASY_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xy = -(R(-149.724089775) * t36);
+        inertia[HMMWV_TMEASY_I_SECOND_XY] = inertia_second_xy;
         const gic_real t48 = R(1.0) / t41;
-        const gic_real t49 = t38 * t44;
-        const gic_real t50 = t45 + (R(247.5545586544339) + t25);
-        inertia[5] = t50;
-        const gic_real t51 = -(R(-149.724089775) * t38);
-        inertia[7] = t51;
-        const gic_real t52 = t49 + (R(4.8947505) + t45);
-        inertia[3] = t52;
-        const gic_real t53 = t49 + (R(247.5545586544339) + t35);
-        inertia[4] = t53;
-        const gic_real t54 = t48 * (t5 * t33 - t6 * t34);
-        motion[24] = t54;
-        const gic_real t55 = rate[0] * t54;
-        motion[12] = t55;
-        const gic_real t56 = t5 + t54 * t30;
-        const gic_real t57 = t6 - t54 * t29;
-        const gic_real t58 = R(4.8947505) * t54;
-        if (!(k[7] * t41 - ahead[0] * GIC_FABS(t55) > R(0.004)))
+        const gic_real t49 = t38 * inertia_first_z;
+        const gic_real inertia_second_zz = t45 + (R(247.5545586544339) + t25);
+        inertia[HMMWV_TMEASY_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xz = -(R(-149.724089775) * t38);
+        inertia[HMMWV_TMEASY_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_xx = t49 + (R(4.8947505) + t45);
+        inertia[HMMWV_TMEASY_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t49 + (R(247.5545586544339) + t35);
+        inertia[HMMWV_TMEASY_I_SECOND_YY] = inertia_second_yy;
+        const gic_real s_0_0 = t48 * (t5 * t33 - s_0_5 * t34);
+        motion[HMMWV_TMEASY_S + 0] = s_0_0;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_TMEASY_OMEGA_X] = omega_x;
+        const gic_real t56 = t5 + s_0_0 * t30;
+        const gic_real t57 = s_0_5 - s_0_0 * t29;
+        const gic_real t58 = R(4.8947505) * s_0_0;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[7] * t41 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t59 = t28 * t55;
-        const gic_real t60 = t27 * t55;
-        const gic_real t61 = t55 * t30;
-        const gic_real t62 = t55 * t29;
-        const gic_real t63 = turn[0] + t55;
-        const gic_real t64 = turn[1] * t55;
-        const gic_real t65 = turn[2] * t55;
+        const gic_real t59 = t28 * omega_x;
+        const gic_real t60 = t27 * omega_x;
+        const gic_real t61 = omega_x * t30;
+        const gic_real t62 = omega_x * t29;
+        const gic_real t63 = turn[0] + omega_x;
+        const gic_real t64 = turn[1] * omega_x;
+        const gic_real t65 = turn[2] * omega_x;
         const gic_real t66 = R(90.555) * t56;
-        const gic_real t67 = t34 * (t55 * t59) + (t7 * t33 - t12 * t34);
-        const gic_real t68 = t11 + t60;
+        const gic_real t67 = t34 * (omega_x * t59) + (t7 * t33 - acceleration_z * t34);
+        const gic_real t68 = velocity_z + t60;
         const gic_real t69 = t10 + t59;
         const gic_real t70 = t10 + t61;
-        const gic_real t71 = t11 - t62;
+        const gic_real t71 = velocity_z - t62;
         const gic_real t72 = R(4.8947505) * t63;
-        const gic_real t73 = R(90.555) * t57;
-        inertia[17] = t73;
-        const gic_real t74 = -(R(-149.724089775) * t57);
-        inertia[19] = t74;
-        const gic_real t75 = -(R(-149.724089775) * t56);
-        inertia[20] = t75;
+        const gic_real along_0_force_z = R(90.555) * t57;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_0_moment_y = -(R(-149.724089775) * t57);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(R(-149.724089775) * t56);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 5] = along_0_moment_z;
         const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t38 - t70 - t70;
         const gic_real t77 = t71 + (t71 + (turn[0] * t36 - R(-1.653405) * turn[1]));
-        const gic_real t78 = t33 * (t55 * t60) - t68 * t68 + (t67 - t69 * t69);
+        const gic_real t78 = t33 * (omega_x * t60) - t68 * t68 + (t67 - t69 * t69);
         const gic_real t79 = turn[2] * t72 + (t37 * t64 + t35 * t65 - t63 * t40);
         const gic_real t80 = t63 * t43 - t25 * t64 - t37 * t65 - turn[1] * t72;
-        const gic_real t81 = t36 * t73 + (t58 + t38 * t66);
-        inertia[18] = t81;
-        const gic_real t82 = turn[0] * t76 + (t12 - turn[1] * t42 - t55 * t61);
-        const gic_real t83 = t55 * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
-        const gic_real t84 = t48 * t78;
-        motion[18] = t84;
-        const gic_real t85 = R(90.555) * (turn[1] * t77 - turn[2] * t76);
-        inertia[9] = t85;
-        const gic_real t86 = t56 * t66 + (t54 * t58 + t57 * t73);
-        inertia[22] = t86;
-        const gic_real t87 = R(4.8947505) * t84 + (turn[1] * t40 - turn[2] * t43);
-        const gic_real t88 = -t66;
-        inertia[16] = t88;
-        const gic_real t89 = t82 - t84 * t29;
-        const gic_real t90 = t83 - t84 * t30;
-        const gic_real t91 = R(90.555) * t89;
-        inertia[11] = t91;
-        const gic_real t92 = t38 * t85 + t79 - R(-149.724089775) * t89;
-        inertia[13] = t92;
-        const gic_real t93 = R(90.555) * t90;
-        inertia[10] = t93;
-        const gic_real t94 = R(-149.724089775) * t90 + (t80 - t36 * t85);
-        inertia[14] = t94;
-        const gic_real t95 = t87 + t36 * t91 - t38 * t93;
-        inertia[12] = t95;
-        const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
-        inertia[21] = t96;
+        const gic_real along_0_moment_x = t36 * along_0_force_z + (t58 + t38 * t66);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real t82 = turn[0] * t76 + (acceleration_z - turn[1] * t42 - omega_x * t61);
+        const gic_real t83 = omega_x * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
+        const gic_real alpha_x = t48 * t78;
+        motion[HMMWV_TMEASY_ALPHA_X] = alpha_x;
+        const gic_real inertia_force_x = R(90.555) * (turn[1] * t77 - turn[2] * t76);
+        inertia[HMMWV_TMEASY_I_FORCE_X] = inertia_force_x;
+        const gic_real mass_0 = t56 * t66 + (s_0_0 * t58 + t57 * along_0_force_z);
+        inertia[HMMWV_TMEASY_I_COORDINATE + 7] = mass_0;
+        const gic_real t87 = R(4.8947505) * alpha_x + (turn[1] * t40 - turn[2] * t43);
+        const gic_real along_0_force_y = -t66;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t89 = t82 - alpha_x * t29;
+        const gic_real t90 = t83 - alpha_x * t30;
+        const gic_real inertia_force_z = R(90.555) * t89;
+        inertia[HMMWV_TMEASY_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t38 * inertia_force_x + t79 - R(-149.724089775) * t89;
+        inertia[HMMWV_TMEASY_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(90.555) * t90;
+        inertia[HMMWV_TMEASY_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = R(-149.724089775) * t90 + (t80 - t36 * inertia_force_x);
+        inertia[HMMWV_TMEASY_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = t87 + t36 * inertia_force_z - t38 * inertia_force_y;
+        inertia[HMMWV_TMEASY_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t87 + inertia_force_z * t57 - inertia_force_y * t56;
+        inertia[HMMWV_TMEASY_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1087,46 +1447,62 @@ static int hmmwv_tmeasy_solve_wheel_r_l(hmmwv_tmeasy *self, const gic_real *GIC_
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_tmeasy_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_tmeasy_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_tmeasy_residual_wheel_r_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_tmeasy_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
-        const gic_real t4 = R(0.33401) * motion[11] + k[3] * motion[10];
-        const gic_real t5 = motion[2] + t4 - R(0.22567900000000007);
-        const gic_real t6 = R(0.33401) * motion[8] + k[3] * motion[7];
-        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_TMEASY_A_YY];
+        const gic_real t2 = k[0] * m0[HMMWV_TMEASY_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS((motion[HMMWV_TMEASY_C_Y] - (t1 + k[1])) * R(2.928503331078754)) +
+            GIC_FABS((motion[HMMWV_TMEASY_C_Z] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.33401) * motion[HMMWV_TMEASY_A_ZZ] + k[3] * motion[HMMWV_TMEASY_A_ZY];
+        const gic_real t5 = motion[HMMWV_TMEASY_C_Z] + t4 - R(0.22567900000000007);
+        const gic_real t6 = R(0.33401) * motion[HMMWV_TMEASY_A_YZ] + k[3] * motion[HMMWV_TMEASY_A_YY];
+        const gic_real t7 = motion[HMMWV_TMEASY_C_Y] + t6 - k[2];
         const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
-        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) +
+            R(0.08651688980892147);
         const gic_real t10 = R(2.0) / t9;
-        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
-        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
-        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
-        const gic_real t16 = t15 + GIC_FABS(m0[24]);
-        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
-        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
-        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[HMMWV_TMEASY_A_ZY] * motion[HMMWV_TMEASY_A_ZY] +
+            motion[HMMWV_TMEASY_A_YY] * motion[HMMWV_TMEASY_A_YY] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[HMMWV_TMEASY_A_YZ] + motion[HMMWV_TMEASY_A_ZY])) +
+            GIC_FABS(motion[HMMWV_TMEASY_A_YY] - motion[HMMWV_TMEASY_A_ZZ]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[HMMWV_TMEASY_S + 0] * t2 +
+            motion[HMMWV_TMEASY_S + 4])) + GIC_FABS(R(2.928503331078754) * (motion[HMMWV_TMEASY_S + 5] -
+            m0[HMMWV_TMEASY_S + 0] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[HMMWV_TMEASY_S + 0] + t7 * motion[HMMWV_TMEASY_S + 4];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_TMEASY_S + 4]) +
+            GIC_FABS(motion[HMMWV_TMEASY_S + 5])) + GIC_FABS(motion[HMMWV_TMEASY_S + 0]);
+        const gic_real t16 = t15 + GIC_FABS(m0[HMMWV_TMEASY_S + 0]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[HMMWV_TMEASY_S + 5]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X] - rate[0] * motion[HMMWV_TMEASY_S + 0]) +
+            GIC_FABS(R(2.928503331078754) * (motion[HMMWV_TMEASY_VELOCITY_Y] - rate[0] * motion[HMMWV_TMEASY_S + 4]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_TMEASY_VELOCITY_Z]));
+        const gic_real t20 = GIC_FABS(motion[HMMWV_TMEASY_OMEGA_X]);
         const gic_real t21 = t16 * GIC_FABS(rate[0]);
-        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
-        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
-        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
-        const gic_real t25 = t6 * motion[12];
-        const gic_real t26 = motion[17] + t25;
-        const gic_real t27 = t4 * motion[12];
-        const gic_real t28 = motion[16] - t27;
-        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[HMMWV_TMEASY_VELOCITY_Z] - rate[0] *
+            motion[HMMWV_TMEASY_S + 5]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[HMMWV_TMEASY_OMEGA_X] * (m0[HMMWV_TMEASY_OMEGA_X] * t1) +
+            m0[HMMWV_TMEASY_ALPHA_X] * t2 + motion[HMMWV_TMEASY_ACCELERATION_Y]);
+        const gic_real t24 = R(2.928503331078754) * (motion[HMMWV_TMEASY_ACCELERATION_Z] - (m0[HMMWV_TMEASY_ALPHA_X] *
+            t1 - m0[HMMWV_TMEASY_OMEGA_X] * (m0[HMMWV_TMEASY_OMEGA_X] * t2)));
+        const gic_real t25 = t6 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t26 = motion[HMMWV_TMEASY_VELOCITY_Z] + t25;
+        const gic_real t27 = t4 * motion[HMMWV_TMEASY_OMEGA_X];
+        const gic_real t28 = motion[HMMWV_TMEASY_VELOCITY_Y] - t27;
+        const gic_real t29 = t5 * (motion[HMMWV_TMEASY_ACCELERATION_Z] + (t6 * motion[HMMWV_TMEASY_ALPHA_X] -
+            motion[HMMWV_TMEASY_OMEGA_X] * t27)) + t7 * (motion[HMMWV_TMEASY_ACCELERATION_Y] -
+            (motion[HMMWV_TMEASY_OMEGA_X] * t25 + t4 * motion[HMMWV_TMEASY_ALPHA_X]));
         const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
-        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
-        const gic_real t32 = GIC_FABS(m0[12]);
-        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_TMEASY_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_TMEASY_ACCELERATION_Z])) + GIC_FABS(motion[HMMWV_TMEASY_ALPHA_X]);
+        const gic_real t32 = GIC_FABS(m0[HMMWV_TMEASY_OMEGA_X]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[HMMWV_TMEASY_ALPHA_X]));
         const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
         const gic_real t35 = t17 + t22 + t34;
         worst[0] = t12;
@@ -1146,7 +1522,8 @@ static const gic_real hmmwv_tmeasy_piece[HMMWV_TMEASY_COORDINATE_ROOM] = {
 };
 
 /* start[] from old[], both with the coordinates in front. */
-static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *links, const gic_real *old, gic_real *start)
+static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *links, const gic_real *old,
+    gic_real *start)
 {
     const gic_real *const xd = self->xd;
     int status = GIC_OK; /* stays so where no subset can fail */
@@ -1156,129 +1533,140 @@ static int hmmwv_tmeasy_recover_piece(hmmwv_tmeasy *self, hmmwv_tmeasy_links *li
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = hmmwv_tmeasy_solve_rack(self, hmmwv_tmeasy_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[HMMWV_TMEASY_X_RACK];
+        links->rate[0] = xd[HMMWV_TMEASY_X_RACK];
+        status = hmmwv_tmeasy_solve_rack(self, hmmwv_tmeasy_k_rack[0], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_RACK, self->inertia + HMMWV_TMEASY_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = HMMWV_TMEASY_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_F_L];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_F_L];
+        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[0], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_LCA_F_L, self->inertia + HMMWV_TMEASY_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = HMMWV_TMEASY_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_F_R];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_F_R];
+        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[1], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_LCA_F_R, self->inertia + HMMWV_TMEASY_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = HMMWV_TMEASY_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: lca_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_R_L];
+        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[2], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_LCA_R_L, self->inertia + HMMWV_TMEASY_INERTIA_LCA_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 4;
+            self->head.subset = HMMWV_TMEASY_SUBSET_LCA_R_L;
             return status;
         }
     }
     /* stage 2: lca_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_R_R];
+        status = hmmwv_tmeasy_solve_lca_f_l(self, hmmwv_tmeasy_k_lca_f_l[3], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_LCA_R_R, self->inertia + HMMWV_TMEASY_INERTIA_LCA_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = HMMWV_TMEASY_SUBSET_LCA_R_R;
             return status;
         }
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_RACK] && links->same[HMMWV_TMEASY_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = hmmwv_tmeasy_solve_wheel_f_l(self, hmmwv_tmeasy_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + HMMWV_TMEASY_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_TMEASY_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[HMMWV_TMEASY_X_RACK];
+        links->rate[0] = xd[HMMWV_TMEASY_X_RACK];
+        links->x[1] = start[HMMWV_TMEASY_X_SPRING_F_L];
+        links->rate[1] = xd[HMMWV_TMEASY_X_SPRING_F_L];
+        status = hmmwv_tmeasy_solve_wheel_f_l(self, hmmwv_tmeasy_k_wheel_f_l[0], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_WHEEL_F_L, self->inertia + HMMWV_TMEASY_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = HMMWV_TMEASY_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_RACK] && links->same[HMMWV_TMEASY_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = hmmwv_tmeasy_solve_wheel_f_l(self, hmmwv_tmeasy_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
+        links->known[0] = self->motion + HMMWV_TMEASY_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_TMEASY_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[HMMWV_TMEASY_X_RACK];
+        links->rate[0] = xd[HMMWV_TMEASY_X_RACK];
+        links->x[1] = start[HMMWV_TMEASY_X_SPRING_F_R];
+        links->rate[1] = xd[HMMWV_TMEASY_X_SPRING_F_R];
+        status = hmmwv_tmeasy_solve_wheel_f_l(self, hmmwv_tmeasy_k_wheel_f_l[1], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_WHEEL_F_R, self->inertia + HMMWV_TMEASY_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = HMMWV_TMEASY_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     /* stage 3: wheel_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 90; /* lca_r_l */
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_tmeasy_solve_wheel_r_l(self, hmmwv_tmeasy_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
+        links->known[0] = self->motion + HMMWV_TMEASY_MOTION_LCA_R_L; /* lca_r_l */
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_R_L];
+        status = hmmwv_tmeasy_solve_wheel_r_l(self, hmmwv_tmeasy_k_wheel_r_l[0], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_WHEEL_R_L, self->inertia + HMMWV_TMEASY_INERTIA_WHEEL_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 8;
+            self->head.subset = HMMWV_TMEASY_SUBSET_WHEEL_R_L;
             return status;
         }
     }
     /* stage 3: wheel_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_TMEASY_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 120; /* lca_r_r */
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_tmeasy_solve_wheel_r_l(self, hmmwv_tmeasy_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
+        links->known[0] = self->motion + HMMWV_TMEASY_MOTION_LCA_R_R; /* lca_r_r */
+        links->x[0] = start[HMMWV_TMEASY_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_TMEASY_X_SPRING_R_R];
+        status = hmmwv_tmeasy_solve_wheel_r_l(self, hmmwv_tmeasy_k_wheel_r_l[1], links, start + 5, self->motion +
+            HMMWV_TMEASY_MOTION_WHEEL_R_R, self->inertia + HMMWV_TMEASY_INERTIA_WHEEL_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 9;
+            self->head.subset = HMMWV_TMEASY_SUBSET_WHEEL_R_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
-static int hmmwv_tmeasy_recover_way(hmmwv_tmeasy *self, hmmwv_tmeasy_links *links, const gic_real *way, int far, int32_t *last)
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
+static int hmmwv_tmeasy_recover_way(hmmwv_tmeasy *self, hmmwv_tmeasy_links *links, const gic_real *way, int far,
+    int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
@@ -1300,13 +1688,11 @@ static int hmmwv_tmeasy_recover_way(hmmwv_tmeasy *self, hmmwv_tmeasy_links *link
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (HMMWV_TMEASY_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1367,17 +1753,18 @@ static void hmmwv_tmeasy_gather(hmmwv_tmeasy *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 4 * sizeof *x); /* spring_f_l to spring_r_r */
-    memcpy(xd + 0, y + 17, 4 * sizeof *xd);
-    x[4] = u[0]; /* rack */
-    xd[4] = u[1];
+    memcpy(x + HMMWV_TMEASY_X_SPRING_F_L, y + HMMWV_TMEASY_STATE_SPRING_F_L, 4 * sizeof *x); /* spring_f_l to
+        spring_r_r */
+    memcpy(xd + HMMWV_TMEASY_X_SPRING_F_L, y + HMMWV_TMEASY_STATE_SPRING_F_L_RATE, 4 * sizeof *xd);
+    x[HMMWV_TMEASY_X_RACK] = u[HMMWV_TMEASY_INPUT_RACK]; /* rack */
+    xd[HMMWV_TMEASY_X_RACK] = u[HMMWV_TMEASY_INPUT_RACK_RATE];
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int hmmwv_tmeasy_orient(const hmmwv_tmeasy *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -1436,90 +1823,96 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
 {
-    gic_real hub[20]; /* Fz, kappa, tan alpha, camber, friction, V_x, deflection, loaded radius,
-                        * axes of the contact 8 11 14, centre to contact point 17 */
-    gic_real force[5] = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}; /* Fx Fy Mx My Mz */
+    gic_real contact[20]; /* HMMWV_TMEASY_CONTACT_* */
+    gic_real force[5] = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}; /* HMMWV_TMEASY_TIRE_* */
     (void)k, (void)torque;
     /* contact with the road, and slip */
     {
         gic_real road1[3];
-        if (!hmmwv_tmeasy_road_height(self, time, link[0], link[1], road1))
+        if (!hmmwv_tmeasy_road_height(self, time, link[HMMWV_TMEASY_LINK_C_X], link[HMMWV_TMEASY_LINK_C_Y], road1))
             return GIC_ERROR_ROAD;
         const gic_real t2 = road1[2] * road1[2] + road1[1] * road1[1];
         const gic_real t3 = R(1.0) / GIC_SQRT(R(1.0) + t2);
         const gic_real t4 = road1[1] * t3;
-        const gic_real t5 = link[6] * t3 + link[8] * t4;
+        const gic_real t5 = link[HMMWV_TMEASY_LINK_S_X] * t3 + link[HMMWV_TMEASY_LINK_S_Z] * t4;
         const gic_real t6 = road1[2] * t3;
-        const gic_real t7 = link[7] * t4 - link[6] * t6;
-        const gic_real t8 = link[8] * t6 + link[7] * t3;
+        const gic_real t7 = link[HMMWV_TMEASY_LINK_S_Y] * t4 - link[HMMWV_TMEASY_LINK_S_X] * t6;
+        const gic_real t8 = link[HMMWV_TMEASY_LINK_S_Z] * t6 + link[HMMWV_TMEASY_LINK_S_Y] * t3;
         const gic_real t9 = GIC_SQRT(t7 * t7 + (t5 * t5 + t8 * t8));
         const gic_real t10 = R(1.0) / GIC_MAX(t9, R(1e-06));
         const gic_real t11 = t7 * t10;
-        const gic_real t12 = link[0] + (link[8] * (t5 * t10) + link[7] * t11) * R(0.4699);
-        const gic_real t13 = link[1] + (link[8] * (t8 * t10) - link[6] * t11) * R(0.4699);
+        const gic_real t12 = link[HMMWV_TMEASY_LINK_C_X] + (link[HMMWV_TMEASY_LINK_S_Z] * (t5 * t10) +
+            link[HMMWV_TMEASY_LINK_S_Y] * t11) * R(0.4699);
+        const gic_real t13 = link[HMMWV_TMEASY_LINK_C_Y] + (link[HMMWV_TMEASY_LINK_S_Z] * (t8 * t10) -
+            link[HMMWV_TMEASY_LINK_S_X] * t11) * R(0.4699);
         gic_real road14[3];
         if (!hmmwv_tmeasy_road_height(self, time, t12, t13, road14))
             return GIC_ERROR_ROAD;
         const gic_real t15 = road14[2] * road14[2] + road14[1] * road14[1];
         const gic_real t16 = R(1.0) / GIC_SQRT(R(1.0) + t15);
         const gic_real t17 = road14[1] * t16;
-        const gic_real t18 = link[6] * t16 + link[8] * t17;
+        const gic_real t18 = link[HMMWV_TMEASY_LINK_S_X] * t16 + link[HMMWV_TMEASY_LINK_S_Z] * t17;
         const gic_real t19 = road14[2] * t16;
-        const gic_real t20 = link[7] * t17 - link[6] * t19;
-        const gic_real t21 = link[8] * t19 + link[7] * t16;
+        const gic_real t20 = link[HMMWV_TMEASY_LINK_S_Y] * t17 - link[HMMWV_TMEASY_LINK_S_X] * t19;
+        const gic_real t21 = link[HMMWV_TMEASY_LINK_S_Z] * t19 + link[HMMWV_TMEASY_LINK_S_Y] * t16;
         const gic_real t22 = GIC_SQRT(t20 * t20 + (t18 * t18 + t21 * t21));
         const gic_real t23 = R(1.0) / GIC_MAX(t22, R(1e-06));
         const gic_real t24 = t18 * t23;
         const gic_real t25 = t20 * t23;
-        const gic_real t26 = link[8] * t24 + link[7] * t25;
+        const gic_real t26 = link[HMMWV_TMEASY_LINK_S_Z] * t24 + link[HMMWV_TMEASY_LINK_S_Y] * t25;
         const gic_real t27 = t21 * t23;
-        const gic_real t28 = link[7] * t27 + link[6] * t24;
-        const gic_real t29 = link[8] * t27 - link[6] * t25;
+        const gic_real t28 = link[HMMWV_TMEASY_LINK_S_Y] * t27 + link[HMMWV_TMEASY_LINK_S_X] * t24;
+        const gic_real t29 = link[HMMWV_TMEASY_LINK_S_Z] * t27 - link[HMMWV_TMEASY_LINK_S_X] * t25;
         const gic_real t30 = GIC_MAX(t16 * t28 + (t19 * t29 + t17 * t26), R(0.05));
         const gic_real t31 = R(1.0) / t30;
-        const gic_real t32 = t16 * (link[2] - road14[0]) - (t19 * (link[1] - t13) + t17 * (link[0] - t12));
+        const gic_real t32 = t16 * (link[HMMWV_TMEASY_LINK_C_Z] - road14[0]) - (t19 * (link[HMMWV_TMEASY_LINK_C_Y] -
+            t13) + t17 * (link[HMMWV_TMEASY_LINK_C_X] - t12));
         const gic_real t33 = t31 * t32;
         const gic_real t34 = t26 * t33;
-        const gic_real t35 = link[0] + t34;
+        const gic_real t35 = link[HMMWV_TMEASY_LINK_C_X] + t34;
         const gic_real t36 = t29 * t33;
-        const gic_real t37 = link[1] + t36;
+        const gic_real t37 = link[HMMWV_TMEASY_LINK_C_Y] + t36;
         const gic_real t38 = hmmwv_tmeasy_road_friction(self, time, t35, t37);
         if (!(t38 > R(0.0)))
             return GIC_ERROR_ROAD;
-        const gic_real t39 = link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]);
-        const gic_real t40 = link[9] - link[6] * t39;
-        const gic_real t41 = link[10] - link[7] * t39;
-        const gic_real t42 = link[5] + (t36 * t40 - t34 * t41);
-        const gic_real t43 = link[11] - link[8] * t39;
+        const gic_real t39 = link[HMMWV_TMEASY_LINK_S_Z] * link[HMMWV_TMEASY_LINK_OMEGA_Z] +
+            (link[HMMWV_TMEASY_LINK_S_Y] * link[HMMWV_TMEASY_LINK_OMEGA_Y] + link[HMMWV_TMEASY_LINK_S_X] *
+            link[HMMWV_TMEASY_LINK_OMEGA_X]);
+        const gic_real t40 = link[HMMWV_TMEASY_LINK_OMEGA_X] - link[HMMWV_TMEASY_LINK_S_X] * t39;
+        const gic_real t41 = link[HMMWV_TMEASY_LINK_OMEGA_Y] - link[HMMWV_TMEASY_LINK_S_Y] * t39;
+        const gic_real t42 = link[HMMWV_TMEASY_LINK_V_Z] + (t36 * t40 - t34 * t41);
+        const gic_real t43 = link[HMMWV_TMEASY_LINK_OMEGA_Z] - link[HMMWV_TMEASY_LINK_S_Z] * t39;
         const gic_real t44 = t28 * t33;
-        const gic_real t45 = link[3] - (t36 * t43 + t44 * t41);
-        const gic_real t46 = link[4] + (t44 * t40 + t34 * t43);
+        const gic_real t45 = link[HMMWV_TMEASY_LINK_V_X] - (t36 * t43 + t44 * t41);
+        const gic_real t46 = link[HMMWV_TMEASY_LINK_V_Y] + (t44 * t40 + t34 * t43);
         const gic_real t47 = t25 * t42 + (t27 * t45 - t24 * t46);
         const gic_real t48 = GIC_FABS(t47);
         const gic_real t49 = GIC_MIN(GIC_MAX(t48, R(0.0)), R(1.0));
         const gic_real t50 = R(1.0) - (R(3.0) - (t49 + t49)) * (t49 * t49);
         const gic_real t51 = t50 * R(3.3333333333333335);
         const gic_real t52 = (GIC_MIN(t33, R(0.4699)) + R(0.9398)) * R(0.3333333333333333);
-        const gic_real t53 = t47 - fast[0] * t52;
+        const gic_real t53 = t47 - fast[HMMWV_TMEASY_FAST_SPIN] * t52;
         const gic_real t54 = R(0.4699) - t33;
         const gic_real t55 = GIC_MIN(GIC_MAX(t54 * R(100.0), R(0.0)), R(1.0));
         const gic_real t56 = (R(3.0) - (t55 + t55)) * (t55 * t55);
-        const gic_real t57 = fast[1] * (t48 + t51 * GIC_FABS(t53)) + t56 * t53;
+        const gic_real t57 = fast[HMMWV_TMEASY_FAST_SLIP_X] * (t48 + t51 * GIC_FABS(t53)) + t56 * t53;
         const gic_real t58 = t57 * R(4.256224728665674);
         const gic_real t59 = t19 * t27 + t17 * t24;
         const gic_real t60 = t17 * t25 + t16 * t27;
         const gic_real t61 = t16 * t24 - t19 * t25;
         const gic_real t62 = t59 * t42 + (t60 * t46 + t61 * t45);
-        const gic_real t63 = t56 * t62 - fast[2] * (t48 + t51 * GIC_FABS(t62));
+        const gic_real t63 = t56 * t62 - fast[HMMWV_TMEASY_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t62));
         const gic_real t64 = t63 * R(2.128112364332837);
-        const gic_real t65 = GIC_MAX(t54, R(0.0)) * R(411120.9) + GIC_MAX(t54 - R(0.25034999999999996), R(0.0)) * R(2055604.5);
+        const gic_real t65 = GIC_MAX(t54, R(0.0)) * R(411120.9) + GIC_MAX(t54 - R(0.25034999999999996), R(0.0)) *
+            R(2055604.5);
         const gic_real t66 = t31 * (t16 * t42 - (t19 * t46 + t17 * t45));
         const gic_real t67 = GIC_MAX(t65 - t66 * (t56 * R(3931.685)), R(0.0));
         const gic_real t68 = R(0.01) * t50;
-        const gic_real t69 = GIC_MIN(link[8] * t16 - (link[7] * t19 + link[6] * t17), R(1.0));
+        const gic_real t69 = GIC_MIN(link[HMMWV_TMEASY_LINK_S_Z] * t16 - (link[HMMWV_TMEASY_LINK_S_Y] * t19 +
+            link[HMMWV_TMEASY_LINK_S_X] * t17), R(1.0));
         const gic_real t70 = -t58;
-        const gic_real t71 = fast[1] - t68 * t58;
-        const gic_real t72 = fast[2] + t68 * t64;
+        const gic_real t71 = fast[HMMWV_TMEASY_FAST_SLIP_X] - t68 * t58;
+        const gic_real t72 = fast[HMMWV_TMEASY_FAST_SLIP_Y] + t68 * t64;
         const gic_real t73 = GIC_ASIN(GIC_MAX(t69, R(-1.0)));
         const gic_real t74 = -t24;
         const gic_real t75 = -t17;
@@ -1527,44 +1920,45 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t77 = -t44;
         const gic_real t78 = -t66;
         const gic_real t79 = road14[0];
-        const gic_real t80 = link[2] - t44;
-        rate[1] = t70;
-        rate[2] = t64;
-        hub[0] = t67;
-        hub[1] = t71;
-        hub[2] = t72;
-        hub[3] = t73;
-        hub[4] = t38;
-        hub[5] = t47;
-        hub[6] = t54;
-        hub[7] = t33;
-        hub[8] = t27;
-        hub[9] = t74;
-        hub[10] = t25;
-        hub[11] = t61;
-        hub[12] = t60;
-        hub[13] = t59;
-        hub[14] = t75;
-        hub[15] = t76;
-        hub[16] = t16;
-        hub[17] = t34;
-        hub[18] = t36;
-        hub[19] = t77;
-        grip[8] = t67;
-        grip[9] = t54;
-        grip[10] = t78;
-        grip[11] = t79;
-        grip[20] = t35;
-        grip[21] = t37;
-        grip[22] = t80;
-        grip[23] = t47;
-        grip[24] = t62;
-        grip[25] = t52;
+        const gic_real t80 = link[HMMWV_TMEASY_LINK_C_Z] - t44;
+        rate[HMMWV_TMEASY_FAST_SLIP_X] = t70;
+        rate[HMMWV_TMEASY_FAST_SLIP_Y] = t64;
+        contact[HMMWV_TMEASY_CONTACT_LOAD] = t67;
+        contact[HMMWV_TMEASY_CONTACT_KAPPA] = t71;
+        contact[HMMWV_TMEASY_CONTACT_TANGENT] = t72;
+        contact[HMMWV_TMEASY_CONTACT_CAMBER] = t73;
+        contact[HMMWV_TMEASY_CONTACT_FRICTION] = t38;
+        contact[HMMWV_TMEASY_CONTACT_SPEED] = t47;
+        contact[HMMWV_TMEASY_CONTACT_DEFLECTION] = t54;
+        contact[HMMWV_TMEASY_CONTACT_RADIUS] = t33;
+        contact[HMMWV_TMEASY_CONTACT_X_X] = t27;
+        contact[HMMWV_TMEASY_CONTACT_X_Y] = t74;
+        contact[HMMWV_TMEASY_CONTACT_X_Z] = t25;
+        contact[HMMWV_TMEASY_CONTACT_Y_X] = t61;
+        contact[HMMWV_TMEASY_CONTACT_Y_Y] = t60;
+        contact[HMMWV_TMEASY_CONTACT_Y_Z] = t59;
+        contact[HMMWV_TMEASY_CONTACT_N_X] = t75;
+        contact[HMMWV_TMEASY_CONTACT_N_Y] = t76;
+        contact[HMMWV_TMEASY_CONTACT_N_Z] = t16;
+        contact[HMMWV_TMEASY_CONTACT_ARM_X] = t34;
+        contact[HMMWV_TMEASY_CONTACT_ARM_Y] = t36;
+        contact[HMMWV_TMEASY_CONTACT_ARM_Z] = t77;
+        grip[HMMWV_TMEASY_GRIP_LOAD] = t67;
+        grip[HMMWV_TMEASY_GRIP_DEFLECTION] = t54;
+        grip[HMMWV_TMEASY_GRIP_DEFLECTION_RATE] = t78;
+        grip[HMMWV_TMEASY_GRIP_HEIGHT] = t79;
+        grip[HMMWV_TMEASY_GRIP_POINT_X] = t35;
+        grip[HMMWV_TMEASY_GRIP_POINT_Y] = t37;
+        grip[HMMWV_TMEASY_GRIP_POINT_Z] = t80;
+        grip[HMMWV_TMEASY_GRIP_SPEED_X] = t47;
+        grip[HMMWV_TMEASY_GRIP_SPEED_Y] = t62;
+        grip[HMMWV_TMEASY_GRIP_RADIUS] = t52;
     }
     /* the tire; a wheel in the air has none */
-    if (hub[0] > R(0.0)) {
-        const gic_real t1 = hub[4] * R(1.25);
-        const gic_real t2 = GIC_MAX(GIC_MIN(hub[0] * R(0.00011678386121779643), R(3.5)), R(0.001));
+    if (contact[0] > R(0.0)) {
+        const gic_real t1 = contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(1.25);
+        const gic_real t2 = GIC_MAX(GIC_MIN(contact[HMMWV_TMEASY_CONTACT_LOAD] * R(0.00011678386121779643), R(3.5)),
+            R(0.001));
         const gic_real t3 = t1 * (t2 * (R(8749.409) - t2 * R(1045.8619999999992)));
         const gic_real t4 = t2 * (R(180013.65000000002) - t2 * R(27797.45000000001));
         const gic_real t5 = t3 / t4;
@@ -1577,10 +1971,10 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t12 = t1 * (t10 * R(0.0004899999999999904) + R(0.33167));
         const gic_real t13 = t11 + t12;
         const gic_real t14 = t5 / t9 + t11 / t13;
-        const gic_real t15 = hub[1] / t14;
+        const gic_real t15 = contact[HMMWV_TMEASY_CONTACT_KAPPA] / t14;
         const gic_real t16 = R(5e-13) + t15 * t15;
         const gic_real t17 = t8 / t9 + t12 / t13;
-        const gic_real t18 = hub[2] / t17;
+        const gic_real t18 = contact[HMMWV_TMEASY_CONTACT_TANGENT] / t17;
         const gic_real t19 = R(5e-13) + t18 * t18;
         const gic_real t20 = t16 + t19;
         const gic_real t21 = GIC_SQRT(t20);
@@ -1590,8 +1984,8 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t25 = t24 * (t11 / t14);
         const gic_real t26 = GIC_SQRT(t23 * t23 + t25 * t25);
         const gic_real t27 = t21 - t26;
-        const gic_real t28 = t22 * (hub[4] * R(1.2870000000000001) / t17);
-        const gic_real t29 = t24 * (hub[4] * R(0.8333375) / t14);
+        const gic_real t28 = t22 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(1.2870000000000001) / t17);
+        const gic_real t29 = t24 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(0.8333375) / t14);
         const gic_real t30 = GIC_SQRT(t28 * t28 + t29 * t29);
         const gic_real t31 = t30 - t21;
         const gic_real t32 = t6 * t22;
@@ -1616,9 +2010,9 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t51 = t21 / t26;
         const gic_real t52 = t42 * t51 / (R(1.0) + t51 * (t42 / t34 - R(2.0) + t51));
         const gic_real t53 = (t27 > GIC_R(0) ? (t31 > GIC_R(0) ? (t46 - t30 > GIC_R(0) ? t48 : t50) : t37) : t52);
-        const gic_real t54 = hub[0] / (t2 * R(8562.827)) * t53 / t21;
+        const gic_real t54 = contact[HMMWV_TMEASY_CONTACT_LOAD] / (t2 * R(8562.827)) * t53 / t21;
         const gic_real t55 = t18 * t54;
-        const gic_real t56 = GIC_FABS(hub[2]);
+        const gic_real t56 = GIC_FABS(contact[HMMWV_TMEASY_CONTACT_TANGENT]);
         const gic_real t57 = t10 * R(0.0005399999999999849) + R(0.36484);
         const gic_real t58 = t56 - t57;
         const gic_real t59 = R(1.0296) - t56;
@@ -1632,73 +2026,98 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t67 = (t58 > GIC_R(0) ? (t59 > GIC_R(0) ? t64 : R(0.0)) : t61 * (t66 + (R(1.0) - t65) * t63));
         const gic_real t68 = t15 * t54;
         const gic_real t69 = -t55;
-        const gic_real t70 = hub[0] * R(-0.007048499999999999) * GIC_TANH(fast[0]);
-        const gic_real t71 = t55 * (GIC_SQRT(GIC_MAX(hub[6], R(0.0)) * R(3.7592)) * t67);
-        force[0] = t68;
-        force[1] = t69;
-        force[2] = R(0.0);
-        force[3] = t70;
-        force[4] = t71;
+        const gic_real t70 = contact[HMMWV_TMEASY_CONTACT_LOAD] * R(-0.007048499999999999) *
+            GIC_TANH(fast[HMMWV_TMEASY_FAST_SPIN]);
+        const gic_real t71 = t55 * (GIC_SQRT(GIC_MAX(contact[HMMWV_TMEASY_CONTACT_DEFLECTION], R(0.0)) * R(3.7592)) *
+            t67);
+        force[HMMWV_TMEASY_TIRE_FX] = t68;
+        force[HMMWV_TMEASY_TIRE_FY] = t69;
+        force[HMMWV_TMEASY_TIRE_MX] = R(0.0);
+        force[HMMWV_TMEASY_TIRE_MY] = t70;
+        force[HMMWV_TMEASY_TIRE_MZ] = t71;
     } else
         ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
     {
-        const gic_real t1 = fast[0] - (link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]));
+        const gic_real t1 = fast[HMMWV_TMEASY_FAST_SPIN] - (link[HMMWV_TMEASY_LINK_S_Z] *
+            link[HMMWV_TMEASY_LINK_OMEGA_Z] + (link[HMMWV_TMEASY_LINK_S_Y] * link[HMMWV_TMEASY_LINK_OMEGA_Y] +
+            link[HMMWV_TMEASY_LINK_S_X] * link[HMMWV_TMEASY_LINK_OMEGA_X]));
         const gic_real t2 = t1 * R(0.1);
         const gic_real t3 = R(10.0) * (t1 / GIC_SQRT(R(1.0) + t2 * t2));
-        const gic_real t4 = GIC_MIN(GIC_MAX((GIC_FABS(fast[3]) - R(0.7)) * R(3.333333333333333), R(0.0)), R(1.0));
-        const gic_real t5 = (fast[3] * t1 > GIC_R(0) ? (R(3.0) - (t4 + t4)) * (t4 * t4) : R(0.0));
-        const gic_real t6 = t3 - GIC_FABS(t3) * (fast[3] * t5);
-        const gic_real t7 = hub[0] * hub[15] + (hub[12] * force[1] + hub[9] * force[0]);
-        const gic_real t8 = hub[0] * hub[14] + (hub[11] * force[1] + hub[8] * force[0]);
-        const gic_real t9 = hub[16] * force[4] + (hub[13] * force[3] + hub[10] * force[2]) + (hub[17] * t7 - hub[18] * t8);
-        const gic_real t10 = hub[0] * hub[16] + (hub[13] * force[1] + hub[10] * force[0]);
-        const gic_real t11 = hub[15] * force[4] + (hub[12] * force[3] + hub[9] * force[2]) + (hub[19] * t8 - hub[17] * t10);
-        const gic_real t12 = hub[14] * force[4] + (hub[11] * force[3] + hub[8] * force[2]) + (hub[18] * t10 - hub[19] * t7);
-        const gic_real t13 = link[8] * t9 + (link[7] * t11 + link[6] * t12);
-        const gic_real t14 = GIC_MIN(GIC_MAX(fast[3] + R(0.01) * t6, R(-1.0)), R(1.0)) * GIC_MAX(torque[1], R(0.0));
-        const gic_real t15 = torque[0] + t13 - t14;
+        const gic_real t4 = GIC_MIN(GIC_MAX((GIC_FABS(fast[HMMWV_TMEASY_FAST_BRAKE]) - R(0.7)) * R(3.333333333333333),
+            R(0.0)), R(1.0));
+        const gic_real t5 = (fast[HMMWV_TMEASY_FAST_BRAKE] * t1 > GIC_R(0) ? (R(3.0) - (t4 + t4)) * (t4 * t4) : R(0.0));
+        const gic_real t6 = t3 - GIC_FABS(t3) * (fast[HMMWV_TMEASY_FAST_BRAKE] * t5);
+        const gic_real t7 = contact[HMMWV_TMEASY_CONTACT_LOAD] * contact[HMMWV_TMEASY_CONTACT_N_Y] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_Y] * force[HMMWV_TMEASY_TIRE_FY] + contact[HMMWV_TMEASY_CONTACT_X_Y] *
+            force[HMMWV_TMEASY_TIRE_FX]);
+        const gic_real t8 = contact[HMMWV_TMEASY_CONTACT_LOAD] * contact[HMMWV_TMEASY_CONTACT_N_X] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_X] * force[HMMWV_TMEASY_TIRE_FY] + contact[HMMWV_TMEASY_CONTACT_X_X] *
+            force[HMMWV_TMEASY_TIRE_FX]);
+        const gic_real t9 = contact[HMMWV_TMEASY_CONTACT_N_Z] * force[HMMWV_TMEASY_TIRE_MZ] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_Z] * force[HMMWV_TMEASY_TIRE_MY] + contact[HMMWV_TMEASY_CONTACT_X_Z] *
+            force[HMMWV_TMEASY_TIRE_MX]) + (contact[HMMWV_TMEASY_CONTACT_ARM_X] * t7 -
+            contact[HMMWV_TMEASY_CONTACT_ARM_Y] * t8);
+        const gic_real t10 = contact[HMMWV_TMEASY_CONTACT_LOAD] * contact[HMMWV_TMEASY_CONTACT_N_Z] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_Z] * force[HMMWV_TMEASY_TIRE_FY] + contact[HMMWV_TMEASY_CONTACT_X_Z] *
+            force[HMMWV_TMEASY_TIRE_FX]);
+        const gic_real t11 = contact[HMMWV_TMEASY_CONTACT_N_Y] * force[HMMWV_TMEASY_TIRE_MZ] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_Y] * force[HMMWV_TMEASY_TIRE_MY] + contact[HMMWV_TMEASY_CONTACT_X_Y] *
+            force[HMMWV_TMEASY_TIRE_MX]) + (contact[HMMWV_TMEASY_CONTACT_ARM_Z] * t8 -
+            contact[HMMWV_TMEASY_CONTACT_ARM_X] * t10);
+        const gic_real t12 = contact[HMMWV_TMEASY_CONTACT_N_X] * force[HMMWV_TMEASY_TIRE_MZ] +
+            (contact[HMMWV_TMEASY_CONTACT_Y_X] * force[HMMWV_TMEASY_TIRE_MY] + contact[HMMWV_TMEASY_CONTACT_X_X] *
+            force[HMMWV_TMEASY_TIRE_MX]) + (contact[HMMWV_TMEASY_CONTACT_ARM_Y] * t10 -
+            contact[HMMWV_TMEASY_CONTACT_ARM_Z] * t7);
+        const gic_real t13 = link[HMMWV_TMEASY_LINK_S_Z] * t9 + (link[HMMWV_TMEASY_LINK_S_Y] * t11 +
+            link[HMMWV_TMEASY_LINK_S_X] * t12);
+        const gic_real t14 = GIC_MIN(GIC_MAX(fast[HMMWV_TMEASY_FAST_BRAKE] + R(0.01) * t6, R(-1.0)), R(1.0)) *
+            GIC_MAX(torque[HMMWV_TMEASY_TORQUE_BRAKE], R(0.0));
+        const gic_real t15 = torque[HMMWV_TMEASY_TORQUE_DRIVE] + t13 - t14;
         const gic_real t16 = t14 - t13;
-        const gic_real t17 = fast[0] * R(7.38782);
-        const gic_real t18 = t12 + link[6] * t16 - (link[8] * link[10] - link[7] * link[11]) * t17;
-        const gic_real t19 = t11 + link[7] * t16 - (link[6] * link[11] - link[8] * link[9]) * t17;
-        const gic_real t20 = t9 + link[8] * t16 - (link[7] * link[9] - link[6] * link[10]) * t17;
+        const gic_real t17 = fast[HMMWV_TMEASY_FAST_SPIN] * R(7.38782);
+        const gic_real t18 = t12 + link[HMMWV_TMEASY_LINK_S_X] * t16 - (link[HMMWV_TMEASY_LINK_S_Z] *
+            link[HMMWV_TMEASY_LINK_OMEGA_Y] - link[HMMWV_TMEASY_LINK_S_Y] * link[HMMWV_TMEASY_LINK_OMEGA_Z]) * t17;
+        const gic_real t19 = t11 + link[HMMWV_TMEASY_LINK_S_Y] * t16 - (link[HMMWV_TMEASY_LINK_S_X] *
+            link[HMMWV_TMEASY_LINK_OMEGA_Z] - link[HMMWV_TMEASY_LINK_S_Z] * link[HMMWV_TMEASY_LINK_OMEGA_X]) * t17;
+        const gic_real t20 = t9 + link[HMMWV_TMEASY_LINK_S_Z] * t16 - (link[HMMWV_TMEASY_LINK_S_Y] *
+            link[HMMWV_TMEASY_LINK_OMEGA_X] - link[HMMWV_TMEASY_LINK_S_X] * link[HMMWV_TMEASY_LINK_OMEGA_Y]) * t17;
         const gic_real t21 = t15 * R(0.13535792696627694);
-        const gic_real t22 = torque[0];
-        const gic_real t23 = fast[0] * t15;
-        const gic_real t24 = force[0];
-        const gic_real t25 = force[1];
-        const gic_real t26 = force[2];
-        const gic_real t27 = force[3];
-        const gic_real t28 = force[4];
-        const gic_real t29 = hub[1];
-        const gic_real t30 = hub[2];
-        const gic_real t31 = hub[3];
-        rate[3] = t6;
-        rate[0] = t21;
-        grip[0] = t8;
-        grip[1] = t7;
-        grip[2] = t10;
-        grip[3] = t18;
-        grip[4] = t19;
-        grip[5] = t20;
-        grip[6] = t22;
-        grip[7] = t14;
-        grip[26] = t23;
-        grip[12] = t24;
-        grip[13] = t25;
-        grip[14] = t26;
-        grip[15] = t27;
-        grip[16] = t28;
-        grip[17] = t29;
-        grip[18] = t30;
-        grip[19] = t31;
+        const gic_real t22 = torque[HMMWV_TMEASY_TORQUE_DRIVE];
+        const gic_real t23 = fast[HMMWV_TMEASY_FAST_SPIN] * t15;
+        const gic_real t24 = force[HMMWV_TMEASY_TIRE_FX];
+        const gic_real t25 = force[HMMWV_TMEASY_TIRE_FY];
+        const gic_real t26 = force[HMMWV_TMEASY_TIRE_MX];
+        const gic_real t27 = force[HMMWV_TMEASY_TIRE_MY];
+        const gic_real t28 = force[HMMWV_TMEASY_TIRE_MZ];
+        const gic_real t29 = contact[HMMWV_TMEASY_CONTACT_KAPPA];
+        const gic_real t30 = contact[HMMWV_TMEASY_CONTACT_TANGENT];
+        const gic_real t31 = contact[HMMWV_TMEASY_CONTACT_CAMBER];
+        rate[HMMWV_TMEASY_FAST_BRAKE] = t6;
+        rate[HMMWV_TMEASY_FAST_SPIN] = t21;
+        grip[HMMWV_TMEASY_GRIP_FORCE_X] = t8;
+        grip[HMMWV_TMEASY_GRIP_FORCE_Y] = t7;
+        grip[HMMWV_TMEASY_GRIP_FORCE_Z] = t10;
+        grip[HMMWV_TMEASY_GRIP_TORQUE_X] = t18;
+        grip[HMMWV_TMEASY_GRIP_TORQUE_Y] = t19;
+        grip[HMMWV_TMEASY_GRIP_TORQUE_Z] = t20;
+        grip[HMMWV_TMEASY_GRIP_DRIVE] = t22;
+        grip[HMMWV_TMEASY_GRIP_BRAKE] = t14;
+        grip[HMMWV_TMEASY_GRIP_POWER] = t23;
+        grip[HMMWV_TMEASY_GRIP_FX] = t24;
+        grip[HMMWV_TMEASY_GRIP_FY] = t25;
+        grip[HMMWV_TMEASY_GRIP_MX] = t26;
+        grip[HMMWV_TMEASY_GRIP_MY] = t27;
+        grip[HMMWV_TMEASY_GRIP_MZ] = t28;
+        grip[HMMWV_TMEASY_GRIP_KAPPA] = t29;
+        grip[HMMWV_TMEASY_GRIP_TANGENT] = t30;
+        grip[HMMWV_TMEASY_GRIP_CAMBER] = t31;
     }
     return GIC_OK;
 }
 
-/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity (world);
- * then coordinates that formulas of wheels read. */
+/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity
+ * (world); then coordinates that formulas of wheels read. */
 static void hmmwv_tmeasy_link_wheels(const hmmwv_tmeasy *self, const gic_real *y, const gic_real *e, gic_real *link)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const m = self->motion;
@@ -1709,204 +2128,272 @@ static void hmmwv_tmeasy_link_wheels(const hmmwv_tmeasy *self, const gic_real *y
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[0] * t3;
         const gic_real t5 = t2 + t4;
-        const gic_real t6 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t7 = m[152] + t6;
+        const gic_real t6 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997));
+        const gic_real t7 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t6;
         const gic_real t8 = e[1] + e[1];
         const gic_real t9 = e[2] * t8;
         const gic_real t10 = e[0] * t1;
         const gic_real t11 = t9 - t10;
-        const gic_real t12 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t13 = m[151] + t12;
+        const gic_real t12 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997));
+        const gic_real t13 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t12;
         const gic_real t14 = e[2] * t3;
         const gic_real t15 = e[3] * t1;
         const gic_real t16 = R(1.0) - (t14 + t15);
-        const gic_real t17 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
+        const gic_real t17 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997));
         const gic_real t18 = R(1.653405) + t17;
-        const gic_real t19 = y[0] + (t5 * t7 + (t11 * t13 + t16 * t18));
+        const gic_real t19 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t7 + (t11 * t13 + t16 * t18));
         const gic_real t20 = e[3] * t3;
         const gic_real t21 = e[0] * t8;
         const gic_real t22 = t20 - t21;
         const gic_real t23 = e[1] * t8;
         const gic_real t24 = R(1.0) - (t23 + t15);
         const gic_real t25 = t9 + t10;
-        const gic_real t26 = y[1] + (t22 * t7 + (t24 * t13 + t25 * t18));
+        const gic_real t26 = y[HMMWV_TMEASY_STATE_R_Y] + (t22 * t7 + (t24 * t13 + t25 * t18));
         const gic_real t27 = R(1.0) - (t23 + t14);
         const gic_real t28 = t20 + t21;
         const gic_real t29 = t2 - t4;
-        const gic_real t30 = y[2] + (t27 * t7 + (t28 * t13 + t29 * t18));
-        const gic_real t31 = m[167] + (m[162] * t12 - m[163] * t17) + (y[14] * t13 - y[15] * t18);
-        const gic_real t32 = m[166] + (m[164] * t17 - m[162] * t6) + (y[16] * t18 - y[14] * t7);
-        const gic_real t33 = m[163] * t6 - m[164] * t12 + (y[15] * t7 - y[16] * t13);
-        const gic_real t34 = y[11] + (t5 * t31 + (t11 * t32 + t16 * t33));
-        const gic_real t35 = y[12] + (t22 * t31 + (t24 * t32 + t25 * t33));
-        const gic_real t36 = y[13] + (t27 * t31 + (t28 * t32 + t29 * t33));
-        const gic_real t37 = m[164] + y[16];
-        const gic_real t38 = m[163] + y[15];
-        const gic_real t39 = m[162] + y[14];
-        const gic_real t40 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t41 = m[188] + t40;
-        const gic_real t42 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t43 = m[187] + t42;
-        const gic_real t44 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
+        const gic_real t30 = y[HMMWV_TMEASY_STATE_R_Z] + (t27 * t7 + (t28 * t13 + t29 * t18));
+        const gic_real t31 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t12 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t17) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t13 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t18);
+        const gic_real t32 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t17 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t6) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t18 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t7);
+        const gic_real t33 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t6 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t12 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t7 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t13);
+        const gic_real t34 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t31 + (t11 * t32 + t16 * t33));
+        const gic_real t35 = y[HMMWV_TMEASY_STATE_V_Y] + (t22 * t31 + (t24 * t32 + t25 * t33));
+        const gic_real t36 = y[HMMWV_TMEASY_STATE_V_Z] + (t27 * t31 + (t28 * t32 + t29 * t33));
+        const gic_real t37 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t38 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t39 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t40 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997));
+        const gic_real t41 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t40;
+        const gic_real t42 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t42;
+        const gic_real t44 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997));
         const gic_real t45 = R(1.653405) + t44;
-        const gic_real t46 = y[0] + (t5 * t41 + (t11 * t43 + t16 * t45));
-        const gic_real t47 = y[1] + (t22 * t41 + (t24 * t43 + t25 * t45));
-        const gic_real t48 = y[2] + (t27 * t41 + (t28 * t43 + t29 * t45));
-        const gic_real t49 = m[203] + (m[198] * t42 - m[199] * t44) + (y[14] * t43 - y[15] * t45);
-        const gic_real t50 = m[202] + (m[200] * t44 - m[198] * t40) + (y[16] * t45 - y[14] * t41);
-        const gic_real t51 = m[199] * t40 - m[200] * t42 + (y[15] * t41 - y[16] * t43);
-        const gic_real t52 = y[11] + (t5 * t49 + (t11 * t50 + t16 * t51));
-        const gic_real t53 = y[12] + (t22 * t49 + (t24 * t50 + t25 * t51));
-        const gic_real t54 = y[13] + (t27 * t49 + (t28 * t50 + t29 * t51));
-        const gic_real t55 = m[200] + y[16];
-        const gic_real t56 = m[199] + y[15];
-        const gic_real t57 = m[198] + y[14];
-        const gic_real t58 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t59 = m[224] + t58;
-        const gic_real t60 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t61 = m[223] + t60;
+        const gic_real t46 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t41 + (t11 * t43 + t16 * t45));
+        const gic_real t47 = y[HMMWV_TMEASY_STATE_R_Y] + (t22 * t41 + (t24 * t43 + t25 * t45));
+        const gic_real t48 = y[HMMWV_TMEASY_STATE_R_Z] + (t27 * t41 + (t28 * t43 + t29 * t45));
+        const gic_real t49 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t42 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t44) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t43 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t45);
+        const gic_real t50 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t44 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t40) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t45 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t41);
+        const gic_real t51 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t40 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t42 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t41 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t43);
+        const gic_real t52 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t49 + (t11 * t50 + t16 * t51));
+        const gic_real t53 = y[HMMWV_TMEASY_STATE_V_Y] + (t22 * t49 + (t24 * t50 + t25 * t51));
+        const gic_real t54 = y[HMMWV_TMEASY_STATE_V_Z] + (t27 * t49 + (t28 * t50 + t29 * t51));
+        const gic_real t55 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t56 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t57 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t58 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t59 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t58;
+        const gic_real t60 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t61 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t60;
         const gic_real t62 = R(-1.653405) * t16;
         const gic_real t63 = R(-1.653405) * t25;
         const gic_real t64 = R(-1.653405) * t29;
-        const gic_real t65 = R(-1.653405) * y[15];
-        const gic_real t66 = m[239] + m[234] * t60 + (y[14] * t61 - t65);
-        const gic_real t67 = R(-1.653405) * y[16];
-        const gic_real t68 = m[238] - m[234] * t58 + (t67 - y[14] * t59);
-        const gic_real t69 = y[15] * t59 - y[16] * t61;
-        const gic_real t70 = y[11] + (t5 * t66 + (t11 * t68 + t16 * t69));
-        const gic_real t71 = y[12] + (t22 * t66 + (t24 * t68 + t25 * t69));
-        const gic_real t72 = y[13] + (t27 * t66 + (t28 * t68 + t29 * t69));
-        const gic_real t73 = y[16] * t5;
-        const gic_real t74 = y[15] * t11;
-        const gic_real t75 = m[234] + y[14];
-        const gic_real t76 = y[16] * t22;
-        const gic_real t77 = y[15] * t24;
-        const gic_real t78 = y[16] * t27;
-        const gic_real t79 = y[15] * t28;
-        const gic_real t80 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t81 = m[254] + t80;
-        const gic_real t82 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t83 = m[253] + t82;
-        const gic_real t84 = m[269] + m[264] * t82 + (y[14] * t83 - t65);
-        const gic_real t85 = m[268] - m[264] * t80 + (t67 - y[14] * t81);
-        const gic_real t86 = y[15] * t81 - y[16] * t83;
-        const gic_real t87 = y[11] + (t5 * t84 + (t11 * t85 + t16 * t86));
-        const gic_real t88 = y[12] + (t22 * t84 + (t24 * t85 + t25 * t86));
-        const gic_real t89 = y[13] + (t27 * t84 + (t28 * t85 + t29 * t86));
-        const gic_real t90 = m[264] + y[14];
-        const gic_real t91 = m[160] * t5 + (m[157] * t11 + m[154] * t16);
-        const gic_real t92 = m[160] * t22 + (m[157] * t24 + m[154] * t25);
-        const gic_real t93 = m[160] * t27 + (m[157] * t28 + m[154] * t29);
+        const gic_real t65 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t66 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t60 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t61 - t65);
+        const gic_real t67 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t68 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t58 + (t67 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t59);
+        const gic_real t69 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t59 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t61;
+        const gic_real t70 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t66 + (t11 * t68 + t16 * t69));
+        const gic_real t71 = y[HMMWV_TMEASY_STATE_V_Y] + (t22 * t66 + (t24 * t68 + t25 * t69));
+        const gic_real t72 = y[HMMWV_TMEASY_STATE_V_Z] + (t27 * t66 + (t28 * t68 + t29 * t69));
+        const gic_real t73 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t5;
+        const gic_real t74 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t11;
+        const gic_real t75 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t76 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t22;
+        const gic_real t77 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t24;
+        const gic_real t78 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t27;
+        const gic_real t79 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t28;
+        const gic_real t80 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
+        const gic_real t81 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t80;
+        const gic_real t82 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
+        const gic_real t83 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t82;
+        const gic_real t84 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t82 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t83 - t65);
+        const gic_real t85 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t80 + (t67 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t81);
+        const gic_real t86 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t81 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t83;
+        const gic_real t87 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t84 + (t11 * t85 + t16 * t86));
+        const gic_real t88 = y[HMMWV_TMEASY_STATE_V_Y] + (t22 * t84 + (t24 * t85 + t25 * t86));
+        const gic_real t89 = y[HMMWV_TMEASY_STATE_V_Z] + (t27 * t84 + (t28 * t85 + t29 * t86));
+        const gic_real t90 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t91 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t5 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t11 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t16);
+        const gic_real t92 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t22 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t24 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t25);
+        const gic_real t93 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t27 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t28 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t29);
         const gic_real t94 = t5 * t37 + (t11 * t38 + t16 * t39);
         const gic_real t95 = t22 * t37 + (t24 * t38 + t25 * t39);
         const gic_real t96 = t27 * t37 + (t28 * t38 + t29 * t39);
-        const gic_real t97 = m[196] * t5 + (m[193] * t11 + m[190] * t16);
-        const gic_real t98 = m[196] * t22 + (m[193] * t24 + m[190] * t25);
-        const gic_real t99 = m[196] * t27 + (m[193] * t28 + m[190] * t29);
+        const gic_real t97 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t5 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t11 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t16);
+        const gic_real t98 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t22 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t24 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t25);
+        const gic_real t99 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t27 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t28 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t29);
         const gic_real t100 = t5 * t55 + (t11 * t56 + t16 * t57);
         const gic_real t101 = t22 * t55 + (t24 * t56 + t25 * t57);
         const gic_real t102 = t27 * t55 + (t28 * t56 + t29 * t57);
-        const gic_real t103 = y[0] + (t5 * t59 + (t11 * t61 + t62));
-        const gic_real t104 = y[1] + (t22 * t59 + (t24 * t61 + t63));
-        const gic_real t105 = y[2] + (t27 * t59 + (t28 * t61 + t64));
-        const gic_real t106 = m[232] * t5 + m[229] * t11;
-        const gic_real t107 = m[232] * t22 + m[229] * t24;
-        const gic_real t108 = m[232] * t27 + m[229] * t28;
+        const gic_real t103 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t59 + (t11 * t61 + t62));
+        const gic_real t104 = y[HMMWV_TMEASY_STATE_R_Y] + (t22 * t59 + (t24 * t61 + t63));
+        const gic_real t105 = y[HMMWV_TMEASY_STATE_R_Z] + (t27 * t59 + (t28 * t61 + t64));
+        const gic_real t106 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t5 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t11;
+        const gic_real t107 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t22 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t24;
+        const gic_real t108 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t27 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t28;
         const gic_real t109 = t73 + (t74 + t16 * t75);
         const gic_real t110 = t76 + (t77 + t25 * t75);
         const gic_real t111 = t78 + (t79 + t29 * t75);
-        const gic_real t112 = y[0] + (t5 * t81 + (t62 + t11 * t83));
-        const gic_real t113 = y[1] + (t22 * t81 + (t63 + t24 * t83));
-        const gic_real t114 = y[2] + (t27 * t81 + (t64 + t28 * t83));
-        const gic_real t115 = m[262] * t5 + m[259] * t11;
-        const gic_real t116 = m[262] * t22 + m[259] * t24;
-        const gic_real t117 = m[262] * t27 + m[259] * t28;
+        const gic_real t112 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t81 + (t62 + t11 * t83));
+        const gic_real t113 = y[HMMWV_TMEASY_STATE_R_Y] + (t22 * t81 + (t63 + t24 * t83));
+        const gic_real t114 = y[HMMWV_TMEASY_STATE_R_Z] + (t27 * t81 + (t64 + t28 * t83));
+        const gic_real t115 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t5 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t11;
+        const gic_real t116 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t22 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t24;
+        const gic_real t117 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t27 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t28;
         const gic_real t118 = t73 + (t74 + t16 * t90);
         const gic_real t119 = t76 + (t77 + t25 * t90);
         const gic_real t120 = t78 + (t79 + t29 * t90);
-        link[0] = t19;
-        link[1] = t26;
-        link[2] = t30;
-        link[3] = t34;
-        link[4] = t35;
-        link[5] = t36;
-        link[6] = t91;
-        link[7] = t92;
-        link[8] = t93;
-        link[9] = t94;
-        link[10] = t95;
-        link[11] = t96;
-        link[12] = t46;
-        link[13] = t47;
-        link[14] = t48;
-        link[15] = t52;
-        link[16] = t53;
-        link[17] = t54;
-        link[18] = t97;
-        link[19] = t98;
-        link[20] = t99;
-        link[21] = t100;
-        link[22] = t101;
-        link[23] = t102;
-        link[24] = t103;
-        link[25] = t104;
-        link[26] = t105;
-        link[27] = t70;
-        link[28] = t71;
-        link[29] = t72;
-        link[30] = t106;
-        link[31] = t107;
-        link[32] = t108;
-        link[33] = t109;
-        link[34] = t110;
-        link[35] = t111;
-        link[36] = t112;
-        link[37] = t113;
-        link[38] = t114;
-        link[39] = t87;
-        link[40] = t88;
-        link[41] = t89;
-        link[42] = t115;
-        link[43] = t116;
-        link[44] = t117;
-        link[45] = t118;
-        link[46] = t119;
-        link[47] = t120;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_C_X] = t19;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_C_Y] = t26;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_C_Z] = t30;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_V_X] = t34;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_V_Y] = t35;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_V_Z] = t36;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_S_X] = t91;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_S_Y] = t92;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_S_Z] = t93;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_OMEGA_X] = t94;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_OMEGA_Y] = t95;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_L + HMMWV_TMEASY_LINK_OMEGA_Z] = t96;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_C_X] = t46;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_C_Y] = t47;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_C_Z] = t48;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_V_X] = t52;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_V_Y] = t53;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_V_Z] = t54;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_S_X] = t97;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_S_Y] = t98;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_S_Z] = t99;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_OMEGA_X] = t100;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_OMEGA_Y] = t101;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_F_R + HMMWV_TMEASY_LINK_OMEGA_Z] = t102;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_C_X] = t103;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_C_Y] = t104;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_C_Z] = t105;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_V_X] = t70;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_V_Y] = t71;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_V_Z] = t72;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_S_X] = t106;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_S_Y] = t107;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_S_Z] = t108;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_OMEGA_X] = t109;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_OMEGA_Y] = t110;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_L + HMMWV_TMEASY_LINK_OMEGA_Z] = t111;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_C_X] = t112;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_C_Y] = t113;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_C_Z] = t114;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_V_X] = t87;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_V_Y] = t88;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_V_Z] = t89;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_S_X] = t115;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_S_Y] = t116;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_S_Z] = t117;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_OMEGA_X] = t118;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_OMEGA_Y] = t119;
+        link[HMMWV_TMEASY_LINK_OF_TIRE_R_R + HMMWV_TMEASY_LINK_OMEGA_Z] = t120;
     }
 }
 
 /* All wheels at their links: rate[] of the fast states, and self->grip. */
-static int hmmwv_tmeasy_grip(hmmwv_tmeasy *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
+static int hmmwv_tmeasy_grip(hmmwv_tmeasy *self, gic_real time, const gic_real *link, const gic_real *fast,
+    gic_real *rate)
 {
     const gic_real *const u = self->input, *const p = self->parameter;
     gic_real *const grip = self->grip, torque[2 * HMMWV_TMEASY_ROLLING];
     int status = GIC_OK;
     (void)u, (void)p;
     {
-        const gic_real t1 = u[4] * R(0.25);
-        const gic_real t2 = R(4000.0) * u[3];
-        torque[0] = t1;
-        torque[1] = t2;
-        torque[2] = t1;
-        torque[3] = t2;
-        torque[4] = t1;
-        torque[5] = t2;
-        torque[6] = t1;
-        torque[7] = t2;
+        const gic_real t1 = u[HMMWV_TMEASY_INPUT_DRIVE_TORQUE] * R(0.25);
+        const gic_real t2 = R(4000.0) * u[HMMWV_TMEASY_INPUT_BRAKE];
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_F_L + HMMWV_TMEASY_TORQUE_DRIVE] = t1;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_F_L + HMMWV_TMEASY_TORQUE_BRAKE] = t2;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_F_R + HMMWV_TMEASY_TORQUE_DRIVE] = t1;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_F_R + HMMWV_TMEASY_TORQUE_BRAKE] = t2;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_R_L + HMMWV_TMEASY_TORQUE_DRIVE] = t1;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_R_L + HMMWV_TMEASY_TORQUE_BRAKE] = t2;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_R_R + HMMWV_TMEASY_TORQUE_DRIVE] = t1;
+        torque[HMMWV_TMEASY_TORQUE_OF_TIRE_R_R + HMMWV_TMEASY_TORQUE_BRAKE] = t2;
     }
     if (status == GIC_OK) /* tire_f_l */
-        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[0], time, link + 0, fast + 0, torque + 0, rate + 0, grip + 0);
+        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[0], time, link +
+            HMMWV_TMEASY_LINK_OF_TIRE_F_L, fast + HMMWV_TMEASY_FAST_OF_TIRE_F_L, torque +
+            HMMWV_TMEASY_TORQUE_OF_TIRE_F_L, rate + HMMWV_TMEASY_FAST_OF_TIRE_F_L, grip +
+            HMMWV_TMEASY_GRIP_OF_TIRE_F_L);
     if (status == GIC_OK) /* tire_f_r */
-        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[1], time, link + 12, fast + 4, torque + 2, rate + 4, grip + 27);
+        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[1], time, link +
+            HMMWV_TMEASY_LINK_OF_TIRE_F_R, fast + HMMWV_TMEASY_FAST_OF_TIRE_F_R, torque +
+            HMMWV_TMEASY_TORQUE_OF_TIRE_F_R, rate + HMMWV_TMEASY_FAST_OF_TIRE_F_R, grip +
+            HMMWV_TMEASY_GRIP_OF_TIRE_F_R);
     if (status == GIC_OK) /* tire_r_l */
-        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[2], time, link + 24, fast + 8, torque + 4, rate + 8, grip + 54);
+        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[2], time, link +
+            HMMWV_TMEASY_LINK_OF_TIRE_R_L, fast + HMMWV_TMEASY_FAST_OF_TIRE_R_L, torque +
+            HMMWV_TMEASY_TORQUE_OF_TIRE_R_L, rate + HMMWV_TMEASY_FAST_OF_TIRE_R_L, grip +
+            HMMWV_TMEASY_GRIP_OF_TIRE_R_L);
     if (status == GIC_OK) /* tire_r_r */
-        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[3], time, link + 36, fast + 12, torque + 6, rate + 12, grip + 81);
+        status = hmmwv_tmeasy_wheel_tire_f_l(self, hmmwv_tmeasy_k_wheel_tire_f_l[3], time, link +
+            HMMWV_TMEASY_LINK_OF_TIRE_R_R, fast + HMMWV_TMEASY_FAST_OF_TIRE_R_R, torque +
+            HMMWV_TMEASY_TORQUE_OF_TIRE_R_R, rate + HMMWV_TMEASY_FAST_OF_TIRE_R_R, grip +
+            HMMWV_TMEASY_GRIP_OF_TIRE_R_R);
     return status;
 }
 
 /* The wheels at a state of which the multibody system is recovered: rate[] of the fast states. */
-static int hmmwv_tmeasy_turn_wheels(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static int hmmwv_tmeasy_turn_wheels(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     gic_real link[HMMWV_TMEASY_LINKS];
     if (!GIC_BOUNDED(y + HMMWV_TMEASY_SLOW, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW))
@@ -1939,7 +2426,8 @@ static GIC_COLD int hmmwv_tmeasy_about(hmmwv_tmeasy *self, int status, int32_t s
 
 /* Applied forces, composite inertia, and elimination of 10 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -1949,54 +2437,114 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[91] + n[201];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 7] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 7];
         if (!(t1 > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, 4, 9);
-        const gic_real t2 = n[114] + n[224];
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, HMMWV_TMEASY_SUBSET_LCA_R_L, HMMWV_TMEASY_STATE_SPRING_R_L);
+        const gic_real t2 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 7] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 7];
         if (!(t2 > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t3 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
-        const gic_real t4 = t3 + n[182] + n[205] + R(1173.18332588);
-        const gic_real t5 = n[87] + n[197];
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, HMMWV_TMEASY_SUBSET_LCA_R_R, HMMWV_TMEASY_STATE_SPRING_R_R);
+        const gic_real t3 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_XX];
+        const gic_real t4 = t3 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_XX] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_XX] + R(1173.18332588);
+        const gic_real t5 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 3] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 3];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t6 = R(1.0) / t1;
         const gic_real t7 = t5 * t6;
-        const gic_real t8 = n[110] + n[220];
+        const gic_real t8 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 3] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 3];
         const gic_real t9 = R(1.0) / t2;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = t4 - t5 * t7 - t8 * t10;
         if (!(t11 - t4 * R(1e-06) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 14);
-        const gic_real t12 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
-        const gic_real t13 = t12 + n[181] + n[204] + R(444.4287600000002);
-        const gic_real t14 = n[85] + n[195];
-        const gic_real t15 = n[108] + n[218];
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_OMEGA_X);
+        const gic_real t12 = R(0.4919654879999997) + n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FIRST_Z];
+        const gic_real t13 = t12 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_FIRST_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_FIRST_Z] + R(444.4287600000002);
+        const gic_real t14 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 1] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 1];
+        const gic_real t15 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 1] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 1];
         const gic_real t16 = t13 + t14 * t7 + t15 * t10;
-        const gic_real t17 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t18 = n[88] + n[198];
-        const gic_real t19 = n[111] + n[221];
-        const gic_real t20 = t17 + n[185] + n[208] - t18 * t7 - t19 * t10;
+        const gic_real t17 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_XY];
+        const gic_real t18 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 4] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 4];
+        const gic_real t19 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 4] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 4];
+        const gic_real t20 = t17 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_XY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_XY] - t18 * t7 - t19 * t10;
         const gic_real t21 = R(1.0) / t11;
         const gic_real t22 = t20 * t21;
         const gic_real t23 = t18 * t6;
         const gic_real t24 = t19 * t9;
         const gic_real t25 = t16 * t22 - (t14 * t23 + t15 * t24);
-        const gic_real t26 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t27 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
-        const gic_real t28 = t27 + n[180] + n[203];
+        const gic_real t26 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_YZ];
+        const gic_real t27 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FIRST_Y];
+        const gic_real t28 = t27 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_FIRST_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_FIRST_Y];
         const gic_real t29 = t13 * R(0.00039159296886992533);
-        const gic_real t30 = n[89] + n[199];
-        const gic_real t31 = t26 + n[187] + n[210] + t28 * t29 - t30 * t23;
-        const gic_real t32 = n[112] + n[222];
-        const gic_real t33 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t34 = t33 + n[186] + n[209] + R(-24.88801056000001) - t30 * t7 - t32 * t10;
+        const gic_real t30 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 5] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 5];
+        const gic_real t31 = t26 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_YZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_YZ] + t28 * t29 - t30 * t23;
+        const gic_real t32 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 5] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 5];
+        const gic_real t33 = R(-0.7077651653802236) + n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_XZ];
+        const gic_real t34 = t33 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_XZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_XZ] + R(-24.88801056000001) - t30 * t7 - t32 * t10;
         const gic_real t35 = t31 - t32 * t24 - t34 * t22;
-        const gic_real t36 = R(-286.39676489400006) + n[115] + n[147] + R(116.84512);
+        const gic_real t36 = R(-286.39676489400006) + n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FIRST_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FIRST_X] + R(116.84512);
         const gic_real t37 = t30 * t6;
         const gic_real t38 = t32 * t9;
         const gic_real t39 = t34 * t21;
         const gic_real t40 = t36 - t14 * t37 - t15 * t38 + t16 * t39;
-        const gic_real t41 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
-        const gic_real t42 = t41 + n[184] + n[207] + R(3576.74332672);
+        const gic_real t41 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_ZZ];
+        const gic_real t42 = t41 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_ZZ] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_ZZ] + R(3576.74332672);
         const gic_real t43 = t28 * R(0.00039159296886992533);
         const gic_real t44 = t42 - t28 * t43 - t30 * t37 - t32 * t38;
         const gic_real t45 = t44 - t34 * t39;
@@ -2006,8 +2554,14 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
         const gic_real t49 = t16 * t21;
         const gic_real t50 = R(2553.672) - t14 * t47 - t15 * t48 - t16 * t49;
         const gic_real t51 = t25 * t40 - t35 * t50;
-        const gic_real t52 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
-        const gic_real t53 = t52 + n[183] + n[206] + R(3056.8666525999997);
+        const gic_real t52 = R(19.803070388473838) + n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_SECOND_YY];
+        const gic_real t53 = t52 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_SECOND_YY] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_SECOND_YY] + R(3056.8666525999997);
         const gic_real t54 = t53 - t13 * t29 - t18 * t23 - t19 * t24;
         const gic_real t55 = t54 - t20 * t22;
         const gic_real t56 = t45 * t50 - t40 * t40;
@@ -2015,17 +2569,19 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
         const gic_real t58 = t55 * t45;
         const gic_real t59 = t58 - t35 * t35;
         if (!(t57 - t59 * R(0.002553672) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 12);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_V_Y);
         const gic_real t60 = t55 * t50 - t25 * t25;
         if (!(t57 - R(1e-06) * (t42 * t60) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 16);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_OMEGA_Z);
         if (!(t57 - R(1e-06) * (t53 * t56) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 15);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_OMEGA_Y);
         if (!(t57 - R(1e-06) * (t50 * t58) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t61 = n[86] + n[196];
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_OMEGA_Y);
+        const gic_real t61 = n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 2] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 2];
         const gic_real t62 = t61 * t6;
-        const gic_real t63 = n[109] + n[219];
+        const gic_real t63 = n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 2] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 2];
         const gic_real t64 = t63 * t9;
         const gic_real t65 = t28 - t61 * t7 - t63 * t10;
         const gic_real t66 = t65 * t21;
@@ -2040,55 +2596,77 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
         const gic_real t75 = t69 * t72 - (t70 * t51 + t71 * t60);
         const gic_real t76 = t68 * (t69 * t73 - (t70 * t74 + t71 * t75));
         const gic_real t77 = t67 - t76;
-        const gic_real t78 = n[45] + n[146];
-        const gic_real t79 = n[137] * R(0.00039159296886992533);
-        const gic_real t80 = n[41] + n[140];
+        const gic_real t78 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 7] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 16];
+        const gic_real t79 = n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 7] *
+            R(0.00039159296886992533);
+        const gic_real t80 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 3] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 10];
         const gic_real t81 = t80 * t21;
-        const gic_real t82 = n[42] + n[141] - n[137] * t29 - t80 * t22;
-        const gic_real t83 = n[43] + n[142] + n[137] * t43 - t80 * t39;
-        const gic_real t84 = n[39] + n[138] + t80 * t49;
+        const gic_real t82 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 4] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 11] -
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 7] * t29 - t80 * t22;
+        const gic_real t83 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 5] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 12] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 7] * t43 - t80 * t39;
+        const gic_real t84 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 1] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 8] + t80 * t49;
         const gic_real t85 = t82 * t56 + t83 * t51 + t84 * t46;
         const gic_real t86 = t82 * t51 + t83 * t60 + t84 * t72;
         const gic_real t87 = t82 * t46 + t83 * t72 + t84 * t59;
         const gic_real t88 = t68 * (t82 * t85 + t83 * t86 + t84 * t87);
-        const gic_real t89 = t78 - n[137] * t79 - t80 * t81 - t88;
-        const gic_real t90 = n[68] + n[178];
-        const gic_real t91 = n[169] * R(0.00039159296886992533);
-        const gic_real t92 = n[64] + n[172];
+        const gic_real t89 = t78 - n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 7] * t79 - t80 * t81 -
+            t88;
+        const gic_real t90 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 7] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 16];
+        const gic_real t91 = n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 7] *
+            R(0.00039159296886992533);
+        const gic_real t92 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 3] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 10];
         const gic_real t93 = t92 * t21;
-        const gic_real t94 = n[65] + n[173] - n[169] * t29 - t92 * t22;
-        const gic_real t95 = n[66] + n[174] + n[169] * t43 - t92 * t39;
-        const gic_real t96 = n[62] + n[170] + t92 * t49;
+        const gic_real t94 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 4] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 11] -
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 7] * t29 - t92 * t22;
+        const gic_real t95 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 5] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 12] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 7] * t43 - t92 * t39;
+        const gic_real t96 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 1] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 8] + t92 * t49;
         const gic_real t97 = t94 * t56 + t95 * t51 + t96 * t46;
         const gic_real t98 = t94 * t51 + t95 * t60 + t96 * t72;
         const gic_real t99 = t94 * t46 + t95 * t72 + t96 * t59;
         const gic_real t100 = t68 * (t94 * t97 + t95 * t98 + t96 * t99);
-        const gic_real t101 = t90 - n[169] * t91 - t92 * t93 - t100;
+        const gic_real t101 = t90 - n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 7] * t91 - t92 *
+            t93 - t100;
         const gic_real t102 = t68 * (t82 * t97 + t83 * t98 + t84 * t99);
-        const gic_real t103 = n[169] * t79 + t92 * t81 + t102;
+        const gic_real t103 = n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 7] * t79 + t92 * t81 +
+            t102;
         const gic_real t104 = t89 * t101 - t103 * t103;
         const gic_real t105 = t68 * (t69 * t87 - (t70 * t85 + t71 * t86));
-        const gic_real t106 = n[40] + n[139] - t80 * t66 - t105;
+        const gic_real t106 = n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 2] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 9] - t80 * t66 - t105;
         const gic_real t107 = t68 * (t69 * t99 - (t70 * t97 + t71 * t98));
-        const gic_real t108 = n[63] + n[171] - t92 * t66 - t107;
+        const gic_real t108 = n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 2] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 9] - t92 * t66 - t107;
         const gic_real t109 = t106 * t101 + t108 * t103;
         const gic_real t110 = t108 * t89 + t106 * t103;
         const gic_real t111 = t77 * t104 - t106 * t109 - t108 * t110;
         const gic_real t112 = t77 * t89;
         const gic_real t113 = t112 - t106 * t106;
         if (!(t111 - R(1e-06) * (t90 * t113) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, 3, 8);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, HMMWV_TMEASY_SUBSET_LCA_F_R, HMMWV_TMEASY_STATE_SPRING_F_R);
         const gic_real t114 = t77 * t101 - t108 * t108;
         if (!(t111 - R(1e-06) * (t78 * t114) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, 2, 7);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, HMMWV_TMEASY_SUBSET_LCA_F_L, HMMWV_TMEASY_STATE_SPRING_F_L);
         if (!(t111 - t104 * R(0.002553672) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 13);
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_V_Z);
         if (!(t111 - R(1e-06) * (t101 * t112) > R(0.0)))
-            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, 13);
-        const gic_real t115 = y[16] * R(0.5);
-        const gic_real t116 = y[15] * R(0.5);
-        const gic_real t117 = y[14] * R(0.5);
-        const gic_real t118 = -(e[3] * t115 + (e[2] * t116 + e[1] * t117));
+            return hmmwv_tmeasy_about(self, GIC_ERROR_MASS, -1, HMMWV_TMEASY_STATE_V_Z);
+        /* rates of the state */
+        const gic_real t115 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t116 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t117 = y[HMMWV_TMEASY_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t115 + (e[2] * t116 + e[1] * t117));
         const gic_real t119 = e[3] + e[3];
         const gic_real t120 = e[1] * t119;
         const gic_real t121 = e[2] + e[2];
@@ -2102,157 +2680,351 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
         const gic_real t129 = e[3] * t121;
         const gic_real t130 = e[0] * t125;
         const gic_real t131 = t129 - t130;
-        const gic_real t132 = t128 * self->grip[83] + (t131 * self->grip[82] + t123 * self->grip[81]);
-        const gic_real t133 = t128 * self->grip[56] + (t131 * self->grip[55] + t123 * self->grip[54]);
-        const gic_real t134 = t128 * self->grip[2] + (t131 * self->grip[1] + t123 * self->grip[0]);
-        const gic_real t135 = t128 * self->grip[29] + (t131 * self->grip[28] + t123 * self->grip[27]);
-        const gic_real t136 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t137 = y[16] * R(0.056) - y[14] * R(0.21300000000000008);
-        const gic_real t138 = y[15] * R(0.21300000000000008);
-        const gic_real t139 = t136 + n[190] + n[213] + R(2086.52) * (y[14] * t137 - y[15] * t138);
-        const gic_real t140 = t132 + (t133 + (t134 + t135)) - t139 - (n[132] + n[164]) * u[2];
+        /* wheel tire_r_r */
+        const gic_real t132 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        /* wheel tire_r_l */
+        const gic_real t133 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        /* wheel tire_f_l */
+        const gic_real t134 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        /* wheel tire_f_r */
+        const gic_real t135 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t136 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FORCE_Z];
+        const gic_real t137 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t138 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t139 = t136 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_FORCE_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_FORCE_Z] + R(2086.52) * (y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t137 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t138);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
+        const gic_real t140 = t132 + (t133 + (t134 + t135)) - t139 -
+            (n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 2] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 2]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
         const gic_real t141 = t129 + t130;
         const gic_real t142 = e[3] * t119;
         const gic_real t143 = R(1.0) - (t126 + t142);
         const gic_real t144 = e[2] * t125;
         const gic_real t145 = e[0] * t119;
         const gic_real t146 = t144 - t145;
-        const gic_real t147 = t141 * self->grip[56] + (t143 * self->grip[55] + t146 * self->grip[54]);
+        const gic_real t147 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t148 = t120 - t122;
         const gic_real t149 = t144 + t145;
         const gic_real t150 = R(1.0) - (t127 + t142);
-        const gic_real t151 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t152 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t153 = t148 * self->grip[59] + (t149 * self->grip[58] + t150 * self->grip[57]) + (t151 * t133 - t152 * t147);
-        const gic_real t154 = m[251] * t133 + m[250] * t147 + m[246] * t153 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4));
-        const gic_real t155 = t154 - (n[90] + n[200]);
-        const gic_real t156 = t141 * self->grip[83] + (t143 * self->grip[82] + t146 * self->grip[81]);
-        const gic_real t157 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t158 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t159 = t148 * self->grip[86] + (t149 * self->grip[85] + t150 * self->grip[84]) + (t157 * t132 - t158 * t156);
-        const gic_real t160 = m[281] * t132 + m[280] * t156 + m[276] * t159 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4));
-        const gic_real t161 = t160 - (n[113] + n[223]);
-        const gic_real t162 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t163 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t164 = t141 * self->grip[29] + (t143 * self->grip[28] + t146 * self->grip[27]);
-        const gic_real t165 = t148 * self->grip[32] + (t149 * self->grip[31] + t150 * self->grip[30]) + (t162 * t135 - t163 * t164);
-        const gic_real t166 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t167 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t168 = t141 * self->grip[2] + (t143 * self->grip[1] + t146 * self->grip[0]);
-        const gic_real t169 = t148 * self->grip[5] + (t149 * self->grip[4] + t150 * self->grip[3]) + (t166 * t134 - t167 * t168);
-        const gic_real t170 = m[151] * t134 - m[152] * t168 - (m[154] * self->grip[6] + m[190] * self->grip[33]);
-        const gic_real t171 = t165 + (t169 + t170 + (m[187] * t135 - m[188] * t164));
-        const gic_real t172 = t153 + (t171 + (m[223] * t133 - m[224] * t147)) + (m[253] * t132 - m[254] * t156);
-        const gic_real t173 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t174 = y[16] * R(3576.74332672) + y[14] * R(-24.88801056000001);
-        const gic_real t175 = y[15] * R(3056.8666525999997);
-        const gic_real t176 = t173 + n[191] + n[214] + (y[15] * t174 - y[16] * t175);
-        const gic_real t177 = t159 + t172 - t176 - (R(-0.4919654879999997) + n[133] + n[165]) * u[2];
+        const gic_real t151 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t152 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t153 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t151 * t133 - t152 * t147);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t154 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] * t133 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] * t147 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t153 - ((x[HMMWV_TMEASY_X_SPRING_R_L] -
+            R(0.33727)) * R(369167.2) + xd[HMMWV_TMEASY_X_SPRING_R_L] * R(24780.4));
+        const gic_real t155 = t154 - (n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_COORDINATE + 6] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_COORDINATE + 6]);
+        const gic_real t156 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t157 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
+        const gic_real t159 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t157 * t132 - t158 * t156);
+        const gic_real t160 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] * t132 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] * t156 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t159 - (R(369167.2) *
+            (x[HMMWV_TMEASY_X_SPRING_R_R] - R(0.33727)) + xd[HMMWV_TMEASY_X_SPRING_R_R] * R(24780.4));
+        const gic_real t161 = t160 - (n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_COORDINATE + 6] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_COORDINATE + 6]);
+        const gic_real t162 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997));
+        const gic_real t163 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997));
+        const gic_real t164 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t165 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t162 * t135 - t163 * t164);
+        const gic_real t166 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997));
+        const gic_real t167 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997));
+        const gic_real t168 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t169 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t166 * t134 - t167 * t168);
+        const gic_real t170 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t134 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t168 -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]);
+        const gic_real t171 = t165 + (t169 + t170 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t135 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t164));
+        const gic_real t172 = t153 + (t171 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t133 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t147)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t132 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t156);
+        const gic_real t173 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_MOMENT_X];
+        const gic_real t174 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3576.74332672) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t175 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t176 = t173 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_MOMENT_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_MOMENT_X] + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t174 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t175);
+        const gic_real t177 = t159 + t172 - t176 - (R(-0.4919654879999997) +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 3] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 3]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        /* accelerations */
         const gic_real t178 = t177 - t155 * t7 - t161 * t10;
         const gic_real t179 = t140 - t155 * t62 - t161 * t64 - t66 * t178;
-        const gic_real t180 = t148 * self->grip[83] + (t149 * self->grip[82] + t150 * self->grip[81]);
-        const gic_real t181 = t141 * self->grip[86] + (t143 * self->grip[85] + t146 * self->grip[84]) + t158 * t180;
-        const gic_real t182 = t148 * self->grip[56] + (t149 * self->grip[55] + t150 * self->grip[54]);
-        const gic_real t183 = t141 * self->grip[59] + (t143 * self->grip[58] + t146 * self->grip[57]) + t152 * t182;
-        const gic_real t184 = t148 * self->grip[29] + (t149 * self->grip[28] + t150 * self->grip[27]);
-        const gic_real t185 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t186 = t141 * self->grip[32] + (t143 * self->grip[31] + t146 * self->grip[30]) + (t163 * t184 - t185 * t135);
-        const gic_real t187 = t148 * self->grip[2] + (t149 * self->grip[1] + t150 * self->grip[0]);
-        const gic_real t188 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t189 = t141 * self->grip[5] + (t143 * self->grip[4] + t146 * self->grip[3]) + (t167 * t187 - t188 * t134);
-        const gic_real t190 = m[157] * self->grip[6] + m[193] * self->grip[33] + m[229] * self->grip[60] + m[259] * self->grip[87];
-        const gic_real t191 = t189 + (m[152] * t187 - R(1.653405) * t134 - t190) + (m[188] * t184 - R(1.653405) * t135);
-        const gic_real t192 = t183 + (t186 + t191 + (m[224] * t182 - R(-1.653405) * t133));
-        const gic_real t193 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t194 = y[16] * R(-24.88801056000001) + y[14] * R(1173.18332588);
-        const gic_real t195 = t193 + n[192] + n[215] + (y[16] * t194 - y[14] * t174);
-        const gic_real t196 = t181 + (t192 + (m[254] * t180 - R(-1.653405) * t132)) - t195;
-        const gic_real t197 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t198 = y[15] * R(0.056);
-        const gic_real t199 = t197 + n[188] + n[211] - R(2086.52) * (y[16] * t137 + y[15] * t198);
-        const gic_real t200 = t180 + (t182 + (t187 + t184)) - t199 - (n[130] + n[162]) * u[2];
-        const gic_real t201 = t196 - (n[134] + n[166]) * u[2] - t200 * t29 - t155 * t23;
+        const gic_real t180 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t181 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + t158 * t180;
+        const gic_real t182 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t183 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + t152 * t182;
+        const gic_real t184 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t185 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997));
+        const gic_real t186 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t163 * t184 - t185 * t135);
+        const gic_real t187 = t148 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t149 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t150 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t188 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997));
+        const gic_real t189 = t141 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t143 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t146 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t167 * t187 - t188 * t134);
+        const gic_real t190 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t191 = t189 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t187 - R(1.653405) * t134 -
+            t190) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t184 - R(1.653405) * t135);
+        const gic_real t192 = t183 + (t186 + t191 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t182 -
+            R(-1.653405) * t133));
+        const gic_real t193 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_MOMENT_Y];
+        const gic_real t194 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(-24.88801056000001) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t195 = t193 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_MOMENT_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_MOMENT_Y] + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t194 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t174);
+        const gic_real t196 = t181 + (t192 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t180 -
+            R(-1.653405) * t132)) - t195;
+        const gic_real t197 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FORCE_X];
+        const gic_real t198 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t199 = t197 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_FORCE_X] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_FORCE_X] - R(2086.52) * (y[HMMWV_TMEASY_STATE_OMEGA_Z] *
+            t137 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t198);
+        const gic_real t200 = t180 + (t182 + (t187 + t184)) - t199 -
+            (n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 0] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 0]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t201 = t196 - (n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 4] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 4]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] - t200 * t29 - t155 * t23;
         const gic_real t202 = t201 - t161 * t24 - t22 * t178;
-        const gic_real t203 = t128 * self->grip[86] + (t131 * self->grip[85] + t123 * self->grip[84]) - t157 * t180;
-        const gic_real t204 = t128 * self->grip[59] + (t131 * self->grip[58] + t123 * self->grip[57]) - t151 * t182;
-        const gic_real t205 = t128 * self->grip[32] + (t131 * self->grip[31] + t123 * self->grip[30]) + (t185 * t164 - t162 * t184);
-        const gic_real t206 = t128 * self->grip[5] + (t131 * self->grip[4] + t123 * self->grip[3]) + (t188 * t168 - t166 * t187);
-        const gic_real t207 = m[160] * self->grip[6] + m[196] * self->grip[33] + m[232] * self->grip[60] + m[262] * self->grip[87];
-        const gic_real t208 = t206 + (R(1.653405) * t168 - m[151] * t187 - t207) + (R(1.653405) * t164 - m[187] * t184);
-        const gic_real t209 = t204 + (t205 + t208 + (R(-1.653405) * t147 - m[223] * t182));
-        const gic_real t210 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t211 = t210 + n[193] + n[216] + (y[14] * t175 - y[15] * t194);
-        const gic_real t212 = t203 + (t209 + (R(-1.653405) * t156 - m[253] * t180)) - t211;
-        const gic_real t213 = t212 - (R(13.051414655999999) + n[135] + n[167]) * u[2] + t200 * t43;
+        const gic_real t203 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) - t157 * t180;
+        const gic_real t204 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) - t151 * t182;
+        const gic_real t205 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t185 * t164 - t162 * t184);
+        const gic_real t206 = t128 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t188 * t168 - t166 * t187);
+        const gic_real t207 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t208 = t206 + (R(1.653405) * t168 - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t187 -
+            t207) + (R(1.653405) * t164 - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t184);
+        const gic_real t209 = t204 + (t205 + t208 + (R(-1.653405) * t147 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t182));
+        const gic_real t210 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_MOMENT_Z];
+        const gic_real t211 = t210 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_MOMENT_Z] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_MOMENT_Z] + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t175 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t194);
+        const gic_real t212 = t203 + (t209 + (R(-1.653405) * t156 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t180)) - t211;
+        const gic_real t213 = t212 - (R(13.051414655999999) +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 5] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 5]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] + t200 * t43;
         const gic_real t214 = t213 - t155 * t37 - t161 * t38 - t39 * t178;
-        const gic_real t215 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t216 = t215 + n[189] + n[212] + R(2086.52) * (y[14] * t198 + y[16] * t138);
-        const gic_real t217 = t156 + (t147 + (t168 + t164)) - t216 - (R(9.072) + n[131] + n[163]) * u[2];
+        const gic_real t215 = n[HMMWV_TMEASY_INERTIA_RACK + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_L + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_LCA_R_R + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_FORCE_Y];
+        const gic_real t216 = t215 + n[HMMWV_TMEASY_INERTIA_WHEEL_R_L + HMMWV_TMEASY_I_FORCE_Y] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_R_R + HMMWV_TMEASY_I_FORCE_Y] + R(2086.52) * (y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t198 + y[HMMWV_TMEASY_STATE_OMEGA_Z] * t138);
+        const gic_real t217 = t156 + (t147 + (t168 + t164)) - t216 - (R(9.072) +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 1] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 1]) *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
         const gic_real t218 = t217 - t155 * t47 - t161 * t48 + t49 * t178;
         const gic_real t219 = t68 * (t74 * t202 + t75 * t214 + t73 * t218);
         const gic_real t220 = t179 - t219;
-        const gic_real t221 = m[185] * t134 + m[184] * t168 + (m[182] * t206 + (m[181] * t189 + m[180] * t169));
-        const gic_real t222 = t221 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[143]);
-        const gic_real t223 = t222 - n[145] * u[2] - t200 * t79 - t81 * t178;
+        const gic_real t221 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] * t134 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] * t168 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t206 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t189 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t169));
+        const gic_real t222 = t221 - ((x[HMMWV_TMEASY_X_SPRING_F_L] - R(0.31903)) * R(167070.9) +
+            xd[HMMWV_TMEASY_X_SPRING_F_L] * R(17490.8)) -
+            (n[HMMWV_TMEASY_INERTIA_LCA_F_L + HMMWV_TMEASY_I_COORDINATE + 6] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 13]);
+        const gic_real t223 = t222 - n[HMMWV_TMEASY_INERTIA_WHEEL_F_L + HMMWV_TMEASY_I_COORDINATE + 15] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] - t200 * t79 - t81 * t178;
         const gic_real t224 = t68 * (t85 * t202 + t86 * t214 + t87 * t218);
         const gic_real t225 = t223 - t224;
-        const gic_real t226 = m[221] * t135 + m[220] * t164 + (m[218] * t205 + (m[217] * t186 + m[216] * t165));
-        const gic_real t227 = t226 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) - (n[67] + n[175]);
-        const gic_real t228 = t227 - n[177] * u[2] - t200 * t91 - t93 * t178;
+        const gic_real t226 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] * t135 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] * t164 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t205 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t186 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t165));
+        const gic_real t227 = t226 - (R(167070.9) * (x[HMMWV_TMEASY_X_SPRING_F_R] - R(0.31903)) +
+            xd[HMMWV_TMEASY_X_SPRING_F_R] * R(17490.8)) -
+            (n[HMMWV_TMEASY_INERTIA_LCA_F_R + HMMWV_TMEASY_I_COORDINATE + 6] +
+            n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 13]);
+        const gic_real t228 = t227 - n[HMMWV_TMEASY_INERTIA_WHEEL_F_R + HMMWV_TMEASY_I_COORDINATE + 15] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] - t200 * t91 - t93 * t178;
         const gic_real t229 = t68 * (t97 * t202 + t98 * t214 + t99 * t218);
         const gic_real t230 = t228 - t229;
         const gic_real t231 = t124 * (t104 * t220 - t109 * t225 - t110 * t230);
         const gic_real t232 = t46 * t202 + t72 * t214 + t59 * t218 - t73 * t231;
         const gic_real t233 = t77 * t103 + t106 * t108;
-        const gic_real t234 = t124 * (t114 * t225 - t109 * t220 + t233 * t230);
-        const gic_real t235 = t124 * (t233 * t225 - t110 * t220 + t113 * t230);
-        const gic_real t236 = t68 * (t232 - t87 * t234 - t99 * t235);
+        const gic_real rate_of_spring_f_l_rate = t124 * (t114 * t225 - t109 * t220 + t233 * t230);
+        const gic_real rate_of_spring_f_r_rate = t124 * (t233 * t225 - t110 * t220 + t113 * t230);
+        const gic_real t236 = t68 * (t232 - t87 * rate_of_spring_f_l_rate - t99 * rate_of_spring_f_r_rate);
         const gic_real t237 = t56 * t202 + t51 * t214 + t46 * t218 - t74 * t231;
-        const gic_real t238 = t68 * (t237 - t85 * t234 - t97 * t235);
+        const gic_real rate_of_omega_y = t68 * (t237 - t85 * rate_of_spring_f_l_rate - t97 * rate_of_spring_f_r_rate);
         const gic_real t239 = t51 * t202 + t60 * t214 + t72 * t218 - t75 * t231;
-        const gic_real t240 = t68 * (t239 - t86 * t234 - t98 * t235);
-        const gic_real t241 = t200 * R(0.00039159296886992533) - t29 * t238 + t43 * t240 - t79 * t234;
-        const gic_real t242 = t241 - t91 * t235;
-        const gic_real t243 = t21 * t178 - t22 * t238 - t39 * t240 + t49 * t236;
-        const gic_real t244 = t243 - t66 * t231 - t81 * t234 - t93 * t235;
-        const gic_real t245 = R(-9.81) + (t128 * t231 + (t141 * t236 + t148 * t242));
-        const gic_real t246 = t155 * t6 - t7 * t244 - t23 * t238 - t37 * t240;
-        const gic_real t247 = t161 * t9 - t10 * t244 - t24 * t238 - t38 * t240;
-        const gic_real t248 = y[11];
-        const gic_real t249 = y[12];
-        const gic_real t250 = y[13];
-        const gic_real t251 = e[2] * t115 - e[3] * t116 + e[0] * t117;
-        const gic_real t252 = e[3] * t117 - e[1] * t115 + e[0] * t116;
-        const gic_real t253 = e[1] * t116 - e[2] * t117 + e[0] * t115;
-        const gic_real t254 = t123 * t231 + (t146 * t236 + t150 * t242);
-        const gic_real t255 = t131 * t231 + (t143 * t236 + t149 * t242);
-        const gic_real t256 = xd[0];
-        const gic_real t257 = xd[1];
-        const gic_real t258 = xd[2];
-        const gic_real t259 = t246 - t47 * t236 - t62 * t231;
-        const gic_real t260 = xd[3];
-        const gic_real t261 = t247 - t48 * t236 - t64 * t231;
-        rate[0] = t248;
-        rate[1] = t249;
-        rate[2] = t250;
-        rate[3] = t118;
-        rate[4] = t251;
-        rate[5] = t252;
-        rate[6] = t253;
-        rate[11] = t254;
-        rate[14] = t244;
-        rate[12] = t255;
-        rate[15] = t238;
-        rate[13] = t245;
-        rate[16] = t240;
-        rate[7] = t256;
-        rate[17] = t234;
-        rate[8] = t257;
-        rate[18] = t235;
-        rate[9] = t258;
-        rate[19] = t259;
-        rate[10] = t260;
-        rate[20] = t261;
+        const gic_real rate_of_omega_z = t68 * (t239 - t86 * rate_of_spring_f_l_rate - t98 * rate_of_spring_f_r_rate);
+        const gic_real t241 = t200 * R(0.00039159296886992533) - t29 * rate_of_omega_y + t43 * rate_of_omega_z - t79 *
+            rate_of_spring_f_l_rate;
+        const gic_real t242 = t241 - t91 * rate_of_spring_f_r_rate;
+        const gic_real t243 = t21 * t178 - t22 * rate_of_omega_y - t39 * rate_of_omega_z + t49 * t236;
+        const gic_real rate_of_omega_x = t243 - t66 * t231 - t81 * rate_of_spring_f_l_rate - t93 *
+            rate_of_spring_f_r_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t128 * t231 + (t141 * t236 + t148 * t242));
+        const gic_real t246 = t155 * t6 - t7 * rate_of_omega_x - t23 * rate_of_omega_y - t37 * rate_of_omega_z;
+        const gic_real t247 = t161 * t9 - t10 * rate_of_omega_x - t24 * rate_of_omega_y - t38 * rate_of_omega_z;
+        const gic_real rate_of_r_x = y[HMMWV_TMEASY_STATE_V_X];
+        const gic_real rate_of_r_y = y[HMMWV_TMEASY_STATE_V_Y];
+        const gic_real rate_of_r_z = y[HMMWV_TMEASY_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t115 - e[3] * t116 + e[0] * t117;
+        const gic_real rate_of_e2 = e[3] * t117 - e[1] * t115 + e[0] * t116;
+        const gic_real rate_of_e3 = e[1] * t116 - e[2] * t117 + e[0] * t115;
+        const gic_real rate_of_v_x = t123 * t231 + (t146 * t236 + t150 * t242);
+        const gic_real rate_of_v_y = t131 * t231 + (t143 * t236 + t149 * t242);
+        const gic_real rate_of_spring_f_l = xd[HMMWV_TMEASY_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_r = xd[HMMWV_TMEASY_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[HMMWV_TMEASY_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_l_rate = t246 - t47 * t236 - t62 * t231;
+        const gic_real rate_of_spring_r_r = xd[HMMWV_TMEASY_X_SPRING_R_R];
+        const gic_real rate_of_spring_r_r_rate = t247 - t48 * t236 - t64 * t231;
+        rate[HMMWV_TMEASY_STATE_R_X] = rate_of_r_x;
+        rate[HMMWV_TMEASY_STATE_R_Y] = rate_of_r_y;
+        rate[HMMWV_TMEASY_STATE_R_Z] = rate_of_r_z;
+        rate[HMMWV_TMEASY_STATE_E0] = rate_of_e0;
+        rate[HMMWV_TMEASY_STATE_E1] = rate_of_e1;
+        rate[HMMWV_TMEASY_STATE_E2] = rate_of_e2;
+        rate[HMMWV_TMEASY_STATE_E3] = rate_of_e3;
+        rate[HMMWV_TMEASY_STATE_V_X] = rate_of_v_x;
+        rate[HMMWV_TMEASY_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[HMMWV_TMEASY_STATE_V_Y] = rate_of_v_y;
+        rate[HMMWV_TMEASY_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[HMMWV_TMEASY_STATE_V_Z] = rate_of_v_z;
+        rate[HMMWV_TMEASY_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[HMMWV_TMEASY_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[HMMWV_TMEASY_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[HMMWV_TMEASY_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[HMMWV_TMEASY_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -2264,8 +3036,8 @@ static GIC_APART int hmmwv_tmeasy_dynamics(hmmwv_tmeasy *self, gic_real time, co
     return GIC_OK;
 }
 
-static int hmmwv_tmeasy_measure(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int hmmwv_tmeasy_measure(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2282,11 +3054,12 @@ static int hmmwv_tmeasy_measure(const hmmwv_tmeasy *self, gic_real time, const g
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[13] - R(-9.81);
+        const gic_real t10 = rate[HMMWV_TMEASY_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = t9 * t10 + (t13 * rate[12] + t5 * rate[11]);
+        const gic_real t14 = t9 * t10 + (t13 * rate[HMMWV_TMEASY_STATE_V_Y] + t5 * rate[HMMWV_TMEASY_STATE_V_X]);
+        /* output chassis_acceleration */
         const gic_real t15 = R(-9.81) * t9 + t14;
         const gic_real t16 = e[2] * t6;
         const gic_real t17 = e[0] * t1;
@@ -2294,653 +3067,1013 @@ static int hmmwv_tmeasy_measure(const hmmwv_tmeasy *self, gic_real time, const g
         const gic_real t19 = t11 + t12;
         const gic_real t20 = e[3] * t1;
         const gic_real t21 = R(1.0) - (t7 + t20);
-        const gic_real t22 = t19 * t10 + (t21 * rate[12] + t18 * rate[11]);
+        const gic_real t22 = t19 * t10 + (t21 * rate[HMMWV_TMEASY_STATE_V_Y] + t18 * rate[HMMWV_TMEASY_STATE_V_X]);
         const gic_real t23 = R(-9.81) * t19 + t22;
         const gic_real t24 = R(1.0) - (t8 + t20);
         const gic_real t25 = t2 - t4;
         const gic_real t26 = t16 + t17;
-        const gic_real t27 = t25 * t10 + (t26 * rate[12] + t24 * rate[11]);
+        const gic_real t27 = t25 * t10 + (t26 * rate[HMMWV_TMEASY_STATE_V_Y] + t24 * rate[HMMWV_TMEASY_STATE_V_X]);
         const gic_real t28 = R(-9.81) * t25 + t27;
-        const gic_real t29 = m[161] * R(0.09182100000000004);
-        const gic_real t30 = m[159] * R(-0.004825999999999997);
-        const gic_real t31 = t29 + (m[160] * R(0.12319000000000002) + t30);
-        const gic_real t32 = m[152] + t31;
-        const gic_real t33 = m[158] * R(0.09182100000000004);
-        const gic_real t34 = m[156] * R(-0.004825999999999997);
-        const gic_real t35 = t33 + (m[157] * R(0.12319000000000002) + t34);
-        const gic_real t36 = m[151] + t35;
-        const gic_real t37 = m[155] * R(0.09182100000000004);
-        const gic_real t38 = m[153] * R(-0.004825999999999997);
-        const gic_real t39 = t37 + (m[154] * R(0.12319000000000002) + t38);
+        /* wheel tire_f_l */
+        const gic_real t29 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t30 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t31 = t29 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            t30);
+        const gic_real t32 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t31;
+        const gic_real t33 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t34 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t35 = t33 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            t34);
+        const gic_real t36 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t35;
+        const gic_real t37 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t38 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t39 = t37 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            t38);
         const gic_real t40 = R(1.653405) + t39;
-        const gic_real t41 = y[0] + (t5 * t32 + (t18 * t36 + t24 * t40));
-        const gic_real t42 = y[1] + (t13 * t32 + (t21 * t36 + t26 * t40));
-        const gic_real t43 = y[2] + (t9 * t32 + (t19 * t36 + t25 * t40));
-        const gic_real t44 = m[197] * R(0.09182100000000004);
-        const gic_real t45 = m[195] * R(-0.004825999999999997);
-        const gic_real t46 = t44 + (m[196] * R(-0.12319000000000002) + t45);
-        const gic_real t47 = m[188] + t46;
-        const gic_real t48 = m[194] * R(0.09182100000000004);
-        const gic_real t49 = m[192] * R(-0.004825999999999997);
-        const gic_real t50 = t48 + (m[193] * R(-0.12319000000000002) + t49);
-        const gic_real t51 = m[187] + t50;
-        const gic_real t52 = m[191] * R(0.09182100000000004);
-        const gic_real t53 = m[189] * R(-0.004825999999999997);
-        const gic_real t54 = t52 + (m[190] * R(-0.12319000000000002) + t53);
+        /* output wheel_f_l */
+        const gic_real output_wheel_f_l_x = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t32 + (t18 * t36 + t24 * t40));
+        const gic_real output_wheel_f_l_y = y[HMMWV_TMEASY_STATE_R_Y] + (t13 * t32 + (t21 * t36 + t26 * t40));
+        const gic_real output_wheel_f_l_z = y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t32 + (t19 * t36 + t25 * t40));
+        /* wheel tire_f_r */
+        const gic_real t44 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t45 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t46 = t44 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            t45);
+        const gic_real t47 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t46;
+        const gic_real t48 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t49 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t50 = t48 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            t49);
+        const gic_real t51 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t50;
+        const gic_real t52 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t53 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t54 = t52 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            t53);
         const gic_real t55 = R(1.653405) + t54;
-        const gic_real t56 = y[0] + (t5 * t47 + (t18 * t51 + t24 * t55));
-        const gic_real t57 = y[1] + (t13 * t47 + (t21 * t51 + t26 * t55));
-        const gic_real t58 = y[2] + (t9 * t47 + (t19 * t51 + t25 * t55));
-        const gic_real t59 = m[233] * R(0.09182100000000004);
-        const gic_real t60 = t59 + m[232] * R(0.12319000000000002);
-        const gic_real t61 = m[224] + t60;
-        const gic_real t62 = m[230] * R(0.09182100000000004);
-        const gic_real t63 = t62 + m[229] * R(0.12319000000000002);
-        const gic_real t64 = m[223] + t63;
+        /* output wheel_f_r */
+        const gic_real output_wheel_f_r_x = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t47 + (t18 * t51 + t24 * t55));
+        const gic_real output_wheel_f_r_y = y[HMMWV_TMEASY_STATE_R_Y] + (t13 * t47 + (t21 * t51 + t26 * t55));
+        const gic_real output_wheel_f_r_z = y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t47 + (t19 * t51 + t25 * t55));
+        /* wheel tire_r_l */
+        const gic_real t59 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t60 = t59 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t61 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t60;
+        const gic_real t62 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t63 = t62 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t64 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t63;
+        /* output wheel_r_l */
         const gic_real t65 = R(-1.653405) * t24;
         const gic_real t66 = R(-1.653405) * t26;
         const gic_real t67 = R(-1.653405) * t25;
-        const gic_real t68 = m[263] * R(0.09182100000000004);
-        const gic_real t69 = t68 + m[262] * R(-0.12319000000000002);
-        const gic_real t70 = m[254] + t69;
-        const gic_real t71 = m[260] * R(0.09182100000000004);
-        const gic_real t72 = t71 + m[259] * R(-0.12319000000000002);
-        const gic_real t73 = m[253] + t72;
-        const gic_real t74 = x[0] - R(0.31903);
+        /* wheel tire_r_r */
+        const gic_real t68 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t69 = t68 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
+        const gic_real t70 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t69;
+        const gic_real t71 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t72 = t71 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
+        const gic_real t73 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t72;
+        /* force spring_f_l */
+        const gic_real t74 = x[HMMWV_TMEASY_X_SPRING_F_L] - R(0.31903);
         const gic_real t75 = t74 * R(167070.9);
-        const gic_real t76 = xd[0] * R(17490.8);
-        const gic_real t77 = x[1] - R(0.31903);
+        const gic_real t76 = xd[HMMWV_TMEASY_X_SPRING_F_L] * R(17490.8);
+        /* force spring_f_r */
+        const gic_real t77 = x[HMMWV_TMEASY_X_SPRING_F_R] - R(0.31903);
         const gic_real t78 = R(167070.9) * t77;
-        const gic_real t79 = xd[1] * R(17490.8);
-        const gic_real t80 = x[2] - R(0.33727);
+        const gic_real t79 = xd[HMMWV_TMEASY_X_SPRING_F_R] * R(17490.8);
+        /* force spring_r_l */
+        const gic_real t80 = x[HMMWV_TMEASY_X_SPRING_R_L] - R(0.33727);
         const gic_real t81 = t80 * R(369167.2);
-        const gic_real t82 = xd[2] * R(24780.4);
-        const gic_real t83 = x[3] - R(0.33727);
+        const gic_real t82 = xd[HMMWV_TMEASY_X_SPRING_R_L] * R(24780.4);
+        /* force spring_r_r */
+        const gic_real t83 = x[HMMWV_TMEASY_X_SPRING_R_R] - R(0.33727);
         const gic_real t84 = R(369167.2) * t83;
-        const gic_real t85 = xd[3] * R(24780.4);
-        const gic_real t86 = R(0.05422899999999997) * y[15] - m[1] * y[16];
-        const gic_real t87 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t88 = y[16] * t86 - y[14] * t87 + (R(1.438648) * rate[16] - R(0.05422899999999997) * rate[14]);
-        const gic_real t89 = m[162] + y[14];
-        const gic_real t90 = m[164] + y[16];
-        const gic_real t91 = m[158] * R(4.7728205);
-        const gic_real t92 = m[157] * R(0.19340000000000046);
-        const gic_real t93 = m[156] * R(4.8947505);
-        const gic_real t94 = m[161] * t91 + (m[160] * t92 + m[159] * t93);
-        const gic_real t95 = m[163] + y[15];
-        const gic_real t96 = m[158] * t91 + (m[157] * t92 + m[156] * t93);
-        const gic_real t97 = m[155] * R(4.7728205);
-        const gic_real t98 = m[154] * R(0.19340000000000046);
-        const gic_real t99 = m[153] * R(4.8947505);
-        const gic_real t100 = m[158] * t97 + (m[157] * t98 + m[156] * t99);
+        const gic_real t85 = xd[HMMWV_TMEASY_X_SPRING_R_R] * R(24780.4);
+        /* inertia of rack */
+        const gic_real t86 = R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t87 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t88 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t86 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t87 + (R(1.438648) *
+            rate[HMMWV_TMEASY_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t89 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t90 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t91 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t92 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t93 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t94 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t91 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t92 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t93);
+        const gic_real t95 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t96 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t91 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t92 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t93);
+        const gic_real t97 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t98 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t99 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t100 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t97 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t98 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t99);
         const gic_real t101 = t90 * t94 + (t95 * t96 + t89 * t100);
-        const gic_real t102 = m[161] * t97 + (m[160] * t98 + m[159] * t99);
-        const gic_real t103 = m[155] * t97 + (m[154] * t98 + m[153] * t99);
+        const gic_real t102 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t97 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t98 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t99);
+        const gic_real t103 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * t97 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t98 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * t99);
         const gic_real t104 = t90 * t102 + (t95 * t100 + t89 * t103);
-        const gic_real t105 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t106 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t107 = t106 + m[182] * rate[17];
-        const gic_real t108 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t109 = t108 + m[181] * rate[17];
-        const gic_real t110 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t111 = t110 + m[180] * rate[17];
+        const gic_real t105 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t106 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t107 = t106 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t108 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t109 = t108 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t111 = t110 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
         const gic_real t112 = t89 * t101 - t95 * t104 + (t105 * t107 + (t94 * t109 + t102 * t111));
-        const gic_real t113 = t37 + (t38 + m[154] * R(0.08910630000000008));
-        const gic_real t114 = t29 + (t30 + m[160] * R(0.08910630000000008));
-        const gic_real t115 = t33 + (t34 + m[157] * R(0.08910630000000008));
-        const gic_real t116 = m[163] * t114 - m[164] * t115;
-        const gic_real t117 = m[162] * t115 - m[163] * t113;
-        const gic_real t118 = m[164] * t116 - m[162] * t117 + (m[170] * t113 - m[168] * t114);
-        const gic_real t119 = m[152] + t114;
-        const gic_real t120 = m[151] + t115;
-        const gic_real t121 = t116 + (y[15] * t119 - y[16] * t120);
+        const gic_real t113 = t37 + (t38 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t114 = t29 + (t30 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t115 = t33 + (t34 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t116 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t114 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t115;
+        const gic_real t117 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t115 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t113;
+        const gic_real t118 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t116 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t117 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t114);
+        const gic_real t119 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t114;
+        const gic_real t120 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t115;
+        const gic_real t121 = t116 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t119 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t120);
         const gic_real t122 = t116 + t121;
-        const gic_real t123 = m[167] + t117;
+        const gic_real t123 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] + t117;
         const gic_real t124 = R(1.653405) + t113;
-        const gic_real t125 = t123 + (y[14] * t120 - y[15] * t124);
+        const gic_real t125 = t123 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t120 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t124);
         const gic_real t126 = t123 + t125;
-        const gic_real t127 = y[16] * t122 - y[14] * t126 + (rate[16] * t124 - rate[14] * t119);
-        const gic_real t128 = m[172] + t118 + (t22 + t127) + u[2] * (m[176] * t113 - m[174] * t114);
-        const gic_real t129 = t128 + rate[17] * (m[184] + (m[182] * t113 - m[180] * t114));
+        const gic_real t127 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t122 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t126 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t124 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t119);
+        const gic_real t128 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Y] + t118 + (t22 + t127) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t114);
+        const gic_real t129 = t128 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t114));
         const gic_real t130 = t129 * R(90.555);
-        const gic_real t131 = m[164] * t113 - m[162] * t114;
-        const gic_real t132 = m[163] * t117 - m[164] * t131 + (m[169] * t114 - m[170] * t115);
-        const gic_real t133 = m[166] + t131;
-        const gic_real t134 = t133 + (y[16] * t124 - y[14] * t119);
+        const gic_real t131 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t114;
+        const gic_real t132 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t117 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t131 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t114 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t115);
+        const gic_real t133 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] + t131;
+        const gic_real t134 = t133 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t124 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t119);
         const gic_real t135 = t133 + t134;
-        const gic_real t136 = y[15] * t126 - y[16] * t135 + (rate[15] * t119 - rate[16] * t120);
-        const gic_real t137 = t132 + (t27 + t136) + u[2] * (m[175] * t114 - m[176] * t115);
-        const gic_real t138 = (t137 + rate[17] * (m[181] * t114 - m[182] * t115)) * R(90.555);
+        const gic_real t136 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t126 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t135 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t119 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t120);
+        const gic_real t137 = t132 + (t27 + t136) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t114 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t115);
+        const gic_real t138 = (t137 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t114 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t115)) * R(90.555);
         const gic_real t139 = t90 * t105 + (t95 * t94 + t89 * t102);
         const gic_real t140 = t90 * t104 - t89 * t139 + (t94 * t107 + (t96 * t109 + t100 * t111));
-        const gic_real t141 = m[162] * t131 - m[163] * t116 + (m[168] * t115 - m[169] * t113);
-        const gic_real t142 = y[14] * t135 - y[15] * t122 + (rate[14] * t120 - rate[15] * t124);
-        const gic_real t143 = m[173] + t141 + (t14 + t142) + u[2] * (m[174] * t115 - m[175] * t113);
-        const gic_real t144 = t143 + rate[17] * (m[185] + (m[180] * t115 - m[181] * t113));
+        const gic_real t141 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t131 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t116 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t115 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t113);
+        const gic_real t142 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t135 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t122 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t120 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t124);
+        const gic_real t143 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Z] + t141 + (t14 + t142) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t115 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t113);
+        const gic_real t144 = t143 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t115 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t113));
         const gic_real t145 = t144 * R(90.555);
         const gic_real t146 = t95 * t139 - t90 * t101 + (t102 * t107 + (t100 * t109 + t103 * t111));
-        const gic_real t147 = m[175] * (t140 + (t114 * t138 - t113 * t145)) + m[174] * (t146 + (t115 * t145 - t114 * t130));
-        const gic_real t148 = m[176] * (t112 + (t113 * t130 - t115 * t138)) + t147;
-        const gic_real t149 = m[198] + y[14];
-        const gic_real t150 = m[200] + y[16];
-        const gic_real t151 = m[194] * R(4.7728205);
-        const gic_real t152 = m[193] * R(0.19340000000000046);
-        const gic_real t153 = m[192] * R(4.8947505);
-        const gic_real t154 = m[197] * t151 + (m[196] * t152 + m[195] * t153);
-        const gic_real t155 = m[199] + y[15];
-        const gic_real t156 = m[194] * t151 + (m[193] * t152 + m[192] * t153);
-        const gic_real t157 = m[191] * R(4.7728205);
-        const gic_real t158 = m[190] * R(0.19340000000000046);
-        const gic_real t159 = m[189] * R(4.8947505);
-        const gic_real t160 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t147 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * (t140 + (t114 * t138 - t113 *
+            t145)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * (t146 + (t115 * t145 - t114 * t130));
+        const gic_real t148 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * (t112 + (t113 * t130 - t115 *
+            t138)) + t147;
+        const gic_real t149 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t150 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t151 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t152 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t153 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t154 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t151 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t152 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t153);
+        const gic_real t155 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t156 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t151 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t152 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t153);
+        const gic_real t157 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t159 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t160 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t157 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t158 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t159);
         const gic_real t161 = t150 * t154 + (t155 * t156 + t149 * t160);
-        const gic_real t162 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
-        const gic_real t163 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
+        const gic_real t162 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t157 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t158 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t159);
+        const gic_real t163 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * t157 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t158 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * t159);
         const gic_real t164 = t150 * t162 + (t155 * t160 + t149 * t163);
-        const gic_real t165 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t166 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t167 = t166 + m[218] * rate[18];
-        const gic_real t168 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t169 = t168 + m[217] * rate[18];
-        const gic_real t170 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t171 = t170 + m[216] * rate[18];
+        const gic_real t165 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t166 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t167 = t166 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t169 = t168 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t171 = t170 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
         const gic_real t172 = t149 * t161 - t155 * t164 + (t165 * t167 + (t154 * t169 + t162 * t171));
-        const gic_real t173 = t52 + (t53 + m[190] * R(-0.08910630000000008));
-        const gic_real t174 = t44 + (t45 + m[196] * R(-0.08910630000000008));
-        const gic_real t175 = t48 + (t49 + m[193] * R(-0.08910630000000008));
-        const gic_real t176 = m[199] * t174 - m[200] * t175;
-        const gic_real t177 = m[198] * t175 - m[199] * t173;
-        const gic_real t178 = m[200] * t176 - m[198] * t177 + (m[206] * t173 - m[204] * t174);
-        const gic_real t179 = m[188] + t174;
-        const gic_real t180 = m[187] + t175;
-        const gic_real t181 = t176 + (y[15] * t179 - y[16] * t180);
+        const gic_real t173 = t52 + (t53 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t174 = t44 + (t45 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t175 = t48 + (t49 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t176 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t174 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t175;
+        const gic_real t177 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t173;
+        const gic_real t178 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t177 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t173 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t174);
+        const gic_real t179 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t174;
+        const gic_real t180 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t175;
+        const gic_real t181 = t176 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t179 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t180);
         const gic_real t182 = t176 + t181;
-        const gic_real t183 = m[203] + t177;
+        const gic_real t183 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] + t177;
         const gic_real t184 = R(1.653405) + t173;
-        const gic_real t185 = t183 + (y[14] * t180 - y[15] * t184);
+        const gic_real t185 = t183 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t180 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t184);
         const gic_real t186 = t183 + t185;
-        const gic_real t187 = y[16] * t182 - y[14] * t186 + (rate[16] * t184 - rate[14] * t179);
-        const gic_real t188 = m[208] + t178 + (t22 + t187) + u[2] * (m[212] * t173 - m[210] * t174);
-        const gic_real t189 = t188 + rate[18] * (m[220] + (m[218] * t173 - m[216] * t174));
+        const gic_real t187 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t182 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t186 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t184 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t179);
+        const gic_real t188 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Y] + t178 + (t22 + t187) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t173 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t174);
+        const gic_real t189 = t188 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t173 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t174));
         const gic_real t190 = R(90.555) * t189;
-        const gic_real t191 = m[200] * t173 - m[198] * t174;
-        const gic_real t192 = m[199] * t177 - m[200] * t191 + (m[205] * t174 - m[206] * t175);
-        const gic_real t193 = m[202] + t191;
-        const gic_real t194 = t193 + (y[16] * t184 - y[14] * t179);
+        const gic_real t191 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t173 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t174;
+        const gic_real t192 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t177 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t191 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t174 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t175);
+        const gic_real t193 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] + t191;
+        const gic_real t194 = t193 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t184 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t179);
         const gic_real t195 = t193 + t194;
-        const gic_real t196 = y[15] * t186 - y[16] * t195 + (rate[15] * t179 - rate[16] * t180);
-        const gic_real t197 = t192 + (t27 + t196) + u[2] * (m[211] * t174 - m[212] * t175);
-        const gic_real t198 = R(90.555) * (t197 + rate[18] * (m[217] * t174 - m[218] * t175));
+        const gic_real t196 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t186 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t195 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t179 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t180);
+        const gic_real t197 = t192 + (t27 + t196) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t174 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t175);
+        const gic_real t198 = R(90.555) * (t197 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t174 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t175));
         const gic_real t199 = t150 * t165 + (t155 * t154 + t149 * t162);
         const gic_real t200 = t150 * t164 - t149 * t199 + (t154 * t167 + (t156 * t169 + t160 * t171));
-        const gic_real t201 = m[198] * t191 - m[199] * t176 + (m[204] * t175 - m[205] * t173);
-        const gic_real t202 = y[14] * t195 - y[15] * t182 + (rate[14] * t180 - rate[15] * t184);
-        const gic_real t203 = m[209] + t201 + (t14 + t202) + u[2] * (m[210] * t175 - m[211] * t173);
-        const gic_real t204 = t203 + rate[18] * (m[221] + (m[216] * t175 - m[217] * t173));
+        const gic_real t201 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t191 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t176 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t173);
+        const gic_real t202 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t195 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t182 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t180 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t184);
+        const gic_real t203 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Z] + t201 + (t14 + t202) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t173);
+        const gic_real t204 = t203 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t173));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t155 * t199 - t150 * t161 + (t162 * t167 + (t160 * t169 + t163 * t171));
-        const gic_real t207 = m[211] * (t200 + (t174 * t198 - t173 * t205)) + m[210] * (t206 + (t175 * t205 - t174 * t190));
-        const gic_real t208 = m[212] * (t172 + (t173 * t190 - t175 * t198)) + t207;
-        const gic_real t209 = t9 * self->grip[5] + (t13 * self->grip[4] + t5 * self->grip[3]);
-        const gic_real t210 = t19 * self->grip[2] + (t21 * self->grip[1] + t18 * self->grip[0]);
-        const gic_real t211 = t25 * self->grip[2] + (t26 * self->grip[1] + t24 * self->grip[0]);
-        const gic_real t212 = t19 * self->grip[5] + (t21 * self->grip[4] + t18 * self->grip[3]);
-        const gic_real t213 = t9 * self->grip[2] + (t13 * self->grip[1] + t5 * self->grip[0]);
-        const gic_real t214 = t25 * self->grip[5] + (t26 * self->grip[4] + t24 * self->grip[3]);
-        const gic_real t215 = m[175] * (t212 + (t31 * t211 - t39 * t213)) + m[174] * (t214 + (t35 * t213 - t31 * t210));
-        const gic_real t216 = m[176] * (t209 + (t39 * t210 - t35 * t211)) + t215;
-        const gic_real t217 = t9 * self->grip[32] + (t13 * self->grip[31] + t5 * self->grip[30]);
-        const gic_real t218 = t19 * self->grip[29] + (t21 * self->grip[28] + t18 * self->grip[27]);
-        const gic_real t219 = t25 * self->grip[29] + (t26 * self->grip[28] + t24 * self->grip[27]);
-        const gic_real t220 = t19 * self->grip[32] + (t21 * self->grip[31] + t18 * self->grip[30]);
-        const gic_real t221 = t9 * self->grip[29] + (t13 * self->grip[28] + t5 * self->grip[27]);
-        const gic_real t222 = t25 * self->grip[32] + (t26 * self->grip[31] + t24 * self->grip[30]);
-        const gic_real t223 = m[211] * (t220 + (t46 * t219 - t54 * t221)) + m[210] * (t222 + (t50 * t221 - t46 * t218));
-        const gic_real t224 = m[212] * (t217 + (t54 * t218 - t50 * t219)) + t223;
-        const gic_real t225 = (u[2] + (t22 + t88)) * R(9.072) + t148 + t208 - (t216 + t224);
-        const gic_real t226 = y[21] * y[21] * R(3.69391) + R(3.69391) * (y[25] * y[25]) + R(3.69391) * (y[29] * y[29]);
-        const gic_real t227 = y[16] * (y[16] * R(3570.2)) + (y[15] * (y[15] * R(2955.66)) + y[14] * (y[14] * R(1078.52)));
-        const gic_real t228 = y[16] * R(0.056) - y[14] * R(0.21300000000000008);
-        const gic_real t229 = y[15] * R(0.21300000000000008);
-        const gic_real t230 = y[15] * R(0.056);
-        const gic_real t231 = y[13] + (t19 * t228 + t25 * t229 - t9 * t230);
-        const gic_real t232 = y[12] + (t21 * t228 + t26 * t229 - t13 * t230);
-        const gic_real t233 = y[11] + (t18 * t228 + t24 * t229 - t5 * t230);
+        const gic_real t207 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * (t200 + (t174 * t198 - t173 *
+            t205)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * (t206 + (t175 * t205 - t174 * t190));
+        const gic_real t208 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * (t172 + (t173 * t190 - t175 *
+            t198)) + t207;
+        const gic_real t209 = t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t210 = t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t211 = t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t212 = t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t213 = t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t214 = t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t215 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * (t212 + (t31 * t211 - t39 *
+            t213)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * (t214 + (t35 * t213 - t31 * t210));
+        const gic_real t216 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * (t209 + (t39 * t210 - t35 *
+            t211)) + t215;
+        const gic_real t217 = t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t218 = t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t219 = t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t220 = t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t221 = t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t222 = t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t223 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * (t220 + (t46 * t219 - t54 *
+            t221)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * (t222 + (t50 * t221 - t46 * t218));
+        const gic_real t224 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * (t217 + (t54 * t218 - t50 *
+            t219)) + t223;
+        /* inertia of wheel_r_r */
+        const gic_real output_force_rack = (u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] + (t22 + t88)) * R(9.072) + t148 +
+            t208 - (t216 + t224);
+        const gic_real t226 = y[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN] * y[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN] * R(3.69391) +
+            R(3.69391) * (y[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN] * y[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN]) + R(3.69391) *
+            (y[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN] * y[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN]);
+        const gic_real t227 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * (y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(2955.66)) +
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * (y[HMMWV_TMEASY_STATE_OMEGA_X] * R(1078.52)));
+        /* inertia of chassis */
+        const gic_real t228 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t229 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t230 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t231 = y[HMMWV_TMEASY_STATE_V_Z] + (t19 * t228 + t25 * t229 - t9 * t230);
+        const gic_real t232 = y[HMMWV_TMEASY_STATE_V_Y] + (t21 * t228 + t26 * t229 - t13 * t230);
+        const gic_real t233 = y[HMMWV_TMEASY_STATE_V_X] + (t18 * t228 + t24 * t229 - t5 * t230);
         const gic_real t234 = R(2086.52) * (t231 * t231 + (t232 * t232 + t233 * t233));
-        const gic_real t235 = t226 + R(3.69391) * (y[33] * y[33]) + R(0.5) * (t227 + t234);
-        const gic_real t236 = m[16] + (R(1.438648) * y[16] - R(0.05422899999999997) * y[14]);
-        const gic_real t237 = y[13] + (t9 * t87 + (t19 * t236 + t25 * t86));
-        const gic_real t238 = y[12] + (t13 * t87 + (t21 * t236 + t26 * t86));
-        const gic_real t239 = y[11] + (t5 * t87 + (t18 * t236 + t24 * t86));
+        const gic_real t235 = t226 + R(3.69391) * (y[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN] *
+            y[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN]) + R(0.5) * (t227 + t234);
+        const gic_real t236 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] + (R(1.438648) *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t237 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t87 + (t19 * t236 + t25 * t86));
+        const gic_real t238 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t87 + (t21 * t236 + t26 * t86));
+        const gic_real t239 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t87 + (t18 * t236 + t24 * t86));
         const gic_real t240 = R(9.072) * (t237 * t237 + (t238 * t238 + t239 * t239));
-        const gic_real t241 = y[16] * y[16] + (y[15] * y[15] + y[14] * y[14]) + t240;
-        const gic_real t242 = y[16] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t243 = m[38] * R(0.8938);
-        const gic_real t244 = m[37] * R(0.4469);
-        const gic_real t245 = m[41] * t243 + m[40] * t244;
-        const gic_real t246 = y[16] * t245 + y[15] * (m[38] * t243 + m[37] * t244);
-        const gic_real t247 = m[42] + y[14];
-        const gic_real t248 = y[16] * (t242 + y[15] * t245) + (y[15] * t246 + t247 * (R(0.4469) * t247));
-        const gic_real t249 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t241 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * y[HMMWV_TMEASY_STATE_OMEGA_Z] +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * y[HMMWV_TMEASY_STATE_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X]) + t240;
+        /* inertia of lca_f_l */
+        const gic_real t242 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469)));
+        const gic_real t243 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t244 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t245 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * t243 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * t244;
+        const gic_real t246 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t245 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * t243 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * t244);
+        const gic_real t247 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t248 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t242 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t245) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t246 + t247 * (R(0.4469) * t247));
+        const gic_real t249 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.24689200985615367);
         const gic_real t250 = R(0.307086) + t249;
-        const gic_real t251 = R(1.688965) * y[15];
-        const gic_real t252 = m[42] * t249 + (y[14] * t250 - t251);
-        const gic_real t253 = R(1.688965) * y[16];
-        const gic_real t254 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t255 = t253 - y[14] * t254 - m[42] * t254;
-        const gic_real t256 = y[15] * t254 - y[16] * t250;
-        const gic_real t257 = y[13] + (t9 * t252 + (t19 * t255 + t25 * t256));
-        const gic_real t258 = y[12] + (t13 * t252 + (t21 * t255 + t26 * t256));
-        const gic_real t259 = y[11] + (t5 * t252 + (t18 * t255 + t24 * t256));
+        const gic_real t251 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t252 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t249 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_X] * t250 - t251);
+        const gic_real t253 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t254 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * R(0.24689200985615367);
+        const gic_real t255 = t253 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t254 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t254;
+        const gic_real t256 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t254 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t250;
+        const gic_real t257 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t252 + (t19 * t255 + t25 * t256));
+        const gic_real t258 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t252 + (t21 * t255 + t26 * t256));
+        const gic_real t259 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t252 + (t18 * t255 + t24 * t256));
         const gic_real t260 = R(23.965) * (t257 * t257 + (t258 * t258 + t259 * t259));
-        const gic_real t261 = y[16] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t262 = m[68] * R(0.8938);
-        const gic_real t263 = m[67] * R(0.4469);
-        const gic_real t264 = m[71] * t262 + m[70] * t263;
-        const gic_real t265 = y[16] * t264 + y[15] * (m[68] * t262 + m[67] * t263);
-        const gic_real t266 = m[72] + y[14];
-        const gic_real t267 = y[16] * (t261 + y[15] * t264) + (y[15] * t265 + t266 * (R(0.4469) * t266));
-        const gic_real t268 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        /* inertia of lca_f_r */
+        const gic_real t261 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469)));
+        const gic_real t262 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t263 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t264 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * t262 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * t263;
+        const gic_real t265 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t264 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * t262 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * t263);
+        const gic_real t266 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t267 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t261 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t264) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t265 + t266 * (R(0.4469) * t266));
+        const gic_real t268 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(-0.24689200985615367);
         const gic_real t269 = R(-0.307086) + t268;
-        const gic_real t270 = m[72] * t268 + (y[14] * t269 - t251);
-        const gic_real t271 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t272 = t253 - y[14] * t271 - m[72] * t271;
-        const gic_real t273 = y[15] * t271 - y[16] * t269;
-        const gic_real t274 = y[13] + (t9 * t270 + (t19 * t272 + t25 * t273));
-        const gic_real t275 = y[12] + (t13 * t270 + (t21 * t272 + t26 * t273));
-        const gic_real t276 = y[11] + (t5 * t270 + (t18 * t272 + t24 * t273));
+        const gic_real t270 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t268 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_X] * t269 - t251);
+        const gic_real t271 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * R(-0.24689200985615367);
+        const gic_real t272 = t253 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t271 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t271;
+        const gic_real t273 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t271 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t269;
+        const gic_real t274 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t270 + (t19 * t272 + t25 * t273));
+        const gic_real t275 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t270 + (t21 * t272 + t26 * t273));
+        const gic_real t276 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t270 + (t18 * t272 + t24 * t273));
         const gic_real t277 = R(23.965) * (t274 * t274 + (t275 * t275 + t276 * t276));
         const gic_real t278 = t235 + R(0.5) * t241 + R(0.5) * (t248 + t260) + R(0.5) * (t267 + t277);
-        const gic_real t279 = y[13] + (t9 * t125 + (t19 * t134 + t25 * t121));
-        const gic_real t280 = y[12] + (t13 * t125 + (t21 * t134 + t26 * t121));
-        const gic_real t281 = y[11] + (t5 * t125 + (t18 * t134 + t24 * t121));
+        const gic_real t279 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t125 + (t19 * t134 + t25 * t121));
+        const gic_real t280 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t125 + (t21 * t134 + t26 * t121));
+        const gic_real t281 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t125 + (t18 * t134 + t24 * t121));
         const gic_real t282 = R(90.555) * (t279 * t279 + (t280 * t280 + t281 * t281));
         const gic_real t283 = t90 * t139 + (t95 * t101 + t89 * t104) + t282;
-        const gic_real t284 = y[13] + (t9 * t185 + (t19 * t194 + t25 * t181));
-        const gic_real t285 = y[12] + (t13 * t185 + (t21 * t194 + t26 * t181));
-        const gic_real t286 = y[11] + (t5 * t185 + (t18 * t194 + t24 * t181));
+        const gic_real t284 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t185 + (t19 * t194 + t25 * t181));
+        const gic_real t285 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t185 + (t21 * t194 + t26 * t181));
+        const gic_real t286 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t185 + (t18 * t194 + t24 * t181));
         const gic_real t287 = R(90.555) * (t284 * t284 + (t285 * t285 + t286 * t286));
         const gic_real t288 = t150 * t199 + (t155 * t161 + t149 * t164) + t287;
-        const gic_real t289 = y[16] * (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469)));
-        const gic_real t290 = m[98] * R(0.8938);
-        const gic_real t291 = m[97] * R(0.4469);
-        const gic_real t292 = m[101] * t290 + m[100] * t291;
-        const gic_real t293 = y[16] * t292 + y[15] * (m[98] * t290 + m[97] * t291);
-        const gic_real t294 = m[102] + y[14];
-        const gic_real t295 = y[16] * (t289 + y[15] * t292) + (y[15] * t293 + t294 * (R(0.4469) * t294));
-        const gic_real t296 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        /* inertia of lca_r_l */
+        const gic_real t289 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469)));
+        const gic_real t290 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t291 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t292 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * t290 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * t291;
+        const gic_real t293 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t292 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * t290 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * t291);
+        const gic_real t294 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t295 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t289 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t292) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t293 + t294 * (R(0.4469) * t294));
+        const gic_real t296 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.246867347245056);
         const gic_real t297 = R(0.307086) + t296;
-        const gic_real t298 = R(-1.688965) * y[15];
-        const gic_real t299 = m[102] * t296 + (y[14] * t297 - t298);
-        const gic_real t300 = R(-1.688965) * y[16];
-        const gic_real t301 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t302 = t300 - y[14] * t301 - m[102] * t301;
-        const gic_real t303 = y[15] * t301 - y[16] * t297;
-        const gic_real t304 = y[13] + (t9 * t299 + (t19 * t302 + t25 * t303));
-        const gic_real t305 = y[12] + (t13 * t299 + (t21 * t302 + t26 * t303));
-        const gic_real t306 = y[11] + (t5 * t299 + (t18 * t302 + t24 * t303));
+        const gic_real t298 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t299 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t296 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_X] * t297 - t298);
+        const gic_real t300 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t301 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * R(0.246867347245056);
+        const gic_real t302 = t300 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t301 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t301;
+        const gic_real t303 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t301 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t297;
+        const gic_real t304 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t299 + (t19 * t302 + t25 * t303));
+        const gic_real t305 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t299 + (t21 * t302 + t26 * t303));
+        const gic_real t306 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t299 + (t18 * t302 + t24 * t303));
         const gic_real t307 = R(23.965) * (t304 * t304 + (t305 * t305 + t306 * t306));
         const gic_real t308 = t278 + R(0.5) * t283 + R(0.5) * t288 + R(0.5) * (t295 + t307);
-        const gic_real t309 = y[16] * (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469)));
-        const gic_real t310 = m[128] * R(0.8938);
-        const gic_real t311 = m[127] * R(0.4469);
-        const gic_real t312 = m[131] * t310 + m[130] * t311;
-        const gic_real t313 = y[16] * t312 + y[15] * (m[128] * t310 + m[127] * t311);
-        const gic_real t314 = m[132] + y[14];
-        const gic_real t315 = y[16] * (t309 + y[15] * t312) + (y[15] * t313 + t314 * (R(0.4469) * t314));
-        const gic_real t316 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        /* inertia of lca_r_r */
+        const gic_real t309 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469)));
+        const gic_real t310 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t311 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t312 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * t310 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * t311;
+        const gic_real t313 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t312 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * t310 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * t311);
+        const gic_real t314 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t315 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t309 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t312) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t313 + t314 * (R(0.4469) * t314));
+        const gic_real t316 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(-0.246867347245056);
         const gic_real t317 = R(-0.307086) + t316;
-        const gic_real t318 = m[132] * t316 + (y[14] * t317 - t298);
-        const gic_real t319 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t320 = t300 - y[14] * t319 - m[132] * t319;
-        const gic_real t321 = y[15] * t319 - y[16] * t317;
-        const gic_real t322 = y[13] + (t9 * t318 + (t19 * t320 + t25 * t321));
-        const gic_real t323 = y[12] + (t13 * t318 + (t21 * t320 + t26 * t321));
-        const gic_real t324 = y[11] + (t5 * t318 + (t18 * t320 + t24 * t321));
+        const gic_real t318 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t316 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_X] * t317 - t298);
+        const gic_real t319 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * R(-0.246867347245056);
+        const gic_real t320 = t300 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t319 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t319;
+        const gic_real t321 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t319 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t317;
+        const gic_real t322 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t318 + (t19 * t320 + t25 * t321));
+        const gic_real t323 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t318 + (t21 * t320 + t26 * t321));
+        const gic_real t324 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t318 + (t18 * t320 + t24 * t321));
         const gic_real t325 = R(23.965) * (t322 * t322 + (t323 * t323 + t324 * t324));
-        const gic_real t326 = y[16] * (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046)));
-        const gic_real t327 = m[230] * R(4.7728205);
-        const gic_real t328 = m[229] * R(0.19340000000000046);
-        const gic_real t329 = m[233] * t327 + m[232] * t328;
-        const gic_real t330 = y[16] * t329 + y[15] * (m[230] * t327 + m[229] * t328);
-        const gic_real t331 = m[234] + y[14];
-        const gic_real t332 = y[16] * (t326 + y[15] * t329) + (y[15] * t330 + t331 * (t331 * R(4.8947505)));
-        const gic_real t333 = t62 + m[229] * R(0.08910630000000008);
-        const gic_real t334 = m[223] + t333;
-        const gic_real t335 = R(-1.653405) * y[15];
-        const gic_real t336 = m[239] + m[234] * t333 + (y[14] * t334 - t335);
-        const gic_real t337 = t59 + m[232] * R(0.08910630000000008);
-        const gic_real t338 = R(-1.653405) * y[16];
-        const gic_real t339 = m[224] + t337;
-        const gic_real t340 = m[238] - m[234] * t337 + (t338 - y[14] * t339);
-        const gic_real t341 = y[15] * t339 - y[16] * t334;
-        const gic_real t342 = y[13] + (t9 * t336 + (t19 * t340 + t25 * t341));
-        const gic_real t343 = y[12] + (t13 * t336 + (t21 * t340 + t26 * t341));
-        const gic_real t344 = y[11] + (t5 * t336 + (t18 * t340 + t24 * t341));
+        /* inertia of wheel_r_l */
+        const gic_real t326 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)));
+        const gic_real t327 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t328 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t329 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * t327 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t328;
+        const gic_real t330 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t329 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * t327 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t328);
+        const gic_real t331 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t332 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t326 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t329) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t330 + t331 * (t331 * R(4.8947505)));
+        const gic_real t333 = t62 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008);
+        const gic_real t334 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t333;
+        const gic_real t335 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t336 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t333 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t334 -
+            t335);
+        const gic_real t337 = t59 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008);
+        const gic_real t338 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t339 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t337;
+        const gic_real t340 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t337 + (t338 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t339);
+        const gic_real t341 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t339 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t334;
+        const gic_real t342 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t336 + (t19 * t340 + t25 * t341));
+        const gic_real t343 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t336 + (t21 * t340 + t26 * t341));
+        const gic_real t344 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t336 + (t18 * t340 + t24 * t341));
         const gic_real t345 = R(90.555) * (t342 * t342 + (t343 * t343 + t344 * t344));
         const gic_real t346 = t308 + R(0.5) * (t315 + t325) + R(0.5) * (t332 + t345);
-        const gic_real t347 = y[16] * (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046)));
-        const gic_real t348 = m[260] * R(4.7728205);
-        const gic_real t349 = m[259] * R(0.19340000000000046);
-        const gic_real t350 = m[263] * t348 + m[262] * t349;
-        const gic_real t351 = y[16] * t350 + y[15] * (m[260] * t348 + m[259] * t349);
-        const gic_real t352 = m[264] + y[14];
-        const gic_real t353 = y[16] * (t347 + y[15] * t350) + (y[15] * t351 + t352 * (t352 * R(4.8947505)));
-        const gic_real t354 = t71 + m[259] * R(-0.08910630000000008);
-        const gic_real t355 = m[253] + t354;
-        const gic_real t356 = m[269] + m[264] * t354 + (y[14] * t355 - t335);
-        const gic_real t357 = t68 + m[262] * R(-0.08910630000000008);
-        const gic_real t358 = m[254] + t357;
-        const gic_real t359 = m[268] - m[264] * t357 + (t338 - y[14] * t358);
-        const gic_real t360 = y[15] * t358 - y[16] * t355;
-        const gic_real t361 = y[13] + (t9 * t356 + (t19 * t359 + t25 * t360));
-        const gic_real t362 = y[12] + (t13 * t356 + (t21 * t359 + t26 * t360));
-        const gic_real t363 = y[11] + (t5 * t356 + (t18 * t359 + t24 * t360));
+        const gic_real t347 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)));
+        const gic_real t348 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t349 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t350 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * t348 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t349;
+        const gic_real t351 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t350 + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * t348 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t349);
+        const gic_real t352 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t353 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t347 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t350) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t351 + t352 * (t352 * R(4.8947505)));
+        const gic_real t354 = t71 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008);
+        const gic_real t355 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t354;
+        const gic_real t356 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t354 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t355 -
+            t335);
+        const gic_real t357 = t68 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008);
+        const gic_real t358 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t357;
+        const gic_real t359 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t357 + (t338 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t358);
+        const gic_real t360 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t358 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t355;
+        const gic_real t361 = y[HMMWV_TMEASY_STATE_V_Z] + (t9 * t356 + (t19 * t359 + t25 * t360));
+        const gic_real t362 = y[HMMWV_TMEASY_STATE_V_Y] + (t13 * t356 + (t21 * t359 + t26 * t360));
+        const gic_real t363 = y[HMMWV_TMEASY_STATE_V_X] + (t5 * t356 + (t18 * t359 + t24 * t360));
         const gic_real t364 = R(90.555) * (t361 * t361 + (t362 * t362 + t363 * t363));
         const gic_real t365 = t74 * t75 * R(0.5) + R(0.5) * (t77 * t78) + R(0.5) * (t80 * t81);
-        const gic_real t366 = t365 + R(0.5) * (t83 * t84) - (y[2] + (t9 * R(0.21300000000000008) + t25 * R(0.056))) * R(-20468.7612);
-        const gic_real t367 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t19 + R(1.438648) * t25));
+        const gic_real t366 = t365 + R(0.5) * (t83 * t84) - (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * R(0.21300000000000008) +
+            t25 * R(0.056))) * R(-20468.7612);
+        const gic_real t367 = y[HMMWV_TMEASY_STATE_R_Z] + (R(0.05422899999999997) * t9 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t19 + R(1.438648) * t25));
         const gic_real t368 = R(1.688965) * t25;
-        const gic_real t369 = (y[2] + (t9 * t254 + (t19 * t250 + t368))) * R(-235.09665);
-        const gic_real t370 = R(-235.09665) * (y[2] + (t9 * t271 + (t368 + t19 * t269)));
-        const gic_real t371 = y[2] + (t9 * t119 + (t19 * t120 + t25 * t124));
+        const gic_real t369 = (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t254 + (t19 * t250 + t368))) * R(-235.09665);
+        const gic_real t370 = R(-235.09665) * (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t271 + (t368 + t19 * t269)));
+        const gic_real t371 = y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t119 + (t19 * t120 + t25 * t124));
         const gic_real t372 = t366 - t367 * R(-88.99632) - t369 - t370 - t371 * R(-888.3445500000001);
-        const gic_real t373 = y[2] + (t9 * t179 + (t19 * t180 + t25 * t184));
+        const gic_real t373 = y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t179 + (t19 * t180 + t25 * t184));
         const gic_real t374 = R(-1.688965) * t25;
-        const gic_real t375 = R(-235.09665) * (y[2] + (t9 * t301 + (t19 * t297 + t374)));
-        const gic_real t376 = R(-235.09665) * (y[2] + (t9 * t319 + (t374 + t19 * t317)));
-        const gic_real t377 = R(-888.3445500000001) * (y[2] + (t9 * t339 + (t67 + t19 * t334)));
-        const gic_real t378 = R(-888.3445500000001) * (y[2] + (t9 * t358 + (t67 + t19 * t355)));
-        const gic_real t379 = t372 - R(-888.3445500000001) * t373 - t375 - t376 - t377 - t378;
-        const gic_real t380 = y[13] * t9 + (y[12] * t13 + y[11] * t5);
-        const gic_real t381 = m[167] + (m[162] * t35 - m[163] * t39) + (y[14] * t36 - y[15] * t40);
-        const gic_real t382 = y[13] * t19 + (y[12] * t21 + y[11] * t18);
-        const gic_real t383 = m[166] + (m[164] * t39 - m[162] * t31) + (y[16] * t40 - y[14] * t32);
-        const gic_real t384 = y[13] * t25 + (y[12] * t26 + y[11] * t24);
-        const gic_real t385 = m[163] * t31 - m[164] * t35 + (y[15] * t32 - y[16] * t36);
+        const gic_real t375 = R(-235.09665) * (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t301 + (t19 * t297 + t374)));
+        const gic_real t376 = R(-235.09665) * (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t319 + (t374 + t19 * t317)));
+        const gic_real t377 = R(-888.3445500000001) * (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t339 + (t67 + t19 * t334)));
+        const gic_real t378 = R(-888.3445500000001) * (y[HMMWV_TMEASY_STATE_R_Z] + (t9 * t358 + (t67 + t19 * t355)));
+        const gic_real output_energy_potential = t372 - R(-888.3445500000001) * t373 - t375 - t376 - t377 - t378;
+        const gic_real t380 = y[HMMWV_TMEASY_STATE_V_Z] * t9 + (y[HMMWV_TMEASY_STATE_V_Y] * t13 +
+            y[HMMWV_TMEASY_STATE_V_X] * t5);
+        const gic_real t381 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t35 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t39) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t36 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t40);
+        const gic_real t382 = y[HMMWV_TMEASY_STATE_V_Z] * t19 + (y[HMMWV_TMEASY_STATE_V_Y] * t21 +
+            y[HMMWV_TMEASY_STATE_V_X] * t18);
+        const gic_real t383 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t39 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t31) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t40 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t32);
+        const gic_real t384 = y[HMMWV_TMEASY_STATE_V_Z] * t25 + (y[HMMWV_TMEASY_STATE_V_Y] * t26 +
+            y[HMMWV_TMEASY_STATE_V_X] * t24);
+        const gic_real t385 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t31 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t35 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t32 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t36);
         const gic_real t386 = t213 * (t380 + t381) + (t210 * (t382 + t383) + t211 * (t384 + t385));
         const gic_real t387 = t209 * t90 + (t212 * t95 + t214 * t89) + t386;
-        const gic_real t388 = xd[0] * t76 + xd[1] * t79 + xd[2] * t82 + xd[3] * t85;
-        const gic_real t389 = y[16] * (m[160] * self->grip[6]) + (y[15] * (m[157] * self->grip[6]) + y[14] * (m[154] * self->grip[6]));
-        const gic_real t390 = m[203] + (m[198] * t50 - m[199] * t54) + (y[14] * t51 - y[15] * t55);
-        const gic_real t391 = m[202] + (m[200] * t54 - m[198] * t46) + (y[16] * t55 - y[14] * t47);
-        const gic_real t392 = m[199] * t46 - m[200] * t50 + (y[15] * t47 - y[16] * t51);
+        const gic_real t388 = xd[HMMWV_TMEASY_X_SPRING_F_L] * t76 + xd[HMMWV_TMEASY_X_SPRING_F_R] * t79 +
+            xd[HMMWV_TMEASY_X_SPRING_R_L] * t82 + xd[HMMWV_TMEASY_X_SPRING_R_R] * t85;
+        const gic_real t389 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t390 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t50 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t54) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t51 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t55);
+        const gic_real t391 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t54 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t46) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t55 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t47);
+        const gic_real t392 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t46 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t50 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t47 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t51);
         const gic_real t393 = t221 * (t380 + t390) + (t218 * (t382 + t391) + t219 * (t384 + t392));
         const gic_real t394 = t217 * t150 + (t220 * t155 + t222 * t149) + t393;
-        const gic_real t395 = y[16] * (m[196] * self->grip[33]) + (y[15] * (m[193] * self->grip[33]) + y[14] * (m[190] * self->grip[33]));
-        const gic_real t396 = self->grip[53] + (self->grip[26] + (t387 - t388) - t389 + t394) - t395;
-        const gic_real t397 = y[16] * (t9 * self->grip[59] + (t13 * self->grip[58] + t5 * self->grip[57]));
-        const gic_real t398 = y[15] * (t19 * self->grip[59] + (t21 * self->grip[58] + t18 * self->grip[57]));
-        const gic_real t399 = (t25 * self->grip[59] + (t26 * self->grip[58] + t24 * self->grip[57])) * t331;
-        const gic_real t400 = t380 + (m[239] + m[234] * t63 + (y[14] * t64 - t335));
-        const gic_real t401 = (t9 * self->grip[56] + (t13 * self->grip[55] + t5 * self->grip[54])) * t400;
-        const gic_real t402 = t382 + (m[238] - m[234] * t60 + (t338 - y[14] * t61));
-        const gic_real t403 = (t19 * self->grip[56] + (t21 * self->grip[55] + t18 * self->grip[54])) * t402;
-        const gic_real t404 = (t25 * self->grip[56] + (t26 * self->grip[55] + t24 * self->grip[54])) * (t384 + (y[15] * t61 - y[16] * t64));
+        const gic_real t395 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t396 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_POWER] +
+            (self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_POWER] + (t387 - t388) - t389 + t394) - t395;
+        const gic_real t397 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t9 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t398 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * (t19 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t399 = (t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X])) * t331;
+        const gic_real t400 = t380 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t63 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t64 -
+            t335));
+        const gic_real t401 = (t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * t400;
+        const gic_real t402 = t382 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t60 + (t338 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t61));
+        const gic_real t403 = (t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * t402;
+        const gic_real t404 = (t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * (t384 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t61 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t64));
         const gic_real t405 = t396 + (t397 + (t398 + t399) + (t401 + (t403 + t404)));
-        const gic_real t406 = self->grip[80] + t405 - (y[16] * (m[232] * self->grip[60]) + y[15] * (m[229] * self->grip[60]));
-        const gic_real t407 = y[16] * (t9 * self->grip[86] + (t13 * self->grip[85] + t5 * self->grip[84]));
-        const gic_real t408 = y[15] * (t19 * self->grip[86] + (t21 * self->grip[85] + t18 * self->grip[84]));
-        const gic_real t409 = (t25 * self->grip[86] + (t26 * self->grip[85] + t24 * self->grip[84])) * t352;
-        const gic_real t410 = t380 + (m[269] + m[264] * t72 + (y[14] * t73 - t335));
-        const gic_real t411 = (t9 * self->grip[83] + (t13 * self->grip[82] + t5 * self->grip[81])) * t410;
-        const gic_real t412 = t382 + (m[268] - m[264] * t69 + (t338 - y[14] * t70));
-        const gic_real t413 = (t19 * self->grip[83] + (t21 * self->grip[82] + t18 * self->grip[81])) * t412;
-        const gic_real t414 = (t25 * self->grip[83] + (t26 * self->grip[82] + t24 * self->grip[81])) * (t384 + (y[15] * t70 - y[16] * t73));
+        const gic_real t406 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_POWER] + t405 -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t407 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t9 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t408 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * (t19 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t409 = (t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X])) * t352;
+        const gic_real t410 = t380 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t72 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t73 -
+            t335));
+        const gic_real t411 = (t9 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * t410;
+        const gic_real t412 = t382 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t69 + (t338 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t70));
+        const gic_real t413 = (t19 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * t412;
+        const gic_real t414 = (t25 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * (t384 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t70 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t73));
         const gic_real t415 = t406 + (t407 + (t408 + t409) + (t411 + (t413 + t414)));
-        const gic_real t416 = self->grip[107] + t415 - (y[16] * (m[262] * self->grip[87]) + y[15] * (m[259] * self->grip[87]));
-        const gic_real t417 = y[0];
-        const gic_real t418 = y[1];
-        const gic_real t419 = y[2];
-        const gic_real t420 = y[11];
-        const gic_real t421 = y[12];
-        const gic_real t422 = y[13];
-        const gic_real t423 = t5 * t15 + (t18 * t23 + t24 * t28);
-        const gic_real t424 = t13 * t15 + (t21 * t23 + t26 * t28);
-        const gic_real t425 = t9 * t15 + (t19 * t23 + t25 * t28);
-        const gic_real t426 = e[0];
-        const gic_real t427 = e[1];
-        const gic_real t428 = e[2];
-        const gic_real t429 = e[3];
-        const gic_real t430 = GIC_ATAN2(t19, t9);
-        const gic_real t431 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t432 = GIC_ATAN2(t26, t24);
-        const gic_real t433 = y[14];
-        const gic_real t434 = y[15];
-        const gic_real t435 = y[16];
-        const gic_real t436 = t417 + (t5 * t61 + (t18 * t64 + t65));
-        const gic_real t437 = t418 + (t13 * t61 + (t21 * t64 + t66));
-        const gic_real t438 = t419 + (t9 * t61 + (t19 * t64 + t67));
-        const gic_real t439 = t417 + (t5 * t70 + (t65 + t18 * t73));
-        const gic_real t440 = t418 + (t13 * t70 + (t66 + t21 * t73));
-        const gic_real t441 = t419 + (t9 * t70 + (t67 + t19 * t73));
-        const gic_real t442 = x[0];
-        const gic_real t443 = xd[0];
-        const gic_real t444 = rate[17];
-        const gic_real t445 = x[1];
-        const gic_real t446 = xd[1];
-        const gic_real t447 = rate[18];
-        const gic_real t448 = x[2];
-        const gic_real t449 = xd[2];
-        const gic_real t450 = rate[19];
-        const gic_real t451 = x[3];
-        const gic_real t452 = xd[3];
-        const gic_real t453 = rate[20];
-        const gic_real t454 = x[4];
-        const gic_real t455 = xd[4];
-        const gic_real t456 = u[2];
-        const gic_real t457 = -(t75 + t76);
-        const gic_real t458 = -(t78 + t79);
-        const gic_real t459 = -(t81 + t82);
-        const gic_real t460 = -(t84 + t85);
-        const gic_real t461 = self->grip[8];
-        const gic_real t462 = self->grip[9];
-        const gic_real t463 = self->grip[10];
-        const gic_real t464 = self->grip[11];
-        const gic_real t465 = self->grip[35];
-        const gic_real t466 = self->grip[36];
-        const gic_real t467 = self->grip[37];
-        const gic_real t468 = self->grip[38];
-        const gic_real t469 = self->grip[62];
-        const gic_real t470 = self->grip[63];
-        const gic_real t471 = self->grip[64];
-        const gic_real t472 = self->grip[65];
-        const gic_real t473 = self->grip[89];
-        const gic_real t474 = self->grip[90];
-        const gic_real t475 = self->grip[91];
-        const gic_real t476 = self->grip[92];
-        const gic_real t477 = t346 + R(0.5) * (t353 + t364);
-        const gic_real t478 = t416 + t455 * t225;
-        const gic_real t479 = self->grip[12];
-        const gic_real t480 = self->grip[13];
-        const gic_real t481 = self->grip[14];
-        const gic_real t482 = self->grip[15];
-        const gic_real t483 = self->grip[16];
-        const gic_real t484 = self->grip[17];
-        const gic_real t485 = GIC_ATAN(self->grip[18]);
-        const gic_real t486 = self->grip[19];
-        const gic_real t487 = y[21];
-        const gic_real t488 = rate[21];
-        const gic_real t489 = self->grip[6];
-        const gic_real t490 = self->grip[7];
-        const gic_real t491 = self->grip[39];
-        const gic_real t492 = self->grip[40];
-        const gic_real t493 = self->grip[41];
-        const gic_real t494 = self->grip[42];
-        const gic_real t495 = self->grip[43];
-        const gic_real t496 = self->grip[44];
-        const gic_real t497 = GIC_ATAN(self->grip[45]);
-        const gic_real t498 = self->grip[46];
-        const gic_real t499 = y[25];
-        const gic_real t500 = rate[25];
-        const gic_real t501 = self->grip[33];
-        const gic_real t502 = self->grip[34];
-        const gic_real t503 = self->grip[66];
-        const gic_real t504 = self->grip[67];
-        const gic_real t505 = self->grip[68];
-        const gic_real t506 = self->grip[69];
-        const gic_real t507 = self->grip[70];
-        const gic_real t508 = self->grip[71];
-        const gic_real t509 = GIC_ATAN(self->grip[72]);
-        const gic_real t510 = self->grip[73];
-        const gic_real t511 = y[29];
-        const gic_real t512 = rate[29];
-        const gic_real t513 = self->grip[60];
-        const gic_real t514 = self->grip[61];
-        const gic_real t515 = self->grip[93];
-        const gic_real t516 = self->grip[94];
-        const gic_real t517 = self->grip[95];
-        const gic_real t518 = self->grip[96];
-        const gic_real t519 = self->grip[97];
-        const gic_real t520 = self->grip[98];
-        const gic_real t521 = GIC_ATAN(self->grip[99]);
-        const gic_real t522 = self->grip[100];
-        const gic_real t523 = y[33];
-        const gic_real t524 = rate[33];
-        const gic_real t525 = self->grip[87];
-        const gic_real t526 = self->grip[88];
-        const gic_real t527 = self->grip[20];
-        const gic_real t528 = self->grip[21];
-        const gic_real t529 = self->grip[22];
-        const gic_real t530 = self->grip[47];
-        const gic_real t531 = self->grip[48];
-        const gic_real t532 = self->grip[49];
-        const gic_real t533 = self->grip[74];
-        const gic_real t534 = self->grip[75];
-        const gic_real t535 = self->grip[76];
-        const gic_real t536 = self->grip[101];
-        const gic_real t537 = self->grip[102];
-        const gic_real t538 = self->grip[103];
-        out[0] = t417;
-        out[1] = t418;
-        out[2] = t419;
-        out[3] = t420;
-        out[4] = t421;
-        out[5] = t422;
-        out[6] = t423;
-        out[7] = t424;
-        out[8] = t425;
-        out[9] = t426;
-        out[10] = t427;
-        out[11] = t428;
-        out[12] = t429;
-        out[13] = t430;
-        out[14] = t431;
-        out[15] = t432;
-        out[16] = t433;
-        out[17] = t434;
-        out[18] = t435;
-        out[19] = t41;
-        out[20] = t42;
-        out[21] = t43;
-        out[22] = t56;
-        out[23] = t57;
-        out[24] = t58;
-        out[25] = t436;
-        out[26] = t437;
-        out[27] = t438;
-        out[28] = t439;
-        out[29] = t440;
-        out[30] = t441;
-        out[31] = t442;
-        out[32] = t443;
-        out[33] = t444;
-        out[34] = t445;
-        out[35] = t446;
-        out[36] = t447;
-        out[37] = t448;
-        out[38] = t449;
-        out[39] = t450;
-        out[40] = t451;
-        out[41] = t452;
-        out[42] = t453;
-        out[43] = t454;
-        out[44] = t455;
-        out[45] = t456;
-        out[46] = t457;
-        out[47] = t458;
-        out[48] = t459;
-        out[49] = t460;
-        out[50] = t225;
-        out[51] = t461;
-        out[52] = t462;
-        out[53] = t463;
-        out[54] = t464;
-        out[55] = t465;
-        out[56] = t466;
-        out[57] = t467;
-        out[58] = t468;
-        out[59] = t469;
-        out[60] = t470;
-        out[61] = t471;
-        out[62] = t472;
-        out[63] = t473;
-        out[64] = t474;
-        out[65] = t475;
-        out[66] = t476;
-        out[67] = t477;
-        out[68] = t379;
-        out[69] = t478;
-        out[70] = t479;
-        out[71] = t480;
-        out[72] = t481;
-        out[73] = t482;
-        out[74] = t483;
-        out[75] = t484;
-        out[76] = t485;
-        out[77] = t486;
-        out[78] = t487;
-        out[79] = t488;
-        out[80] = t489;
-        out[81] = t490;
-        out[82] = t491;
-        out[83] = t492;
-        out[84] = t493;
-        out[85] = t494;
-        out[86] = t495;
-        out[87] = t496;
-        out[88] = t497;
-        out[89] = t498;
-        out[90] = t499;
-        out[91] = t500;
-        out[92] = t501;
-        out[93] = t502;
-        out[94] = t503;
-        out[95] = t504;
-        out[96] = t505;
-        out[97] = t506;
-        out[98] = t507;
-        out[99] = t508;
-        out[100] = t509;
-        out[101] = t510;
-        out[102] = t511;
-        out[103] = t512;
-        out[104] = t513;
-        out[105] = t514;
-        out[106] = t515;
-        out[107] = t516;
-        out[108] = t517;
-        out[109] = t518;
-        out[110] = t519;
-        out[111] = t520;
-        out[112] = t521;
-        out[113] = t522;
-        out[114] = t523;
-        out[115] = t524;
-        out[116] = t525;
-        out[117] = t526;
-        out[118] = t527;
-        out[119] = t528;
-        out[120] = t529;
-        out[121] = t530;
-        out[122] = t531;
-        out[123] = t532;
-        out[124] = t533;
-        out[125] = t534;
-        out[126] = t535;
-        out[127] = t536;
-        out[128] = t537;
-        out[129] = t538;
+        const gic_real t416 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_POWER] + t415 -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real output_chassis_x = y[HMMWV_TMEASY_STATE_R_X];
+        const gic_real output_chassis_y = y[HMMWV_TMEASY_STATE_R_Y];
+        const gic_real output_chassis_z = y[HMMWV_TMEASY_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[HMMWV_TMEASY_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[HMMWV_TMEASY_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[HMMWV_TMEASY_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t15 + (t18 * t23 + t24 * t28);
+        const gic_real output_chassis_acceleration_y = t13 * t15 + (t21 * t23 + t26 * t28);
+        const gic_real output_chassis_acceleration_z = t9 * t15 + (t19 * t23 + t25 * t28);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t19, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t26, t24);
+        const gic_real output_chassis_angular_velocity_x = y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real output_wheel_r_l_x = output_chassis_x + (t5 * t61 + (t18 * t64 + t65));
+        const gic_real output_wheel_r_l_y = output_chassis_y + (t13 * t61 + (t21 * t64 + t66));
+        const gic_real output_wheel_r_l_z = output_chassis_z + (t9 * t61 + (t19 * t64 + t67));
+        /* output wheel_r_r */
+        const gic_real output_wheel_r_r_x = output_chassis_x + (t5 * t70 + (t65 + t18 * t73));
+        const gic_real output_wheel_r_r_y = output_chassis_y + (t13 * t70 + (t66 + t21 * t73));
+        const gic_real output_wheel_r_r_z = output_chassis_z + (t9 * t70 + (t67 + t19 * t73));
+        const gic_real output_spring_f_l_value = x[HMMWV_TMEASY_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[HMMWV_TMEASY_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[HMMWV_TMEASY_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[HMMWV_TMEASY_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[HMMWV_TMEASY_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[HMMWV_TMEASY_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[HMMWV_TMEASY_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[HMMWV_TMEASY_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[HMMWV_TMEASY_X_RACK];
+        const gic_real output_rack_rate = xd[HMMWV_TMEASY_X_RACK];
+        const gic_real output_rack_acceleration = u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real force_spring_f_l = -(t75 + t76);
+        const gic_real force_spring_f_r = -(t78 + t79);
+        const gic_real force_spring_r_l = -(t81 + t82);
+        const gic_real force_spring_r_r = -(t84 + t85);
+        const gic_real output_tire_f_l_fz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_LOAD];
+        const gic_real output_tire_f_l_deflection =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DEFLECTION];
+        const gic_real output_tire_f_l_deflection_rate =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_f_l_height = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_HEIGHT];
+        const gic_real output_tire_f_r_fz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_LOAD];
+        const gic_real output_tire_f_r_deflection =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DEFLECTION];
+        const gic_real output_tire_f_r_deflection_rate =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_f_r_height = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_HEIGHT];
+        const gic_real output_tire_r_l_fz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_LOAD];
+        const gic_real output_tire_r_l_deflection =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DEFLECTION];
+        const gic_real output_tire_r_l_deflection_rate =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_r_l_height = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_HEIGHT];
+        const gic_real output_tire_r_r_fz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_LOAD];
+        const gic_real output_tire_r_r_deflection =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DEFLECTION];
+        const gic_real output_tire_r_r_deflection_rate =
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_r_r_height = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_HEIGHT];
+        const gic_real output_energy_kinetic = t346 + R(0.5) * (t353 + t364);
+        const gic_real output_energy_power = t416 + output_rack_rate * output_force_rack;
+        const gic_real output_slip_f_l_fx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FX];
+        const gic_real output_slip_f_l_fy = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FY];
+        const gic_real output_slip_f_l_mx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_MX];
+        const gic_real output_slip_f_l_my = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_MY];
+        const gic_real output_slip_f_l_mz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_MZ];
+        const gic_real output_slip_f_l_kappa = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_KAPPA];
+        /* output slip_f_l */
+        const gic_real output_slip_f_l_alpha =
+            GIC_ATAN(self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TANGENT]);
+        const gic_real output_slip_f_l_camber = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_CAMBER];
+        const gic_real output_slip_f_l_spin = y[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN];
+        const gic_real output_slip_f_l_spin_rate = rate[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN];
+        const gic_real output_slip_f_l_drive = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real output_slip_f_l_brake = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_BRAKE];
+        const gic_real output_slip_f_r_fx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FX];
+        const gic_real output_slip_f_r_fy = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FY];
+        const gic_real output_slip_f_r_mx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_MX];
+        const gic_real output_slip_f_r_my = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_MY];
+        const gic_real output_slip_f_r_mz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_MZ];
+        const gic_real output_slip_f_r_kappa = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_KAPPA];
+        /* output slip_f_r */
+        const gic_real output_slip_f_r_alpha =
+            GIC_ATAN(self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TANGENT]);
+        const gic_real output_slip_f_r_camber = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_CAMBER];
+        const gic_real output_slip_f_r_spin = y[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN];
+        const gic_real output_slip_f_r_spin_rate = rate[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN];
+        const gic_real output_slip_f_r_drive = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real output_slip_f_r_brake = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_BRAKE];
+        const gic_real output_slip_r_l_fx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FX];
+        const gic_real output_slip_r_l_fy = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FY];
+        const gic_real output_slip_r_l_mx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_MX];
+        const gic_real output_slip_r_l_my = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_MY];
+        const gic_real output_slip_r_l_mz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_MZ];
+        const gic_real output_slip_r_l_kappa = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_KAPPA];
+        /* output slip_r_l */
+        const gic_real output_slip_r_l_alpha =
+            GIC_ATAN(self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TANGENT]);
+        const gic_real output_slip_r_l_camber = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_CAMBER];
+        const gic_real output_slip_r_l_spin = y[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN];
+        const gic_real output_slip_r_l_spin_rate = rate[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN];
+        const gic_real output_slip_r_l_drive = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real output_slip_r_l_brake = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_BRAKE];
+        const gic_real output_slip_r_r_fx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FX];
+        const gic_real output_slip_r_r_fy = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FY];
+        const gic_real output_slip_r_r_mx = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_MX];
+        const gic_real output_slip_r_r_my = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_MY];
+        const gic_real output_slip_r_r_mz = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_MZ];
+        const gic_real output_slip_r_r_kappa = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_KAPPA];
+        /* output slip_r_r */
+        const gic_real output_slip_r_r_alpha =
+            GIC_ATAN(self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TANGENT]);
+        const gic_real output_slip_r_r_camber = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_CAMBER];
+        const gic_real output_slip_r_r_spin = y[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN];
+        const gic_real output_slip_r_r_spin_rate = rate[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN];
+        const gic_real output_slip_r_r_drive = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real output_slip_r_r_brake = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_BRAKE];
+        const gic_real output_contact_f_l_x = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_POINT_X];
+        const gic_real output_contact_f_l_y = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_POINT_Y];
+        const gic_real output_contact_f_l_z = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_POINT_Z];
+        const gic_real output_contact_f_r_x = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_POINT_X];
+        const gic_real output_contact_f_r_y = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_POINT_Y];
+        const gic_real output_contact_f_r_z = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_POINT_Z];
+        const gic_real output_contact_r_l_x = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_POINT_X];
+        const gic_real output_contact_r_l_y = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_POINT_Y];
+        const gic_real output_contact_r_l_z = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_POINT_Z];
+        const gic_real output_contact_r_r_x = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_POINT_X];
+        const gic_real output_contact_r_r_y = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_POINT_Y];
+        const gic_real output_contact_r_r_z = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_POINT_Z];
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[HMMWV_TMEASY_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[HMMWV_TMEASY_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[HMMWV_TMEASY_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[HMMWV_TMEASY_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[HMMWV_TMEASY_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[HMMWV_TMEASY_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[HMMWV_TMEASY_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[HMMWV_TMEASY_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[HMMWV_TMEASY_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[HMMWV_TMEASY_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[HMMWV_TMEASY_OUTPUT_FORCE_RACK] = output_force_rack;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[HMMWV_TMEASY_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[HMMWV_TMEASY_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[HMMWV_TMEASY_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[HMMWV_TMEASY_OUTPUT_ENERGY_POWER] = output_energy_power;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_FX] = output_slip_f_l_fx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_FY] = output_slip_f_l_fy;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_MX] = output_slip_f_l_mx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_MY] = output_slip_f_l_my;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_MZ] = output_slip_f_l_mz;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_KAPPA] = output_slip_f_l_kappa;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_ALPHA] = output_slip_f_l_alpha;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_CAMBER] = output_slip_f_l_camber;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_SPIN] = output_slip_f_l_spin;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_SPIN_RATE] = output_slip_f_l_spin_rate;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_DRIVE] = output_slip_f_l_drive;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_L_BRAKE] = output_slip_f_l_brake;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_FX] = output_slip_f_r_fx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_FY] = output_slip_f_r_fy;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_MX] = output_slip_f_r_mx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_MY] = output_slip_f_r_my;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_MZ] = output_slip_f_r_mz;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_KAPPA] = output_slip_f_r_kappa;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_ALPHA] = output_slip_f_r_alpha;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_CAMBER] = output_slip_f_r_camber;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_SPIN] = output_slip_f_r_spin;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_SPIN_RATE] = output_slip_f_r_spin_rate;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_DRIVE] = output_slip_f_r_drive;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_F_R_BRAKE] = output_slip_f_r_brake;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_FX] = output_slip_r_l_fx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_FY] = output_slip_r_l_fy;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_MX] = output_slip_r_l_mx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_MY] = output_slip_r_l_my;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_MZ] = output_slip_r_l_mz;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_KAPPA] = output_slip_r_l_kappa;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_ALPHA] = output_slip_r_l_alpha;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_CAMBER] = output_slip_r_l_camber;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_SPIN] = output_slip_r_l_spin;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_SPIN_RATE] = output_slip_r_l_spin_rate;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_DRIVE] = output_slip_r_l_drive;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_L_BRAKE] = output_slip_r_l_brake;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_FX] = output_slip_r_r_fx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_FY] = output_slip_r_r_fy;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_MX] = output_slip_r_r_mx;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_MY] = output_slip_r_r_my;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_MZ] = output_slip_r_r_mz;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_KAPPA] = output_slip_r_r_kappa;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_ALPHA] = output_slip_r_r_alpha;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_CAMBER] = output_slip_r_r_camber;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_SPIN] = output_slip_r_r_spin;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_SPIN_RATE] = output_slip_r_r_spin_rate;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_DRIVE] = output_slip_r_r_drive;
+        out[HMMWV_TMEASY_OUTPUT_SLIP_R_R_BRAKE] = output_slip_r_r_brake;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_L_X] = output_contact_f_l_x;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_L_Y] = output_contact_f_l_y;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_L_Z] = output_contact_f_l_z;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_R_X] = output_contact_f_r_x;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_R_Y] = output_contact_f_r_y;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_F_R_Z] = output_contact_f_r_z;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_L_X] = output_contact_r_l_x;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_L_Y] = output_contact_r_l_y;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_L_Z] = output_contact_r_l_z;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_R_X] = output_contact_r_r_x;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_R_Y] = output_contact_r_r_y;
+        out[HMMWV_TMEASY_OUTPUT_CONTACT_R_R_Z] = output_contact_r_r_z;
     }
     return GIC_OK;
 }
@@ -2962,26 +4095,36 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[HMMWV_TMEASY_STATE_R_X] + (R(0.05422899999999997) * t5 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[HMMWV_TMEASY_STATE_R_Y] + (R(0.05422899999999997) * t16 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[HMMWV_TMEASY_STATE_R_Z] + (R(0.05422899999999997) * t21 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] *
+            R(3.0379110359107786e-06) + m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY]));
+        const gic_real t31 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t32 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -2989,12 +4132,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -3005,11 +4150,17 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] *
+            R(3.0379110359107786e-06) + m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY]));
+        const gic_real t59 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t60 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -3017,12 +4168,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -3033,34 +4186,54 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t85 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[161] - (m[153] + m[157]));
-        const gic_real t91 = R(1.0) + (m[157] - (m[153] + m[161]));
-        const gic_real t92 = m[157] + m[161];
-        const gic_real t93 = R(1.0) + (m[153] - t92);
-        const gic_real t94 = R(1.0) + (m[153] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] *
+            R(0.09182100000000004) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[HMMWV_TMEASY_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[HMMWV_TMEASY_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY]));
+        const gic_real t91 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t92 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[156] - m[154];
+        const gic_real t98 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[155] - m[159];
+        const gic_real t100 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[160] - m[158];
+        const gic_real t102 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[158] + m[160];
-        const gic_real t108 = m[155] + m[159];
+        const gic_real t107 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY];
+        const gic_real t108 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[154] + m[156];
+        const gic_real t111 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -3070,34 +4243,54 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t122 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t128 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t129 = m[193] + m[197];
-        const gic_real t130 = R(1.0) + (m[189] - t129);
-        const gic_real t131 = R(1.0) + (m[189] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] *
+            R(0.09182100000000004) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.08910630000000008) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[HMMWV_TMEASY_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[HMMWV_TMEASY_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[HMMWV_TMEASY_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY]));
+        const gic_real t128 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t129 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[192] - m[190];
+        const gic_real t135 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[191] - m[195];
+        const gic_real t137 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[196] - m[194];
+        const gic_real t139 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[194] + m[196];
-        const gic_real t145 = m[191] + m[195];
+        const gic_real t144 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY];
+        const gic_real t145 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[190] + m[192];
+        const gic_real t148 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -3107,14 +4300,20 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t159 = R(0.307086) + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
+        /* pose of lca_r_l */
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * R(0.246867347245056);
+        const gic_real t159 = R(0.307086) + (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] *
+            R(-3.0379110358344508e-06) + m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.246867347245056));
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
-        const gic_real t165 = m[97] + m[101];
+        const gic_real t163 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY]));
+        const gic_real t164 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t165 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ];
         const gic_real t166 = R(1.0) + (R(1.0) - t165);
         const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
@@ -3122,12 +4321,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t170 = t163 - t169;
         const gic_real t171 = t164 - t168;
         const gic_real t172 = t166 - t167;
-        const gic_real t173 = m[100] - m[98];
+        const gic_real t173 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ];
         const gic_real t174 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? R(0.0) : (t172 > GIC_R(0) ? t173 : t167)));
         const gic_real t175 = R(0.5) / GIC_SQRT(GIC_MAX(t163, t169));
         const gic_real t176 = t174 * t175;
         const gic_real t177 = e[0] * t176;
-        const gic_real t178 = m[98] + m[100];
+        const gic_real t178 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY];
         const gic_real t179 = (t172 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t180 = (t170 > GIC_R(0) ? t163 : (t171 > GIC_R(0) ? t178 : t179)) * t175;
         const gic_real t181 = (t170 > GIC_R(0) ? t178 : (t171 > GIC_R(0) ? t164 : t179)) * t175;
@@ -3138,11 +4339,17 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t186 = e[2] * t180 - e[3] * t181 + (e[1] * t176 + e[0] * t183);
         const gic_real t187 = e[3] * t183 - e[1] * t180 + (e[2] * t176 + e[0] * t181);
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
-        const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
-        const gic_real t193 = m[127] + m[131];
+        /* pose of lca_r_r */
+        const gic_real t189 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * R(-0.246867347245056);
+        const gic_real t190 = R(-0.307086) + (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] *
+            R(-3.0379110358344508e-06) + m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(-0.246867347245056));
+        const gic_real t191 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY]));
+        const gic_real t192 = R(1.0) + (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t193 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ];
         const gic_real t194 = R(1.0) + (R(1.0) - t193);
         const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
@@ -3150,12 +4357,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t198 = t191 - t197;
         const gic_real t199 = t192 - t196;
         const gic_real t200 = t194 - t195;
-        const gic_real t201 = m[130] - m[128];
+        const gic_real t201 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ];
         const gic_real t202 = (t198 > GIC_R(0) ? R(0.0) : (t199 > GIC_R(0) ? R(0.0) : (t200 > GIC_R(0) ? t201 : t195)));
         const gic_real t203 = R(0.5) / GIC_SQRT(GIC_MAX(t191, t197));
         const gic_real t204 = t202 * t203;
         const gic_real t205 = e[0] * t204;
-        const gic_real t206 = m[128] + m[130];
+        const gic_real t206 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY];
         const gic_real t207 = (t200 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t208 = (t198 > GIC_R(0) ? t191 : (t199 > GIC_R(0) ? t206 : t207)) * t203;
         const gic_real t209 = (t198 > GIC_R(0) ? t206 : (t199 > GIC_R(0) ? t192 : t207)) * t203;
@@ -3166,14 +4375,22 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t214 = e[2] * t208 - e[3] * t209 + (e[1] * t204 + e[0] * t211);
         const gic_real t215 = e[3] * t211 - e[1] * t208 + (e[2] * t204 + e[0] * t209);
         const gic_real t216 = e[1] * t209 - e[2] * t211 + (e[3] * t204 + e[0] * t208);
-        const gic_real t217 = m[224] + (m[233] * R(0.09182100000000004) + m[232] * R(0.08910630000000008));
-        const gic_real t218 = m[223] + (m[230] * R(0.09182100000000004) + m[229] * R(0.08910630000000008));
+        /* pose of wheel_r_l */
+        const gic_real t217 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008));
+        const gic_real t218 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008));
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
-        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
-        const gic_real t224 = m[229] + m[233];
+        const gic_real t222 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY]));
+        const gic_real t223 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t224 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ];
         const gic_real t225 = R(1.0) + (R(1.0) - t224);
         const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
@@ -3181,12 +4398,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t229 = t222 - t228;
         const gic_real t230 = t223 - t227;
         const gic_real t231 = t225 - t226;
-        const gic_real t232 = m[232] - m[230];
+        const gic_real t232 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ];
         const gic_real t233 = (t229 > GIC_R(0) ? R(0.0) : (t230 > GIC_R(0) ? R(0.0) : (t231 > GIC_R(0) ? t232 : t226)));
         const gic_real t234 = R(0.5) / GIC_SQRT(GIC_MAX(t222, t228));
         const gic_real t235 = t233 * t234;
         const gic_real t236 = e[0] * t235;
-        const gic_real t237 = m[230] + m[232];
+        const gic_real t237 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY];
         const gic_real t238 = (t231 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t239 = (t229 > GIC_R(0) ? t222 : (t230 > GIC_R(0) ? t237 : t238)) * t234;
         const gic_real t240 = (t229 > GIC_R(0) ? t237 : (t230 > GIC_R(0) ? t223 : t238)) * t234;
@@ -3197,11 +4416,19 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t245 = e[2] * t239 - e[3] * t240 + (e[1] * t235 + e[0] * t242);
         const gic_real t246 = e[3] * t242 - e[1] * t239 + (e[2] * t235 + e[0] * t240);
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
-        const gic_real t248 = m[254] + (m[263] * R(0.09182100000000004) + m[262] * R(-0.08910630000000008));
-        const gic_real t249 = m[253] + (m[260] * R(0.09182100000000004) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
-        const gic_real t252 = m[259] + m[263];
+        /* pose of wheel_r_r */
+        const gic_real t248 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008));
+        const gic_real t249 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008));
+        const gic_real t250 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY]));
+        const gic_real t251 = R(1.0) + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] - (R(1.0) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ]));
+        const gic_real t252 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ];
         const gic_real t253 = R(1.0) + (R(1.0) - t252);
         const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
@@ -3209,12 +4436,14 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t257 = t250 - t256;
         const gic_real t258 = t251 - t255;
         const gic_real t259 = t253 - t254;
-        const gic_real t260 = m[262] - m[260];
+        const gic_real t260 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ];
         const gic_real t261 = (t257 > GIC_R(0) ? R(0.0) : (t258 > GIC_R(0) ? R(0.0) : (t259 > GIC_R(0) ? t260 : t254)));
         const gic_real t262 = R(0.5) / GIC_SQRT(GIC_MAX(t250, t256));
         const gic_real t263 = t261 * t262;
         const gic_real t264 = e[0] * t263;
-        const gic_real t265 = m[260] + m[262];
+        const gic_real t265 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY];
         const gic_real t266 = (t259 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t267 = (t257 > GIC_R(0) ? t250 : (t258 > GIC_R(0) ? t265 : t266)) * t262;
         const gic_real t268 = (t257 > GIC_R(0) ? t265 : (t258 > GIC_R(0) ? t251 : t266)) * t262;
@@ -3225,9 +4454,9 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t273 = e[2] * t267 - e[3] * t268 + (e[1] * t263 + e[0] * t270);
         const gic_real t274 = e[3] * t270 - e[1] * t267 + (e[2] * t263 + e[0] * t268);
         const gic_real t275 = e[1] * t268 - e[2] * t270 + (e[3] * t263 + e[0] * t267);
-        const gic_real t276 = y[0];
-        const gic_real t277 = y[1];
-        const gic_real t278 = y[2];
+        const gic_real t276 = y[HMMWV_TMEASY_STATE_R_X];
+        const gic_real t277 = y[HMMWV_TMEASY_STATE_R_Y];
+        const gic_real t278 = y[HMMWV_TMEASY_STATE_R_Z];
         const gic_real t279 = e[0];
         const gic_real t280 = e[1];
         const gic_real t281 = e[2];
@@ -3286,83 +4515,83 @@ static void hmmwv_tmeasy_place(const hmmwv_tmeasy *self, const gic_real *y, cons
         const gic_real t334 = (t272 > GIC_R(0) ? t273 : -t273);
         const gic_real t335 = (t272 > GIC_R(0) ? t274 : -t274);
         const gic_real t336 = (t272 > GIC_R(0) ? t275 : -t275);
-        pose[0] = t276;
-        pose[1] = t277;
-        pose[2] = t278;
-        pose[3] = t279;
-        pose[4] = t280;
-        pose[5] = t281;
-        pose[6] = t282;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t283;
-        pose[11] = t284;
-        pose[12] = t285;
-        pose[13] = t286;
-        pose[14] = t287;
-        pose[15] = t288;
-        pose[16] = t289;
-        pose[17] = t290;
-        pose[18] = t291;
-        pose[19] = t292;
-        pose[20] = t293;
-        pose[21] = t294;
-        pose[22] = t295;
-        pose[23] = t296;
-        pose[24] = t297;
-        pose[25] = t298;
-        pose[26] = t299;
-        pose[27] = t300;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t301;
-        pose[32] = t302;
-        pose[33] = t303;
-        pose[34] = t304;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t305;
-        pose[39] = t306;
-        pose[40] = t307;
-        pose[41] = t308;
-        pose[42] = t309;
-        pose[43] = t310;
-        pose[44] = t311;
-        pose[45] = t312;
-        pose[46] = t313;
-        pose[47] = t314;
-        pose[48] = t315;
-        pose[49] = t316;
-        pose[50] = t317;
-        pose[51] = t318;
-        pose[52] = t319;
-        pose[53] = t320;
-        pose[54] = t321;
-        pose[55] = t322;
-        pose[56] = t323;
-        pose[57] = t324;
-        pose[58] = t325;
-        pose[59] = t326;
-        pose[60] = t327;
-        pose[61] = t328;
-        pose[62] = t329;
-        pose[63] = t330;
-        pose[64] = t331;
-        pose[65] = t332;
-        pose[66] = t333;
-        pose[67] = t334;
-        pose[68] = t335;
-        pose[69] = t336;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_X] = t276;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_Y] = t277;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_Z] = t278;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_P0] = t279;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_P1] = t280;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_P2] = t281;
+        pose[HMMWV_TMEASY_POSE_CHASSIS + HMMWV_TMEASY_Q_P3] = t282;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_X] = t13;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_Y] = t20;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_Z] = t24;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_P0] = t283;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_P1] = t284;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_P2] = t285;
+        pose[HMMWV_TMEASY_POSE_RACK + HMMWV_TMEASY_Q_P3] = t286;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_X] = t287;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_Y] = t288;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_Z] = t289;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_P0] = t290;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_P1] = t291;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_P2] = t292;
+        pose[HMMWV_TMEASY_POSE_LCA_F_L + HMMWV_TMEASY_Q_P3] = t293;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_X] = t294;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_Y] = t295;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_Z] = t296;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_P0] = t297;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_P1] = t298;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_P2] = t299;
+        pose[HMMWV_TMEASY_POSE_LCA_F_R + HMMWV_TMEASY_Q_P3] = t300;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_X] = t87;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_Y] = t88;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_Z] = t89;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_P0] = t301;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_P1] = t302;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_P2] = t303;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_L + HMMWV_TMEASY_Q_P3] = t304;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_X] = t124;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_Y] = t125;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_Z] = t126;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_P0] = t305;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_P1] = t306;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_P2] = t307;
+        pose[HMMWV_TMEASY_POSE_WHEEL_F_R + HMMWV_TMEASY_Q_P3] = t308;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_X] = t309;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_Y] = t310;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_Z] = t311;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_P0] = t312;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_P1] = t313;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_P2] = t314;
+        pose[HMMWV_TMEASY_POSE_LCA_R_L + HMMWV_TMEASY_Q_P3] = t315;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_X] = t316;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_Y] = t317;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_Z] = t318;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_P0] = t319;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_P1] = t320;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_P2] = t321;
+        pose[HMMWV_TMEASY_POSE_LCA_R_R + HMMWV_TMEASY_Q_P3] = t322;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_X] = t323;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_Y] = t324;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_Z] = t325;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_P0] = t326;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_P1] = t327;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_P2] = t328;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_L + HMMWV_TMEASY_Q_P3] = t329;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_X] = t330;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_Y] = t331;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_Z] = t332;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_P0] = t333;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_P1] = t334;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_P2] = t335;
+        pose[HMMWV_TMEASY_POSE_WHEEL_R_R + HMMWV_TMEASY_Q_P3] = t336;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int hmmwv_tmeasy_residual(const hmmwv_tmeasy *self, gic_real largest[2])
 {
     hmmwv_tmeasy_links links;
@@ -3371,99 +4600,105 @@ static GIC_COLD GIC_APART int hmmwv_tmeasy_residual(const hmmwv_tmeasy *self, gi
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    hmmwv_tmeasy_residual_rack(hmmwv_tmeasy_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[HMMWV_TMEASY_X_RACK];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_RACK];
+    hmmwv_tmeasy_residual_rack(hmmwv_tmeasy_k_rack[0], &links, self->motion + HMMWV_TMEASY_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = HMMWV_TMEASY_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_F_L];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_F_L];
+    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[0], &links, self->motion + HMMWV_TMEASY_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = HMMWV_TMEASY_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_F_R];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_F_R];
+    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[1], &links, self->motion + HMMWV_TMEASY_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = HMMWV_TMEASY_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[2], &links, self->motion + 90, one);
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_R_L];
+    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[2], &links, self->motion + HMMWV_TMEASY_MOTION_LCA_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = HMMWV_TMEASY_SUBSET_LCA_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[3], &links, self->motion + 120, one);
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_R_R];
+    hmmwv_tmeasy_residual_lca_f_l(hmmwv_tmeasy_k_lca_f_l[3], &links, self->motion + HMMWV_TMEASY_MOTION_LCA_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = HMMWV_TMEASY_SUBSET_LCA_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    hmmwv_tmeasy_residual_wheel_f_l(hmmwv_tmeasy_k_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + HMMWV_TMEASY_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_TMEASY_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[HMMWV_TMEASY_X_RACK];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_RACK];
+    links.x[1] = self->x[HMMWV_TMEASY_X_SPRING_F_L];
+    links.rate[1] = self->xd[HMMWV_TMEASY_X_SPRING_F_L];
+    hmmwv_tmeasy_residual_wheel_f_l(hmmwv_tmeasy_k_wheel_f_l[0], &links, self->motion + HMMWV_TMEASY_MOTION_WHEEL_F_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = HMMWV_TMEASY_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    hmmwv_tmeasy_residual_wheel_f_l(hmmwv_tmeasy_k_wheel_f_l[1], &links, self->motion + 186, one);
+    links.known[0] = self->motion + HMMWV_TMEASY_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_TMEASY_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[HMMWV_TMEASY_X_RACK];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_RACK];
+    links.x[1] = self->x[HMMWV_TMEASY_X_SPRING_F_R];
+    links.rate[1] = self->xd[HMMWV_TMEASY_X_SPRING_F_R];
+    hmmwv_tmeasy_residual_wheel_f_l(hmmwv_tmeasy_k_wheel_f_l[1], &links, self->motion + HMMWV_TMEASY_MOTION_WHEEL_F_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = HMMWV_TMEASY_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 90;
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_tmeasy_residual_wheel_r_l(hmmwv_tmeasy_k_wheel_r_l[0], &links, self->motion + 222, one);
+    links.known[0] = self->motion + HMMWV_TMEASY_MOTION_LCA_R_L; /* lca_r_l */
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_R_L];
+    hmmwv_tmeasy_residual_wheel_r_l(hmmwv_tmeasy_k_wheel_r_l[0], &links, self->motion + HMMWV_TMEASY_MOTION_WHEEL_R_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 8;
+        bad = HMMWV_TMEASY_SUBSET_WHEEL_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 120;
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_tmeasy_residual_wheel_r_l(hmmwv_tmeasy_k_wheel_r_l[1], &links, self->motion + 252, one);
+    links.known[0] = self->motion + HMMWV_TMEASY_MOTION_LCA_R_R; /* lca_r_r */
+    links.x[0] = self->x[HMMWV_TMEASY_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_TMEASY_X_SPRING_R_R];
+    hmmwv_tmeasy_residual_wheel_r_l(hmmwv_tmeasy_k_wheel_r_l[1], &links, self->motion + HMMWV_TMEASY_MOTION_WHEEL_R_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 9;
+        bad = HMMWV_TMEASY_SUBSET_WHEEL_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_tmeasy_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int hmmwv_tmeasy_balance(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_tmeasy_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv_tmeasy_balance(const hmmwv_tmeasy *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[16] * R(3570.2);
-        const gic_real t2 = y[15] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[13] - R(-9.81);
+        const gic_real t8 = rate[HMMWV_TMEASY_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -3471,684 +4706,1131 @@ static GIC_COLD GIC_APART int hmmwv_tmeasy_balance(const hmmwv_tmeasy *self, gic
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[12] + t15 * rate[11]);
-        const gic_real t17 = y[15] * R(0.056);
-        const gic_real t18 = y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[14] * t17 + y[16] * t18 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[HMMWV_TMEASY_STATE_V_Y] + t15 * rate[HMMWV_TMEASY_STATE_V_X]);
+        const gic_real t17 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t17 + y[HMMWV_TMEASY_STATE_OMEGA_Z] * t18 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV_TMEASY_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[15] * t1 - y[16] * t2 + rate[14] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t1 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t2 +
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[12] + t27 * rate[11]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.05422899999999997) * y[14]));
-        const gic_real t30 = R(0.05422899999999997) * y[15] - m[1] * y[16];
-        const gic_real t31 = y[14] * t29 - y[15] * t30 + (m[1] * rate[14] - R(1.438648) * rate[15]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[HMMWV_TMEASY_STATE_V_Y] + t27 * rate[HMMWV_TMEASY_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] + (R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t31 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t29 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t30 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * rate[HMMWV_TMEASY_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV_TMEASY_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t35 = y[16] * t30 - y[14] * t34 + (R(1.438648) * rate[16] - R(0.05422899999999997) * rate[14]);
-        const gic_real t36 = u[2] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[16] * t37 + y[15] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[16] * t40 + y[15] * t42;
-        const gic_real t44 = y[15] * t41 - y[16] * t43 + R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[16];
-        const gic_real t50 = t49 - y[14] * t46 - t47 - t47;
+        const gic_real t34 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t35 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t30 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[HMMWV_TMEASY_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t36 = u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t38 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t39 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t40 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * t38 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * t39;
+        const gic_real t41 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t37 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * t38 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * t39;
+        const gic_real t43 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t40 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t41 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t46;
+        const gic_real t48 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t45 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t47;
+        const gic_real t49 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[15] * t46 - y[16] * t51;
-        const gic_real t53 = R(1.688965) * rate[15];
-        const gic_real t54 = y[14] * t50 - y[15] * t52 + (rate[14] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[17] * (m[54] * t45);
+        const gic_real t52 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t46 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t54 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t50 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t52 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[15];
-        const gic_real t59 = t57 + (t57 + (y[14] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[16];
-        const gic_real t61 = y[16] * t52 - y[14] * t59 + (t60 - rate[14] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[17] * (m[54] * t46);
+        const gic_real t57 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t61 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t52 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t59 + (t60 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t57 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[14] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[16] * t67 + y[15] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[16] * t70 + y[15] * t72;
-        const gic_real t74 = y[15] * t71 - y[16] * t73 + R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[14] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] *
+            t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t68 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t69 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t70 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * t68 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * t69;
+        const gic_real t71 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t67 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * t68 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * t69;
+        const gic_real t73 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t70 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t71 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t76;
+        const gic_real t78 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t75 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t77;
+        const gic_real t79 = t49 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[15] * t76 - y[16] * t80;
-        const gic_real t82 = y[14] * t79 - y[15] * t81 + (rate[14] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[18] * (m[84] * t75);
+        const gic_real t81 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t76 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t79 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t81 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[14] * t80 - t58));
-        const gic_real t87 = y[16] * t81 - y[14] * t86 + (t60 - rate[14] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[18] * (m[84] * t76);
+        const gic_real t85 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t81 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t86 + (t60 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t85 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[163] + y[15];
-        const gic_real t93 = m[164] + y[16];
-        const gic_real t94 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t95 = m[158] * R(4.7728205);
-        const gic_real t96 = m[157] * R(0.19340000000000046);
-        const gic_real t97 = m[156] * R(4.8947505);
-        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
-        const gic_real t99 = m[162] + y[14];
-        const gic_real t100 = m[155] * R(4.7728205);
-        const gic_real t101 = m[154] * R(0.19340000000000046);
-        const gic_real t102 = m[153] * R(4.8947505);
-        const gic_real t103 = m[161] * t100 + (m[160] * t101 + m[159] * t102);
+        /* wheel tire_f_l */
+        const gic_real t92 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t93 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t94 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t95 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t97 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t98 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t95 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t96 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t97);
+        const gic_real t99 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t100 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t101 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t102 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t103 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t100 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t101 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t102);
         const gic_real t104 = t93 * t94 + (t92 * t98 + t99 * t103);
-        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
-        const gic_real t106 = m[158] * t100 + (m[157] * t101 + m[156] * t102);
+        const gic_real t105 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t95 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t96 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t97);
+        const gic_real t106 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t100 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t101 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t102);
         const gic_real t107 = t93 * t98 + (t92 * t105 + t99 * t106);
-        const gic_real t108 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t109 = t108 + m[182] * rate[17];
-        const gic_real t110 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t111 = t110 + m[181] * rate[17];
-        const gic_real t112 = m[155] * t100 + (m[154] * t101 + m[153] * t102);
-        const gic_real t113 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t114 = t113 + m[180] * rate[17];
+        const gic_real t108 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t109 = t108 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t111 = t110 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * t100 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t101 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * t102);
+        const gic_real t113 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t114 = t113 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t93 * t107 + (t103 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[158] * R(0.09182100000000004);
-        const gic_real t117 = m[156] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
-        const gic_real t119 = m[155] * R(0.09182100000000004);
-        const gic_real t120 = m[153] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
-        const gic_real t122 = m[161] * R(0.09182100000000004);
-        const gic_real t123 = m[159] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
-        const gic_real t125 = m[164] * t121 - m[162] * t124;
-        const gic_real t126 = m[163] * t124 - m[164] * t118;
-        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
-        const gic_real t128 = m[173] + t127;
-        const gic_real t129 = m[166] + t125;
+        const gic_real t116 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t119 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t122 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t125 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t121 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t124;
+        const gic_real t126 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t124 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t118;
+        const gic_real t127 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t125 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t126 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t118 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t121);
+        const gic_real t128 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] + t125;
         const gic_real t130 = R(1.653405) + t121;
-        const gic_real t131 = m[152] + t124;
-        const gic_real t132 = t129 + (t129 + (y[16] * t130 - y[14] * t131));
-        const gic_real t133 = m[151] + t118;
-        const gic_real t134 = t126 + (t126 + (y[15] * t131 - y[16] * t133));
-        const gic_real t135 = y[14] * t132 - y[15] * t134 + (rate[14] * t133 - rate[15] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + u[2] * (m[174] * t118 - m[175] * t121);
-        const gic_real t137 = t136 + rate[17] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t131 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t130 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t131));
+        const gic_real t133 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t131 - y[HMMWV_TMEASY_STATE_OMEGA_Z] *
+            t133));
+        const gic_real t135 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t132 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t134 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t133 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t118 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t121);
+        const gic_real t137 = t136 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t118 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[162] * t118 - m[163] * t121;
-        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
-        const gic_real t141 = m[172] + t140;
-        const gic_real t142 = m[167] + t139;
-        const gic_real t143 = t142 + (t142 + (y[14] * t133 - y[15] * t130));
-        const gic_real t144 = y[16] * t134 - y[14] * t143 + (rate[16] * t130 - rate[14] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + u[2] * (m[176] * t121 - m[174] * t124);
-        const gic_real t146 = t145 + rate[17] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t139 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t118 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t121;
+        const gic_real t140 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t126 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t139 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t121 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t124);
+        const gic_real t141 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t133 - y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t130));
+        const gic_real t144 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t134 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t143 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t130 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t121 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t124);
+        const gic_real t146 = t145 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t121 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
-        const gic_real t150 = m[199] + y[15];
-        const gic_real t151 = m[200] + y[16];
-        const gic_real t152 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t153 = m[194] * R(4.7728205);
-        const gic_real t154 = m[193] * R(0.19340000000000046);
-        const gic_real t155 = m[192] * R(4.8947505);
-        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
-        const gic_real t157 = m[198] + y[14];
-        const gic_real t158 = m[191] * R(4.7728205);
-        const gic_real t159 = m[190] * R(0.19340000000000046);
-        const gic_real t160 = m[189] * R(4.8947505);
-        const gic_real t161 = m[197] * t158 + (m[196] * t159 + m[195] * t160);
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t138 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t147));
+        /* wheel tire_f_r */
+        const gic_real t150 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t151 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t152 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t153 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t155 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t156 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t153 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t154 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t155);
+        const gic_real t157 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t159 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t160 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t161 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t158 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t159 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t160);
         const gic_real t162 = t151 * t152 + (t150 * t156 + t157 * t161);
-        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
-        const gic_real t164 = m[194] * t158 + (m[193] * t159 + m[192] * t160);
+        const gic_real t163 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t153 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t154 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t155);
+        const gic_real t164 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t158 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t159 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t160);
         const gic_real t165 = t151 * t156 + (t150 * t163 + t157 * t164);
-        const gic_real t166 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t167 = t166 + m[218] * rate[18];
-        const gic_real t168 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t169 = t168 + m[217] * rate[18];
-        const gic_real t170 = m[191] * t158 + (m[190] * t159 + m[189] * t160);
-        const gic_real t171 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t172 = t171 + m[216] * rate[18];
+        const gic_real t166 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t167 = t166 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t169 = t168 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * t158 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t159 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * t160);
+        const gic_real t171 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t172 = t171 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
         const gic_real t173 = t150 * t162 - t151 * t165 + (t161 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[191] * R(0.09182100000000004);
-        const gic_real t178 = m[189] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
-        const gic_real t180 = m[197] * R(0.09182100000000004);
-        const gic_real t181 = m[195] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
-        const gic_real t183 = m[200] * t179 - m[198] * t182;
-        const gic_real t184 = m[199] * t182 - m[200] * t176;
-        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
-        const gic_real t186 = m[209] + t185;
-        const gic_real t187 = m[202] + t183;
+        const gic_real t174 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t180 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t183 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t182;
+        const gic_real t184 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t182 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t176;
+        const gic_real t185 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t183 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t184 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t179);
+        const gic_real t186 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] + t183;
         const gic_real t188 = R(1.653405) + t179;
-        const gic_real t189 = m[188] + t182;
-        const gic_real t190 = t187 + (t187 + (y[16] * t188 - y[14] * t189));
-        const gic_real t191 = m[187] + t176;
-        const gic_real t192 = t184 + (t184 + (y[15] * t189 - y[16] * t191));
-        const gic_real t193 = y[14] * t190 - y[15] * t192 + (rate[14] * t191 - rate[15] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + u[2] * (m[210] * t176 - m[211] * t179);
-        const gic_real t195 = t194 + rate[18] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t189 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t188 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t189));
+        const gic_real t191 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t189 - y[HMMWV_TMEASY_STATE_OMEGA_Z] *
+            t191));
+        const gic_real t193 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t190 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t192 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t191 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t179);
+        const gic_real t195 = t194 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[198] * t176 - m[199] * t179;
-        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
-        const gic_real t199 = m[208] + t198;
-        const gic_real t200 = m[203] + t197;
-        const gic_real t201 = t200 + (t200 + (y[14] * t191 - y[15] * t188));
-        const gic_real t202 = y[16] * t192 - y[14] * t201 + (rate[16] * t188 - rate[14] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + u[2] * (m[212] * t179 - m[210] * t182);
-        const gic_real t204 = t203 + rate[18] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t197 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t179;
+        const gic_real t198 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t184 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t197 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t182);
+        const gic_real t199 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t191 - y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t188));
+        const gic_real t202 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t192 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t201 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t188 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t182);
+        const gic_real t204 = t203 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t208 = m[98] * R(0.8938);
-        const gic_real t209 = m[97] * R(0.4469);
-        const gic_real t210 = m[101] * t208 + m[100] * t209;
-        const gic_real t211 = y[16] * t207 + y[15] * t210;
-        const gic_real t212 = m[98] * t208 + m[97] * t209;
-        const gic_real t213 = y[16] * t210 + y[15] * t212;
-        const gic_real t214 = y[15] * t211 - y[16] * t213 + R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]);
-        const gic_real t215 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t216 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t217 = m[102] * t216;
-        const gic_real t218 = m[108] * t215 - m[102] * t217;
-        const gic_real t219 = R(-1.688965) * y[16];
-        const gic_real t220 = t219 - y[14] * t216 - t217 - t217;
+        /* inertia of lca_r_l */
+        const gic_real t207 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t208 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t209 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t210 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * t208 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * t209;
+        const gic_real t211 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t207 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t210;
+        const gic_real t212 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * t208 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * t209;
+        const gic_real t213 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t210 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t212;
+        const gic_real t214 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t211 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t213 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE]);
+        const gic_real t215 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.246867347245056);
+        const gic_real t216 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * R(0.246867347245056);
+        const gic_real t217 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t216;
+        const gic_real t218 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t215 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t217;
+        const gic_real t219 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t220 = t219 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t216 - t217 - t217;
         const gic_real t221 = R(0.307086) + t215;
-        const gic_real t222 = y[15] * t216 - y[16] * t221;
-        const gic_real t223 = R(-1.688965) * rate[15];
-        const gic_real t224 = y[14] * t220 - y[15] * t222 + (rate[14] * t221 - t223);
-        const gic_real t225 = t218 + (t28 + t224) + rate[19] * (m[114] * t215);
+        const gic_real t222 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t216 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t221;
+        const gic_real t223 = R(-1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t224 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t220 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t222 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t221 - t223);
+        const gic_real t225 = t218 + (t28 + t224) + rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t215);
         const gic_real t226 = R(23.965) * t225;
-        const gic_real t227 = m[102] * t215;
-        const gic_real t228 = R(-1.688965) * y[15];
-        const gic_real t229 = t227 + (t227 + (y[14] * t221 - t228));
-        const gic_real t230 = R(-1.688965) * rate[16];
-        const gic_real t231 = y[16] * t222 - y[14] * t229 + (t230 - rate[14] * t216);
-        const gic_real t232 = m[102] * t227 + m[108] * t216;
-        const gic_real t233 = t16 + t231 - t232 - rate[19] * (m[114] * t216);
+        const gic_real t227 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t215;
+        const gic_real t228 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t229 = t227 + (t227 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t221 - t228));
+        const gic_real t230 = R(-1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t231 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t222 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t229 + (t230 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t216);
+        const gic_real t232 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t227 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t216;
+        const gic_real t233 = t16 + t231 - t232 - rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t216);
         const gic_real t234 = R(23.965) * t233;
         const gic_real t235 = t214 + (t215 * t226 - t216 * t234);
-        const gic_real t236 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + (t235 + R(7.359315990000001) * t225);
-        const gic_real t237 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t238 = m[128] * R(0.8938);
-        const gic_real t239 = m[127] * R(0.4469);
-        const gic_real t240 = m[131] * t238 + m[130] * t239;
-        const gic_real t241 = y[16] * t237 + y[15] * t240;
-        const gic_real t242 = m[128] * t238 + m[127] * t239;
-        const gic_real t243 = y[16] * t240 + y[15] * t242;
-        const gic_real t244 = y[15] * t241 - y[16] * t243 + R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]);
-        const gic_real t245 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t246 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t247 = m[132] * t246;
-        const gic_real t248 = m[138] * t245 - m[132] * t247;
-        const gic_real t249 = t219 - y[14] * t246 - t247 - t247;
+        const gic_real t236 = t149 + (t206 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t196 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t205)) + (t235 + R(7.359315990000001) * t225);
+        /* inertia of lca_r_r */
+        const gic_real t237 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t238 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t239 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t240 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * t238 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * t239;
+        const gic_real t241 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t237 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t240;
+        const gic_real t242 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * t238 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * t239;
+        const gic_real t243 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t240 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t242;
+        const gic_real t244 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t241 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t243 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE]);
+        const gic_real t245 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(-0.246867347245056);
+        const gic_real t246 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * R(-0.246867347245056);
+        const gic_real t247 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t246;
+        const gic_real t248 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t245 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t247;
+        const gic_real t249 = t219 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t246 - t247 - t247;
         const gic_real t250 = R(-0.307086) + t245;
-        const gic_real t251 = y[15] * t246 - y[16] * t250;
-        const gic_real t252 = y[14] * t249 - y[15] * t251 + (rate[14] * t250 - t223);
-        const gic_real t253 = t248 + (t28 + t252) + rate[20] * (m[144] * t245);
+        const gic_real t251 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t246 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t250;
+        const gic_real t252 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t249 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t251 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t250 - t223);
+        const gic_real t253 = t248 + (t28 + t252) + rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t245);
         const gic_real t254 = R(23.965) * t253;
-        const gic_real t255 = m[132] * t245;
-        const gic_real t256 = t255 + (t255 + (y[14] * t250 - t228));
-        const gic_real t257 = y[16] * t251 - y[14] * t256 + (t230 - rate[14] * t246);
-        const gic_real t258 = m[132] * t255 + m[138] * t246;
-        const gic_real t259 = t16 + t257 - t258 - rate[20] * (m[144] * t246);
+        const gic_real t255 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t245;
+        const gic_real t256 = t255 + (t255 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t250 - t228));
+        const gic_real t257 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t251 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t256 + (t230 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t246);
+        const gic_real t258 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t255 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t246;
+        const gic_real t259 = t16 + t257 - t258 - rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t246);
         const gic_real t260 = R(23.965) * t259;
         const gic_real t261 = t244 + (t245 * t254 - t246 * t260);
-        const gic_real t262 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
-        const gic_real t263 = m[230] * R(4.7728205);
-        const gic_real t264 = m[229] * R(0.19340000000000046);
-        const gic_real t265 = m[233] * t263 + m[232] * t264;
-        const gic_real t266 = y[16] * t262 + y[15] * t265;
-        const gic_real t267 = m[230] * t263 + m[229] * t264;
-        const gic_real t268 = y[16] * t265 + y[15] * t267;
-        const gic_real t269 = y[15] * t266 - y[16] * t268 + R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]);
-        const gic_real t270 = m[230] * R(0.09182100000000004);
-        const gic_real t271 = t270 + m[229] * R(0.08910630000000008);
-        const gic_real t272 = m[233] * R(0.09182100000000004);
-        const gic_real t273 = t272 + m[232] * R(0.08910630000000008);
-        const gic_real t274 = m[234] * t273;
-        const gic_real t275 = m[245] + (m[240] * t271 - m[234] * t274);
-        const gic_real t276 = m[238] - t274;
-        const gic_real t277 = R(-1.653405) * y[16];
-        const gic_real t278 = m[224] + t273;
-        const gic_real t279 = t276 + (t276 + (t277 - y[14] * t278));
-        const gic_real t280 = m[223] + t271;
-        const gic_real t281 = y[15] * t278 - y[16] * t280;
-        const gic_real t282 = R(-1.653405) * rate[15];
-        const gic_real t283 = y[14] * t279 - y[15] * t281 + (rate[14] * t280 - t282);
-        const gic_real t284 = t275 + (t28 + t283) + rate[19] * (m[251] + m[246] * t271);
+        /* inertia of wheel_r_l */
+        const gic_real t262 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046));
+        const gic_real t263 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t264 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t265 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * t263 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t264;
+        const gic_real t266 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t262 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t265;
+        const gic_real t267 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * t263 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t264;
+        const gic_real t268 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t265 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t267;
+        const gic_real t269 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t266 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t268 +
+            R(4.8947505) * (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE]);
+        /* wheel tire_r_l */
+        const gic_real t270 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t271 = t270 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008);
+        const gic_real t272 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008);
+        const gic_real t274 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t273;
+        const gic_real t275 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t271 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t274);
+        const gic_real t276 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] - t274;
+        const gic_real t277 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t278 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t273;
+        const gic_real t279 = t276 + (t276 + (t277 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t278));
+        const gic_real t280 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t271;
+        const gic_real t281 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t278 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t280;
+        const gic_real t282 = R(-1.653405) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t283 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t279 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t281 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t280 - t282);
+        const gic_real t284 = t275 + (t28 + t283) + rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t271);
         const gic_real t285 = R(90.555) * t284;
-        const gic_real t286 = m[234] * t271;
-        const gic_real t287 = m[244] - (m[234] * t286 + m[240] * t273);
-        const gic_real t288 = m[239] + t286;
-        const gic_real t289 = R(-1.653405) * y[15];
-        const gic_real t290 = t288 + (t288 + (y[14] * t280 - t289));
-        const gic_real t291 = R(-1.653405) * rate[16];
-        const gic_real t292 = y[16] * t281 - y[14] * t290 + (t291 - rate[14] * t278);
-        const gic_real t293 = t287 + (t16 + t292) + rate[19] * (m[250] - m[246] * t273);
+        const gic_real t286 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t271;
+        const gic_real t287 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t286 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t273);
+        const gic_real t288 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] + t286;
+        const gic_real t289 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t290 = t288 + (t288 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t280 - t289));
+        const gic_real t291 = R(-1.653405) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t292 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t281 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t290 + (t291 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t278);
+        const gic_real t293 = t287 + (t16 + t292) + rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t273);
         const gic_real t294 = R(90.555) * t293;
         const gic_real t295 = t269 + (t271 * t285 - t273 * t294);
-        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 + (m[223] * t285 - m[224] * t294));
-        const gic_real t297 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
-        const gic_real t298 = m[260] * R(4.7728205);
-        const gic_real t299 = m[259] * R(0.19340000000000046);
-        const gic_real t300 = m[263] * t298 + m[262] * t299;
-        const gic_real t301 = y[16] * t297 + y[15] * t300;
-        const gic_real t302 = m[260] * t298 + m[259] * t299;
-        const gic_real t303 = y[16] * t300 + y[15] * t302;
-        const gic_real t304 = y[15] * t301 - y[16] * t303 + R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]);
-        const gic_real t305 = m[260] * R(0.09182100000000004);
-        const gic_real t306 = t305 + m[259] * R(-0.08910630000000008);
-        const gic_real t307 = m[263] * R(0.09182100000000004);
-        const gic_real t308 = t307 + m[262] * R(-0.08910630000000008);
-        const gic_real t309 = m[264] * t308;
-        const gic_real t310 = m[275] + (m[270] * t306 - m[264] * t309);
-        const gic_real t311 = m[268] - t309;
-        const gic_real t312 = m[254] + t308;
-        const gic_real t313 = t311 + (t311 + (t277 - y[14] * t312));
-        const gic_real t314 = m[253] + t306;
-        const gic_real t315 = y[15] * t312 - y[16] * t314;
-        const gic_real t316 = y[14] * t313 - y[15] * t315 + (rate[14] * t314 - t282);
-        const gic_real t317 = t310 + (t28 + t316) + rate[20] * (m[281] + m[276] * t306);
+        const gic_real t296 = t236 + (t261 + R(-7.359315990000001) * t253) + (t295 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t285 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t294));
+        /* inertia of wheel_r_r */
+        const gic_real t297 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046));
+        const gic_real t298 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t299 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t300 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * t298 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t299;
+        const gic_real t301 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t297 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t300;
+        const gic_real t302 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * t298 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t299;
+        const gic_real t303 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t300 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t302;
+        const gic_real t304 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t301 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t303 +
+            R(4.8947505) * (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE]);
+        /* wheel tire_r_r */
+        const gic_real t305 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t306 = t305 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008);
+        const gic_real t307 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t308 = t307 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008);
+        const gic_real t309 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t308;
+        const gic_real t310 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t306 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t309);
+        const gic_real t311 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] - t309;
+        const gic_real t312 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t308;
+        const gic_real t313 = t311 + (t311 + (t277 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t312));
+        const gic_real t314 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t306;
+        const gic_real t315 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t312 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t314;
+        const gic_real t316 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t313 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t315 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t314 - t282);
+        const gic_real t317 = t310 + (t28 + t316) + rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t306);
         const gic_real t318 = R(90.555) * t317;
-        const gic_real t319 = m[264] * t306;
-        const gic_real t320 = m[274] - (m[264] * t319 + m[270] * t308);
-        const gic_real t321 = m[269] + t319;
-        const gic_real t322 = t321 + (t321 + (y[14] * t314 - t289));
-        const gic_real t323 = y[16] * t315 - y[14] * t322 + (t291 - rate[14] * t312);
-        const gic_real t324 = t320 + (t16 + t323) + rate[20] * (m[280] - m[276] * t308);
+        const gic_real t319 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t306;
+        const gic_real t320 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t319 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t308);
+        const gic_real t321 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] + t319;
+        const gic_real t322 = t321 + (t321 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t314 - t289));
+        const gic_real t323 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t315 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t322 + (t291 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t312);
+        const gic_real t324 = t320 + (t16 + t323) + rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t308);
         const gic_real t325 = R(90.555) * t324;
         const gic_real t326 = t304 + (t306 * t318 - t308 * t325);
         const gic_real t327 = t25 - t26;
         const gic_real t328 = t13 + t14;
         const gic_real t329 = R(1.0) - (t22 + t11);
-        const gic_real t330 = t327 * self->grip[86] + (t328 * self->grip[85] + t329 * self->grip[84]);
-        const gic_real t331 = t305 + m[259] * R(-0.12319000000000002);
-        const gic_real t332 = t23 * self->grip[83] + (t24 * self->grip[82] + t27 * self->grip[81]);
-        const gic_real t333 = t307 + m[262] * R(-0.12319000000000002);
-        const gic_real t334 = t7 * self->grip[83] + (t12 * self->grip[82] + t15 * self->grip[81]);
+        const gic_real t330 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t331 = t305 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
+        const gic_real t332 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t333 = t307 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
+        const gic_real t334 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t335 = t330 + (t331 * t332 - t333 * t334);
-        const gic_real t336 = t327 * self->grip[59] + (t328 * self->grip[58] + t329 * self->grip[57]);
-        const gic_real t337 = t270 + m[229] * R(0.12319000000000002);
-        const gic_real t338 = t23 * self->grip[56] + (t24 * self->grip[55] + t27 * self->grip[54]);
-        const gic_real t339 = t272 + m[232] * R(0.12319000000000002);
-        const gic_real t340 = t7 * self->grip[56] + (t12 * self->grip[55] + t15 * self->grip[54]);
+        const gic_real t336 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t337 = t270 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t338 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t339 = t272 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t340 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t341 = t336 + (t337 * t338 - t339 * t340);
-        const gic_real t342 = t327 * self->grip[32] + (t328 * self->grip[31] + t329 * self->grip[30]);
-        const gic_real t343 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t344 = t23 * self->grip[29] + (t24 * self->grip[28] + t27 * self->grip[27]);
-        const gic_real t345 = t180 + (m[196] * R(-0.12319000000000002) + t181);
-        const gic_real t346 = t7 * self->grip[29] + (t12 * self->grip[28] + t15 * self->grip[27]);
+        const gic_real t342 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t343 = t174 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            t175);
+        const gic_real t344 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t345 = t180 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            t181);
+        const gic_real t346 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t347 = t342 + (t343 * t344 - t345 * t346);
-        const gic_real t348 = t327 * self->grip[5] + (t328 * self->grip[4] + t329 * self->grip[3]);
-        const gic_real t349 = t116 + (m[157] * R(0.12319000000000002) + t117);
-        const gic_real t350 = t23 * self->grip[2] + (t24 * self->grip[1] + t27 * self->grip[0]);
-        const gic_real t351 = t122 + (m[160] * R(0.12319000000000002) + t123);
-        const gic_real t352 = t7 * self->grip[2] + (t12 * self->grip[1] + t15 * self->grip[0]);
+        const gic_real t348 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t349 = t116 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            t117);
+        const gic_real t350 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t351 = t122 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            t123);
+        const gic_real t352 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t353 = t348 + (t349 * t350 - t351 * t352);
-        const gic_real t354 = m[154] * self->grip[6];
-        const gic_real t355 = m[190] * self->grip[33];
-        const gic_real t356 = t353 + (m[151] * t350 - m[152] * t352 - (t354 + t355));
-        const gic_real t357 = t347 + (t356 + (m[187] * t344 - m[188] * t346)) + (m[223] * t338 - m[224] * t340);
-        const gic_real t358 = t335 + (t341 + t357 + (m[253] * t332 - m[254] * t334));
-        const gic_real t359 = t296 + (t326 + (m[253] * t318 - m[254] * t325)) - t358;
-        const gic_real t360 = m[160] * self->grip[6];
-        const gic_real t361 = m[157] * self->grip[6];
+        const gic_real t354 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t355 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE];
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t356 = t353 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t350 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t352 - (t354 + t355));
+        const gic_real t357 = t347 + (t356 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t344 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t346)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t338 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t340);
+        const gic_real t358 = t335 + (t341 + t357 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t332 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t334));
+        const gic_real residual_0 = t296 + (t326 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t318 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t325)) - t358;
+        const gic_real t360 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t361 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE];
         const gic_real t362 = GIC_FABS(-t360) + GIC_FABS(-t361) + GIC_FABS(-t354);
-        const gic_real t363 = m[196] * self->grip[33];
-        const gic_real t364 = m[193] * self->grip[33];
+        const gic_real t363 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t364 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE];
         const gic_real t365 = GIC_FABS(-t363) + GIC_FABS(-t364) + GIC_FABS(-t355);
-        const gic_real t366 = m[232] * self->grip[60];
-        const gic_real t367 = m[229] * self->grip[60];
+        const gic_real t366 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t367 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE];
         const gic_real t368 = t362 + t365 + (GIC_FABS(-t366) + GIC_FABS(-t367));
-        const gic_real t369 = m[262] * self->grip[87];
-        const gic_real t370 = m[259] * self->grip[87];
+        const gic_real t369 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t370 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
         const gic_real t371 = t368 + (GIC_FABS(-t369) + GIC_FABS(-t370));
         const gic_real t372 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t327);
-        const gic_real t373 = t327 * t8 + (t328 * rate[12] + t329 * rate[11]);
+        const gic_real t373 = t327 * t8 + (t328 * rate[HMMWV_TMEASY_STATE_V_Y] + t329 * rate[HMMWV_TMEASY_STATE_V_X]);
         const gic_real t374 = t372 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t373));
-        const gic_real t375 = GIC_FABS(y[16]) + GIC_FABS(y[15]) + GIC_FABS(y[14]);
-        const gic_real t376 = GIC_FABS(rate[16]) + GIC_FABS(rate[15]) + GIC_FABS(rate[14]);
+        const gic_real t375 = GIC_FABS(y[HMMWV_TMEASY_STATE_OMEGA_Z]) + GIC_FABS(y[HMMWV_TMEASY_STATE_OMEGA_Y]) +
+            GIC_FABS(y[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t376 = GIC_FABS(rate[HMMWV_TMEASY_STATE_OMEGA_Z]) + GIC_FABS(rate[HMMWV_TMEASY_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[HMMWV_TMEASY_STATE_OMEGA_X]);
         const gic_real t377 = t375 * t375 + t376;
         const gic_real t378 = t374 + t377 * R(0.2690000000000001);
         const gic_real t379 = t371 + (t378 * R(561.2738800000002) + t377 * R(7604.379999999999));
-        const gic_real t380 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t381 = GIC_FABS(u[2]);
-        const gic_real t382 = t374 + t377 * t380 + t375 * GIC_FABS(m[16]) + t381;
+        const gic_real t380 = R(1.438648) + (R(0.05422899999999997) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y]));
+        const gic_real t381 = GIC_FABS(u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION]);
+        const gic_real t382 = t374 + t377 * t380 + t375 *
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y]) + t381;
         const gic_real t383 = R(9.072) * t382 + t377 * R(0.0005216895628628198);
-        const gic_real t384 = t379 + t378 * R(0.3983301514773894) + (t377 * R(3.0) + t382 * R(0.0005216895628628198) + t380 * t383);
+        const gic_real t384 = t379 + t378 * R(0.3983301514773894) + (t377 * R(3.0) + t382 * R(0.0005216895628628198) +
+            t380 * t383);
         const gic_real t385 = GIC_FABS(t46);
         const gic_real t386 = t385 + GIC_FABS(t45);
-        const gic_real t387 = t375 + GIC_FABS(m[42]);
+        const gic_real t387 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t388 = t376 + t387 * t387;
-        const gic_real t389 = t374 + t388 * (R(1.688965) + (t385 + GIC_FABS(t51))) + t375 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t390 = GIC_FABS(rate[17]);
-        const gic_real t391 = GIC_FABS(m[54]);
+        const gic_real t389 = t374 + t388 * (R(1.688965) + (t385 + GIC_FABS(t51))) + t375 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t390 = GIC_FABS(rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE]);
+        const gic_real t391 = GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0]);
         const gic_real t392 = t390 * t391;
         const gic_real t393 = t389 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t392 * t386;
         const gic_real t394 = R(23.965) * t393;
-        const gic_real t395 = t386 * t394 + (t388 + GIC_FABS(m[48]) + t392) * R(1.7876);
+        const gic_real t395 = t386 * t394 + (t388 + GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X]) +
+            t392) * R(1.7876);
         const gic_real t396 = t395 + t393 * R(0.0006545214587773269);
         const gic_real t397 = t394 + t395 * R(0.00036614536740732094);
         const gic_real t398 = GIC_FABS(t76);
         const gic_real t399 = t398 + GIC_FABS(t75);
-        const gic_real t400 = t375 + GIC_FABS(m[72]);
+        const gic_real t400 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t401 = t376 + t400 * t400;
-        const gic_real t402 = t374 + t401 * (R(1.688965) + (t398 + GIC_FABS(t80))) + t375 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t403 = GIC_FABS(rate[18]);
-        const gic_real t404 = GIC_FABS(m[84]);
+        const gic_real t402 = t374 + t401 * (R(1.688965) + (t398 + GIC_FABS(t80))) + t375 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t403 = GIC_FABS(rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE]);
+        const gic_real t404 = GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0]);
         const gic_real t405 = t403 * t404;
         const gic_real t406 = t402 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t405 * t399;
         const gic_real t407 = R(23.965) * t406;
-        const gic_real t408 = t399 * t407 + R(1.7876) * (t401 + GIC_FABS(m[78]) + t405);
+        const gic_real t408 = t399 * t407 + R(1.7876) * (t401 +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X]) + t405);
         const gic_real t409 = t408 + R(0.0006545214587773269) * t406;
         const gic_real t410 = t407 + R(0.00036614536740732094) * t408;
         const gic_real t411 = t384 + (t396 + t397 * R(1.996051)) + (t409 + R(1.996051) * t410);
-        const gic_real t412 = t327 * self->grip[2] + (t328 * self->grip[1] + t329 * self->grip[0]);
+        const gic_real t412 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t413 = GIC_FABS(t350) + GIC_FABS(t352) + GIC_FABS(t412);
-        const gic_real t414 = t119 + (m[154] * R(0.12319000000000002) + t120);
+        const gic_real t414 = t119 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            t120);
         const gic_real t415 = t413 * (GIC_FABS(t351) + GIC_FABS(t349) + GIC_FABS(t414));
-        const gic_real t416 = t23 * self->grip[5] + (t24 * self->grip[4] + t27 * self->grip[3]);
-        const gic_real t417 = t7 * self->grip[5] + (t12 * self->grip[4] + t15 * self->grip[3]);
+        const gic_real t416 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t417 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
         const gic_real t418 = t415 + (GIC_FABS(t416) + GIC_FABS(t417) + GIC_FABS(t348));
         const gic_real t419 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t420 = t375 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t420 = t375 + (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X]));
         const gic_real t421 = t376 + t420 * t420;
         const gic_real t422 = t421 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t423 = t375 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t424 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t424 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t139 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t125 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t124 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t118);
         const gic_real t425 = t374 + t422 + t423 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t424));
-        const gic_real t426 = t381 * (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
-        const gic_real t427 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t426 = t381 * (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0]));
+        const gic_real t427 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6]);
         const gic_real t428 = t390 * t427;
-        const gic_real t429 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t429 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10]);
         const gic_real t430 = t425 + t426 * t419 + t419 * t428 + t390 * t429;
         const gic_real t431 = R(90.555) * t430;
-        const gic_real t432 = t421 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t432 = t421 + (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X]));
         const gic_real t433 = t418 + (t419 * t431 + (t432 + t426 + t428) * R(9.860971));
         const gic_real t434 = t413 + t431;
         const gic_real t435 = t433 + t434 * R(3.299921610411797e-05);
         const gic_real t436 = t434 + t433 * R(0.000303037501510592);
-        const gic_real t437 = t435 + t436 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
-        const gic_real t438 = t327 * self->grip[29] + (t328 * self->grip[28] + t329 * self->grip[27]);
+        const gic_real t437 = t435 + t436 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y])));
+        const gic_real t438 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t439 = GIC_FABS(t344) + GIC_FABS(t346) + GIC_FABS(t438);
-        const gic_real t440 = t177 + (m[190] * R(-0.12319000000000002) + t178);
+        const gic_real t440 = t177 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            t178);
         const gic_real t441 = t439 * (GIC_FABS(t345) + GIC_FABS(t343) + GIC_FABS(t440));
-        const gic_real t442 = t23 * self->grip[32] + (t24 * self->grip[31] + t27 * self->grip[30]);
-        const gic_real t443 = t7 * self->grip[32] + (t12 * self->grip[31] + t15 * self->grip[30]);
+        const gic_real t442 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t443 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
         const gic_real t444 = t441 + (GIC_FABS(t442) + GIC_FABS(t443) + GIC_FABS(t342));
         const gic_real t445 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t446 = t375 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t446 = t375 + (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X]));
         const gic_real t447 = t376 + t446 * t446;
         const gic_real t448 = t447 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t449 = t375 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t450 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t450 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t197 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t183 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t182 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t176);
         const gic_real t451 = t374 + t448 + t449 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t450));
-        const gic_real t452 = t381 * (GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]));
-        const gic_real t453 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t452 = t381 * (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0]));
+        const gic_real t453 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6]);
         const gic_real t454 = t403 * t453;
-        const gic_real t455 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t455 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10]);
         const gic_real t456 = t451 + t452 * t445 + t445 * t454 + t403 * t455;
         const gic_real t457 = R(90.555) * t456;
-        const gic_real t458 = t447 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t458 = t447 + (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X]));
         const gic_real t459 = t444 + (t445 * t457 + R(9.860971) * (t458 + t452 + t454));
         const gic_real t460 = t439 + t457;
         const gic_real t461 = t459 + R(3.299921610411797e-05) * t460;
         const gic_real t462 = t460 + R(0.000303037501510592) * t459;
-        const gic_real t463 = t461 + t462 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t463 = t461 + t462 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y])));
         const gic_real t464 = GIC_FABS(t216);
         const gic_real t465 = t464 + GIC_FABS(t215);
-        const gic_real t466 = t375 + GIC_FABS(m[102]);
+        const gic_real t466 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t467 = t376 + t466 * t466;
-        const gic_real t468 = t374 + t467 * (R(1.688965) + (t464 + GIC_FABS(t221))) + t375 * (GIC_FABS(t227) + GIC_FABS(-t217));
-        const gic_real t469 = GIC_FABS(rate[19]);
-        const gic_real t470 = GIC_FABS(m[114]);
+        const gic_real t468 = t374 + t467 * (R(1.688965) + (t464 + GIC_FABS(t221))) + t375 * (GIC_FABS(t227) +
+            GIC_FABS(-t217));
+        const gic_real t469 = GIC_FABS(rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE]);
+        const gic_real t470 = GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0]);
         const gic_real t471 = t469 * t470;
         const gic_real t472 = t468 + (GIC_FABS(t218) + GIC_FABS(-t232)) + t471 * t465;
         const gic_real t473 = R(23.965) * t472;
-        const gic_real t474 = t465 * t473 + R(1.7876) * (t467 + GIC_FABS(m[108]) + t471);
+        const gic_real t474 = t465 * t473 + R(1.7876) * (t467 +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X]) + t471);
         const gic_real t475 = t474 + R(0.0006545214587773269) * t472;
         const gic_real t476 = t473 + R(0.00036614536740732094) * t474;
         const gic_real t477 = GIC_FABS(t246);
         const gic_real t478 = t477 + GIC_FABS(t245);
-        const gic_real t479 = t375 + GIC_FABS(m[132]);
+        const gic_real t479 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t480 = t376 + t479 * t479;
-        const gic_real t481 = t374 + t480 * (R(1.688965) + (t477 + GIC_FABS(t250))) + t375 * (GIC_FABS(t255) + GIC_FABS(-t247));
-        const gic_real t482 = GIC_FABS(rate[20]);
-        const gic_real t483 = GIC_FABS(m[144]);
+        const gic_real t481 = t374 + t480 * (R(1.688965) + (t477 + GIC_FABS(t250))) + t375 * (GIC_FABS(t255) +
+            GIC_FABS(-t247));
+        const gic_real t482 = GIC_FABS(rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE]);
+        const gic_real t483 = GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0]);
         const gic_real t484 = t482 * t483;
         const gic_real t485 = t481 + (GIC_FABS(t248) + GIC_FABS(-t258)) + t484 * t478;
         const gic_real t486 = R(23.965) * t485;
-        const gic_real t487 = t478 * t486 + R(1.7876) * (t480 + GIC_FABS(m[138]) + t484);
+        const gic_real t487 = t478 * t486 + R(1.7876) * (t480 +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X]) + t484);
         const gic_real t488 = t487 + R(0.0006545214587773269) * t485;
         const gic_real t489 = t486 + R(0.00036614536740732094) * t487;
         const gic_real t490 = t411 + t437 + t463 + (t475 + R(1.996051) * t476) + (t488 + R(1.996051) * t489);
-        const gic_real t491 = t327 * self->grip[56] + (t328 * self->grip[55] + t329 * self->grip[54]);
+        const gic_real t491 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t492 = GIC_FABS(t338) + GIC_FABS(t340) + GIC_FABS(t491);
-        const gic_real t493 = t23 * self->grip[59] + (t24 * self->grip[58] + t27 * self->grip[57]);
-        const gic_real t494 = t7 * self->grip[59] + (t12 * self->grip[58] + t15 * self->grip[57]);
-        const gic_real t495 = t492 * (GIC_FABS(t339) + GIC_FABS(t337)) + (GIC_FABS(t493) + GIC_FABS(t494) + GIC_FABS(t336));
+        const gic_real t493 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t494 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t495 = t492 * (GIC_FABS(t339) + GIC_FABS(t337)) + (GIC_FABS(t493) + GIC_FABS(t494) +
+            GIC_FABS(t336));
         const gic_real t496 = GIC_FABS(t273) + GIC_FABS(t271);
-        const gic_real t497 = t375 + GIC_FABS(m[234]);
+        const gic_real t497 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t498 = t376 + t497 * t497;
         const gic_real t499 = t374 + t498 * (R(1.653405) + (GIC_FABS(t278) + GIC_FABS(t280)));
         const gic_real t500 = t499 + t375 * (GIC_FABS(t288) + GIC_FABS(t276)) + (GIC_FABS(t275) + GIC_FABS(t287));
-        const gic_real t501 = GIC_FABS(m[246]);
+        const gic_real t501 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0]);
         const gic_real t502 = t469 * t501;
-        const gic_real t503 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t503 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4]);
         const gic_real t504 = R(90.555) * (t500 + t502 * t496 + t469 * t503);
-        const gic_real t505 = t496 * t504 + R(9.860971) * (t498 + GIC_FABS(m[240]) + t502);
+        const gic_real t505 = t496 * t504 + R(9.860971) * (t498 +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X]) + t502);
         const gic_real t506 = t495 + t505;
         const gic_real t507 = t492 + t504;
         const gic_real t508 = t506 + R(3.299921610411797e-05) * t507;
         const gic_real t509 = t507 + R(0.000303037501510592) * t506;
-        const gic_real t510 = t508 + t509 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
-        const gic_real t511 = t327 * self->grip[83] + (t328 * self->grip[82] + t329 * self->grip[81]);
+        const gic_real t510 = t508 + t509 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y])));
+        const gic_real t511 = t327 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t328 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t329 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
         const gic_real t512 = GIC_FABS(t332) + GIC_FABS(t334) + GIC_FABS(t511);
-        const gic_real t513 = t23 * self->grip[86] + (t24 * self->grip[85] + t27 * self->grip[84]);
-        const gic_real t514 = t7 * self->grip[86] + (t12 * self->grip[85] + t15 * self->grip[84]);
-        const gic_real t515 = t512 * (GIC_FABS(t333) + GIC_FABS(t331)) + (GIC_FABS(t513) + GIC_FABS(t514) + GIC_FABS(t330));
+        const gic_real t513 = t23 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t514 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t515 = t512 * (GIC_FABS(t333) + GIC_FABS(t331)) + (GIC_FABS(t513) + GIC_FABS(t514) +
+            GIC_FABS(t330));
         const gic_real t516 = GIC_FABS(t308) + GIC_FABS(t306);
-        const gic_real t517 = t375 + GIC_FABS(m[264]);
+        const gic_real t517 = t375 + GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X]);
         const gic_real t518 = t376 + t517 * t517;
         const gic_real t519 = t374 + t518 * (R(1.653405) + (GIC_FABS(t312) + GIC_FABS(t314)));
         const gic_real t520 = t519 + t375 * (GIC_FABS(t321) + GIC_FABS(t311)) + (GIC_FABS(t310) + GIC_FABS(t320));
-        const gic_real t521 = GIC_FABS(m[276]);
+        const gic_real t521 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0]);
         const gic_real t522 = t482 * t521;
-        const gic_real t523 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t523 = GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4]);
         const gic_real t524 = R(90.555) * (t520 + t522 * t516 + t482 * t523);
-        const gic_real t525 = t516 * t524 + R(9.860971) * (t518 + GIC_FABS(m[270]) + t522);
+        const gic_real t525 = t516 * t524 + R(9.860971) * (t518 +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X]) + t522);
         const gic_real t526 = t515 + t525;
         const gic_real t527 = t512 + t524;
         const gic_real t528 = t526 + R(3.299921610411797e-05) * t527;
         const gic_real t529 = t527 + R(0.000303037501510592) * t526;
-        const gic_real t530 = t528 + t529 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t530 = t528 + t529 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z]) +
+            GIC_FABS(m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y])));
         const gic_real t531 = t490 + t510 + t530;
-        const gic_real t532 = y[16] * R(0.056) - y[14] * R(0.21300000000000008);
-        const gic_real t533 = t373 + (rate[15] * R(0.21300000000000008) - (y[16] * t532 + y[15] * t17));
-        const gic_real t534 = y[15] * t34 - y[16] * t29 + (R(0.05422899999999997) * rate[15] - m[1] * rate[16]);
+        const gic_real t532 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t533 = t373 + (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t532 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t17));
+        const gic_real t534 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t34 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t29 +
+            (R(0.05422899999999997) * rate[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * rate[HMMWV_TMEASY_STATE_OMEGA_Z]);
         const gic_real t535 = t373 + t534;
         const gic_real t536 = t535 * R(9.072);
-        const gic_real t537 = y[15] * t59 - y[16] * t50 + (rate[15] * t46 - rate[16] * t51);
+        const gic_real t537 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t59 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t50 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t46 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t51);
         const gic_real t538 = t373 + t537;
         const gic_real t539 = t538 * R(23.965);
-        const gic_real t540 = y[15] * t86 - y[16] * t79 + (rate[15] * t76 - rate[16] * t80);
+        const gic_real t540 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t86 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t79 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t76 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t80);
         const gic_real t541 = t373 + t540;
         const gic_real t542 = R(23.965) * t541;
-        const gic_real t543 = y[15] * t143 - y[16] * t132 + (rate[15] * t131 - rate[16] * t133);
-        const gic_real t544 = t424 + (t373 + t543) + u[2] * (m[175] * t124 - m[176] * t118);
-        const gic_real t545 = (t544 + rate[17] * (m[181] * t124 - m[182] * t118)) * R(90.555);
-        const gic_real t546 = y[15] * t201 - y[16] * t190 + (rate[15] * t189 - rate[16] * t191);
-        const gic_real t547 = t450 + (t373 + t546) + u[2] * (m[211] * t182 - m[212] * t176);
-        const gic_real t548 = R(90.555) * (t547 + rate[18] * (m[217] * t182 - m[218] * t176));
+        const gic_real t543 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t143 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t132 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t131 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t133);
+        const gic_real t544 = t424 + (t373 + t543) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t124 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t118);
+        const gic_real t545 = (t544 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t124 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t118)) * R(90.555);
+        const gic_real t546 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t201 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t190 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t189 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t191);
+        const gic_real t547 = t450 + (t373 + t546) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t182 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t176);
+        const gic_real t548 = R(90.555) * (t547 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t182 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t176));
         const gic_real t549 = t533 * R(2086.52) + t536 + t539 + t542 + t545 + t548;
-        const gic_real t550 = y[15] * t229 - y[16] * t220 + (rate[15] * t216 - rate[16] * t221);
+        const gic_real t550 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t229 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t220 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t216 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t221);
         const gic_real t551 = t373 + t550;
         const gic_real t552 = R(23.965) * t551;
-        const gic_real t553 = y[15] * t256 - y[16] * t249 + (rate[15] * t246 - rate[16] * t250);
+        const gic_real t553 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t256 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t249 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t246 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t250);
         const gic_real t554 = t373 + t553;
         const gic_real t555 = R(23.965) * t554;
-        const gic_real t556 = y[15] * t290 - y[16] * t279 + (rate[15] * t278 - rate[16] * t280);
+        const gic_real t556 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t290 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t279 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t278 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t280);
         const gic_real t557 = R(90.555) * (t373 + t556);
-        const gic_real t558 = y[15] * t322 - y[16] * t313 + (rate[15] * t312 - rate[16] * t314);
+        const gic_real t558 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t322 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t313 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t312 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t314);
         const gic_real t559 = R(90.555) * (t373 + t558);
-        const gic_real t560 = t549 + t552 + t555 + t557 + t559 - (t511 + (t491 + (t412 + t438)));
+        const gic_real residual_3 = t549 + t552 + t555 + t557 + t559 - (t511 + (t491 + (t412 + t438)));
         const gic_real t561 = R(2086.52) * t378 + t379 * R(5.2381673650894547e-05) + t383 + t397 + t410;
         const gic_real t562 = t561 + t436 + t462 + t476 + t489 + t509 + t529;
-        const gic_real t563 = y[14] * R(1078.52);
-        const gic_real t564 = t28 + (y[14] * t532 - y[15] * t18 - rate[15] * R(0.056));
-        const gic_real t565 = y[16] * t563 - y[14] * t1 + rate[15] * R(2955.66) + (t533 * R(444.4287600000002) - t564 * R(116.84512));
-        const gic_real t566 = m[42] + y[14];
+        const gic_real t563 = y[HMMWV_TMEASY_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t564 = t28 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t532 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t18 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t565 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t563 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t1 +
+            rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(2955.66) + (t533 * R(444.4287600000002) - t564 * R(116.84512));
+        const gic_real t566 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t567 = R(0.4469) * t566;
-        const gic_real t568 = rate[16] - m[42] * y[15];
-        const gic_real t569 = rate[15] + m[42] * y[16];
-        const gic_real t570 = y[16] * t567 - t566 * t41 + (t40 * t568 + t42 * t569);
-        const gic_real t571 = t565 + (rate[15] + (t535 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t570 + t46 * t539 - t55 * R(40.476046225));
-        const gic_real t572 = m[72] + y[14];
+        const gic_real t568 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t569 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t570 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t567 - t566 * t41 + (t40 * t568 + t42 * t569);
+        const gic_real t571 = t565 + (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (t535 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t570 + t46 * t539 - t55 * R(40.476046225));
+        const gic_real t572 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t573 = R(0.4469) * t572;
-        const gic_real t574 = rate[16] - m[72] * y[15];
-        const gic_real t575 = rate[15] + m[72] * y[16];
-        const gic_real t576 = y[16] * t573 - t572 * t71 + (t70 * t574 + t72 * t575);
+        const gic_real t574 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t575 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t576 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t573 - t572 * t71 + (t70 * t574 + t72 * t575);
         const gic_real t577 = t93 * t103 + (t92 * t106 + t99 * t112);
         const gic_real t578 = t93 * t577 - t99 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t579 = t578 + (t124 * t545 - t121 * t138);
-        const gic_real t580 = t571 + (t576 + t76 * t542 - R(40.476046225) * t83) + (t579 + (m[152] * t545 - t137 * R(149.724089775)));
+        const gic_real t580 = t571 + (t576 + t76 * t542 - R(40.476046225) * t83) + (t579 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t545 - t137 * R(149.724089775)));
         const gic_real t581 = t151 * t161 + (t150 * t164 + t157 * t170);
         const gic_real t582 = t151 * t581 - t157 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t583 = t582 + (t182 * t548 - t179 * t196);
-        const gic_real t584 = m[102] + y[14];
+        const gic_real t584 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t585 = R(0.4469) * t584;
-        const gic_real t586 = rate[16] - m[102] * y[15];
-        const gic_real t587 = rate[15] + m[102] * y[16];
-        const gic_real t588 = y[16] * t585 - t584 * t211 + (t210 * t586 + t212 * t587);
-        const gic_real t589 = t580 + (t583 + (m[188] * t548 - R(149.724089775) * t195)) + (t588 + t216 * t552 - t225 * R(-40.476046225));
-        const gic_real t590 = m[132] + y[14];
+        const gic_real t586 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t587 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t588 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t585 - t584 * t211 + (t210 * t586 + t212 * t587);
+        const gic_real t589 = t580 + (t583 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t548 -
+            R(149.724089775) * t195)) + (t588 + t216 * t552 - t225 * R(-40.476046225));
+        const gic_real t590 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t591 = R(0.4469) * t590;
-        const gic_real t592 = rate[16] - m[132] * y[15];
-        const gic_real t593 = rate[15] + m[132] * y[16];
-        const gic_real t594 = y[16] * t591 - t590 * t241 + (t240 * t592 + t242 * t593);
-        const gic_real t595 = m[234] + y[14];
+        const gic_real t592 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t593 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t594 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t591 - t590 * t241 + (t240 * t592 + t242 * t593);
+        const gic_real t595 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t596 = t595 * R(4.8947505);
-        const gic_real t597 = rate[16] - m[234] * y[15];
-        const gic_real t598 = rate[15] + m[234] * y[16];
-        const gic_real t599 = y[16] * t596 - t595 * t266 + (t265 * t597 + t267 * t598);
-        const gic_real t600 = t599 + t273 * t557 + (m[224] * t557 - t284 * R(-149.724089775));
+        const gic_real t597 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t598 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t599 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t596 - t595 * t266 + (t265 * t597 + t267 * t598);
+        const gic_real t600 = t599 + t273 * t557 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t557 - t284 *
+            R(-149.724089775));
         const gic_real t601 = t589 + (t594 + t246 * t555 - R(-40.476046225) * t253) + t600;
-        const gic_real t602 = m[264] + y[14];
+        const gic_real t602 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t603 = t602 * R(4.8947505);
-        const gic_real t604 = rate[16] - m[264] * y[15];
-        const gic_real t605 = rate[15] + m[264] * y[16];
-        const gic_real t606 = y[16] * t603 - t602 * t301 + (t300 * t604 + t302 * t605);
-        const gic_real t607 = t606 + t308 * t559 + (m[254] * t559 - R(-149.724089775) * t317);
+        const gic_real t604 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t605 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t606 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t603 - t602 * t301 + (t300 * t604 + t302 * t605);
+        const gic_real t607 = t606 + t308 * t559 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t559 -
+            R(-149.724089775) * t317);
         const gic_real t608 = t443 + (t345 * t438 - t440 * t344);
         const gic_real t609 = t417 + (t351 * t412 - t414 * t350);
-        const gic_real t610 = m[152] * t412 - R(1.653405) * t350 - (t361 + t364 + t367 + t370);
-        const gic_real t611 = t608 + (t609 + t610 + (m[188] * t438 - R(1.653405) * t344));
-        const gic_real t612 = t494 + t339 * t491 + (t611 + (m[224] * t491 - R(-1.653405) * t338));
-        const gic_real t613 = t514 + t333 * t511 + (t612 + (m[254] * t511 - R(-1.653405) * t332));
+        const gic_real t610 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t412 - R(1.653405) * t350 - (t361 +
+            t364 + t367 + t370);
+        const gic_real t611 = t608 + (t609 + t610 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t438 -
+            R(1.653405) * t344));
+        const gic_real t612 = t494 + t339 * t491 + (t611 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t491 -
+            R(-1.653405) * t338));
+        const gic_real t613 = t514 + t333 * t511 + (t612 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t511 -
+            R(-1.653405) * t332));
         const gic_real t614 = t20 * R(2086.52) + t36 * R(9.072) + t64 + t90 + t147;
-        const gic_real t615 = t614 + t205 + t234 + t260 + t294 + t325 - (t334 + (t340 + (t352 + t346)));
-        const gic_real t616 = y[14] * t2 - y[15] * t563 + rate[16] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t617 = t566 * t43 - y[15] * t567 + (t37 * t568 + t40 * t569);
+        const gic_real residual_4 = t614 + t205 + t234 + t260 + t294 + t325 - (t334 + (t340 + (t352 + t346)));
+        const gic_real t616 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t2 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t563 +
+            rate[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t617 = t566 * t43 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t567 + (t37 * t568 + t40 * t569);
         const gic_real t618 = t617 - t45 * t539 + (t63 * R(40.476046225) - t538 * R(7.359315990000001));
-        const gic_real t619 = t616 + (rate[16] + (t36 * R(13.051414655999999) - m[1] * t536)) + t618;
-        const gic_real t620 = t572 * t73 - y[15] * t573 + (t67 * t574 + t70 * t575);
+        const gic_real t619 = t616 + (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t536)) + t618;
+        const gic_real t620 = t572 * t73 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t573 + (t67 * t574 + t70 * t575);
         const gic_real t621 = t620 - t75 * t542 + (R(40.476046225) * t89 - t541 * R(-7.359315990000001));
         const gic_real t622 = t99 * t107 - t92 * t577 + (t94 * t109 + (t98 * t111 + t103 * t114));
         const gic_real t623 = t622 + (t121 * t147 - t118 * t545);
-        const gic_real t624 = t619 + t621 + (t623 + (t146 * R(149.724089775) - m[151] * t545));
+        const gic_real t624 = t619 + t621 + (t623 + (t146 * R(149.724089775) -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t545));
         const gic_real t625 = t157 * t165 - t150 * t581 + (t152 * t167 + (t156 * t169 + t161 * t172));
         const gic_real t626 = t625 + (t179 * t205 - t176 * t548);
-        const gic_real t627 = t584 * t213 - y[15] * t585 + (t207 * t586 + t210 * t587);
+        const gic_real t627 = t584 * t213 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t585 + (t207 * t586 + t210 * t587);
         const gic_real t628 = t627 - t215 * t552 + (t233 * R(-40.476046225) - R(7.359315990000001) * t551);
-        const gic_real t629 = t624 + (t626 + (R(149.724089775) * t204 - m[187] * t548)) + t628;
-        const gic_real t630 = t590 * t243 - y[15] * t591 + (t237 * t592 + t240 * t593);
+        const gic_real t629 = t624 + (t626 + (R(149.724089775) * t204 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t548)) + t628;
+        const gic_real t630 = t590 * t243 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t591 + (t237 * t592 + t240 * t593);
         const gic_real t631 = t630 - t245 * t555 + (R(-40.476046225) * t259 - R(-7.359315990000001) * t554);
-        const gic_real t632 = t595 * t268 - y[15] * t596 + (t262 * t597 + t265 * t598);
-        const gic_real t633 = t632 - t271 * t557 + (t293 * R(-149.724089775) - m[223] * t557);
-        const gic_real t634 = t602 * t303 - y[15] * t603 + (t297 * t604 + t300 * t605);
-        const gic_real t635 = t634 - t306 * t559 + (R(-149.724089775) * t324 - m[253] * t559);
+        const gic_real t632 = t595 * t268 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t596 + (t262 * t597 + t265 * t598);
+        const gic_real t633 = t632 - t271 * t557 + (t293 * R(-149.724089775) -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t557);
+        const gic_real t634 = t602 * t303 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t603 + (t297 * t604 + t300 * t605);
+        const gic_real t635 = t634 - t306 * t559 + (R(-149.724089775) * t324 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t559);
         const gic_real t636 = t442 + (t440 * t346 - t343 * t438);
         const gic_real t637 = t416 + (t414 * t352 - t349 * t412);
-        const gic_real t638 = R(1.653405) * t352 - m[151] * t412 - (t360 + t363 + t366 + t369);
-        const gic_real t639 = t636 + (t637 + t638 + (R(1.653405) * t346 - m[187] * t438));
-        const gic_real t640 = t493 - t337 * t491 + (t639 + (R(-1.653405) * t340 - m[223] * t491));
-        const gic_real t641 = t513 - t331 * t511 + (t640 + (R(-1.653405) * t334 - m[253] * t511));
+        const gic_real t638 = R(1.653405) * t352 - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t412 - (t360 +
+            t363 + t366 + t369);
+        const gic_real t639 = t636 + (t637 + t638 + (R(1.653405) * t346 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t438));
+        const gic_real t640 = t493 - t337 * t491 + (t639 + (R(-1.653405) * t340 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t491));
+        const gic_real t641 = t513 - t331 * t511 + (t640 + (R(-1.653405) * t334 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t511));
         const gic_real t642 = t564 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
-        const gic_real t643 = t642 + t226 + t254 + t285 + t318 - (t332 + (t338 + (t350 + t344)));
-        const gic_real t644 = m[185] * t138 + m[184] * t147 + (m[182] * t623 + (m[181] * t579 + m[180] * t148));
-        const gic_real t645 = m[185] * t350 + m[184] * t352 + (m[182] * t637 + (m[181] * t609 + m[180] * t353));
-        const gic_real t646 = (x[0] - R(0.31903)) * R(167070.9);
-        const gic_real t647 = xd[0] * R(17490.8);
-        const gic_real t648 = GIC_FABS(t647) + GIC_FABS(t646) + R(167070.9) * (R(0.31903) + GIC_FABS(x[0]));
+        const gic_real residual_5 = t642 + t226 + t254 + t285 + t318 - (t332 + (t338 + (t350 + t344)));
+        const gic_real t644 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] * t138 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] * t147 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t623 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t579 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t148));
+        const gic_real t645 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] * t350 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] * t352 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t637 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t609 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t353));
+        /* force spring_f_l */
+        const gic_real t646 = (x[HMMWV_TMEASY_X_SPRING_F_L] - R(0.31903)) * R(167070.9);
+        const gic_real t647 = xd[HMMWV_TMEASY_X_SPRING_F_L] * R(17490.8);
+        const gic_real t648 = GIC_FABS(t647) + GIC_FABS(t646) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_TMEASY_X_SPRING_F_L]));
         const gic_real t649 = t648 + t391 * t396 + t427 * t435 + t429 * t436;
-        const gic_real t650 = m[221] * t196 + m[220] * t205 + (m[218] * t626 + (m[217] * t583 + m[216] * t206));
-        const gic_real t651 = m[221] * t344 + m[220] * t346 + (m[218] * t636 + (m[217] * t608 + m[216] * t347));
-        const gic_real t652 = R(167070.9) * (x[1] - R(0.31903));
-        const gic_real t653 = xd[1] * R(17490.8);
-        const gic_real t654 = GIC_FABS(t653) + GIC_FABS(t652) + R(167070.9) * (R(0.31903) + GIC_FABS(x[1]));
+        const gic_real t650 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] * t196 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] * t205 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t626 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t583 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t206));
+        const gic_real t651 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] * t344 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] * t346 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t636 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t608 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t347));
+        /* force spring_f_r */
+        const gic_real t652 = R(167070.9) * (x[HMMWV_TMEASY_X_SPRING_F_R] - R(0.31903));
+        const gic_real t653 = xd[HMMWV_TMEASY_X_SPRING_F_R] * R(17490.8);
+        const gic_real t654 = GIC_FABS(t653) + GIC_FABS(t652) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_TMEASY_X_SPRING_F_R]));
         const gic_real t655 = t654 + t404 * t409 + t453 * t461 + t455 * t462;
-        const gic_real t656 = m[114] * t235 + (m[251] * t285 + m[250] * t294 + m[246] * t295);
-        const gic_real t657 = (x[2] - R(0.33727)) * R(369167.2);
-        const gic_real t658 = xd[2] * R(24780.4);
-        const gic_real t659 = m[251] * t338 + m[250] * t340 + m[246] * t341 - (t657 + t658);
-        const gic_real t660 = GIC_FABS(t658) + GIC_FABS(t657) + R(369167.2) * (R(0.33727) + GIC_FABS(x[2]));
+        const gic_real t656 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t235 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] * t285 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] * t294 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t295);
+        /* force spring_r_l */
+        const gic_real t657 = (x[HMMWV_TMEASY_X_SPRING_R_L] - R(0.33727)) * R(369167.2);
+        const gic_real t658 = xd[HMMWV_TMEASY_X_SPRING_R_L] * R(24780.4);
+        const gic_real t659 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] * t338 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] * t340 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t341 - (t657 + t658);
+        const gic_real t660 = GIC_FABS(t658) + GIC_FABS(t657) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_TMEASY_X_SPRING_R_L]));
         const gic_real t661 = t660 + t470 * t475 + t501 * t508 + t503 * t509;
-        const gic_real t662 = m[144] * t261 + (m[281] * t318 + m[280] * t325 + m[276] * t326);
-        const gic_real t663 = R(369167.2) * (x[3] - R(0.33727));
-        const gic_real t664 = xd[3] * R(24780.4);
-        const gic_real t665 = m[281] * t332 + m[280] * t334 + m[276] * t335 - (t663 + t664);
-        const gic_real t666 = GIC_FABS(t664) + GIC_FABS(t663) + R(369167.2) * (R(0.33727) + GIC_FABS(x[3]));
+        const gic_real t662 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t261 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] * t318 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] * t325 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t326);
+        /* force spring_r_r */
+        const gic_real t663 = R(369167.2) * (x[HMMWV_TMEASY_X_SPRING_R_R] - R(0.33727));
+        const gic_real t664 = xd[HMMWV_TMEASY_X_SPRING_R_R] * R(24780.4);
+        const gic_real t665 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] * t332 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] * t334 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t335 - (t663 + t664);
+        const gic_real t666 = GIC_FABS(t664) + GIC_FABS(t663) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_TMEASY_X_SPRING_R_R]));
         const gic_real t667 = t666 + t483 * t488 + t521 * t528 + t523 * t529;
-        const gic_real t668 = t601 + t607 - t613;
-        const gic_real t669 = t629 + t631 + t633 + t635 - t641;
-        const gic_real t670 = m[54] * t65 + t644 - (t645 - (t646 + t647));
-        const gic_real t671 = m[84] * t91 + t650 - (t651 - (t652 + t653));
-        const gic_real t672 = t656 - t659;
-        const gic_real t673 = t662 - t665;
-        tau[0] = t359;
-        size[0] = t531;
-        tau[3] = t560;
-        size[3] = t562;
-        tau[1] = t668;
-        size[1] = t531;
-        tau[4] = t615;
-        size[4] = t562;
-        tau[2] = t669;
-        size[2] = t531;
-        tau[5] = t643;
-        size[5] = t562;
-        tau[6] = t670;
-        size[6] = t649;
-        tau[7] = t671;
-        size[7] = t655;
-        tau[8] = t672;
-        size[8] = t661;
-        tau[9] = t673;
-        size[9] = t667;
+        const gic_real residual_1 = t601 + t607 - t613;
+        const gic_real residual_2 = t629 + t631 + t633 + t635 - t641;
+        const gic_real residual_6 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t65 + t644 - (t645 - (t646 +
+            t647));
+        const gic_real residual_7 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t91 + t650 - (t651 - (t652 +
+            t653));
+        const gic_real residual_8 = t656 - t659;
+        const gic_real residual_9 = t662 - t665;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_X] = residual_0;
+        size[HMMWV_TMEASY_UNKNOWN_ALPHA_X] = t531;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] = t562;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] = residual_1;
+        size[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] = t531;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] = t562;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] = residual_2;
+        size[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] = t531;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] = t562;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] = t649;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] = t655;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] = t661;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] = t667;
     }
     return GIC_OK;
 }
@@ -4167,8 +5849,8 @@ static GIC_COLD int hmmwv_tmeasy_check_constraints(hmmwv_tmeasy *self)
 }
 
 /* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
-static GIC_COLD GIC_APART int hmmwv_tmeasy_check(hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate)
+static GIC_COLD GIC_APART int hmmwv_tmeasy_check(hmmwv_tmeasy *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate)
 {
     gic_real tau[HMMWV_TMEASY_UNKNOWN_ROOM], size[HMMWV_TMEASY_UNKNOWN_ROOM];
     int i, status = hmmwv_tmeasy_check_constraints(self);
@@ -4185,7 +5867,7 @@ static GIC_COLD GIC_APART int hmmwv_tmeasy_check(hmmwv_tmeasy *self, gic_real ti
     return status;
 }
 
-/* ---- the functions of hmmwv_tmeasy.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of hmmwv_tmeasy.h ----------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv_tmeasy_locate(hmmwv_tmeasy *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -4205,7 +5887,8 @@ static int hmmwv_tmeasy_locate(hmmwv_tmeasy *self, gic_real time, const gic_real
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int hmmwv_tmeasy_evaluate(hmmwv_tmeasy *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_TMEASY_STATE_ROOM])
+static int hmmwv_tmeasy_evaluate(hmmwv_tmeasy *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[HMMWV_TMEASY_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = hmmwv_tmeasy_locate(self, time, y, e);
@@ -4215,7 +5898,8 @@ static int hmmwv_tmeasy_evaluate(hmmwv_tmeasy *self, gic_real time, const gic_re
     if (status == GIC_OK)
         status = hmmwv_tmeasy_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_TMEASY_TWIST, HMMWV_TMEASY_STATES - HMMWV_TMEASY_TWIST))
+    if (status == GIC_OK && HMMWV_TMEASY_STATES > HMMWV_TMEASY_TWIST && !GIC_FINITE(rate + HMMWV_TMEASY_TWIST,
+        HMMWV_TMEASY_STATES - HMMWV_TMEASY_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv_tmeasy_check(self, time, y, e, rate);
@@ -4235,8 +5919,9 @@ int hmmwv_tmeasy_rhs(hmmwv_tmeasy *self, gic_real time, const gic_real *state, g
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int hmmwv_tmeasy_march(hmmwv_tmeasy *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -4247,7 +5932,7 @@ static int hmmwv_tmeasy_march(hmmwv_tmeasy *self, gic_real time)
         return status;
     memcpy(before, state, HMMWV_TMEASY_STATES * sizeof *state);
     for (i = 0; i < HMMWV_TMEASY_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = hmmwv_tmeasy_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, HMMWV_TMEASY_STATES * sizeof *state);
@@ -4583,7 +6268,8 @@ static const char *const hmmwv_tmeasy_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -4715,7 +6401,8 @@ const char *hmmwv_tmeasy_status_state(const hmmwv_tmeasy *self)
 const char *hmmwv_tmeasy_status_condition(const hmmwv_tmeasy *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < hmmwv_tmeasy_model.condition_count ? hmmwv_tmeasy_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < hmmwv_tmeasy_model.condition_count ?
+        hmmwv_tmeasy_model.condition_text[condition] : NULL;
 }
 
 void hmmwv_tmeasy_snapshot(const hmmwv_tmeasy *self, hmmwv_tmeasy *copy)
@@ -4728,9 +6415,10 @@ void hmmwv_tmeasy_restore(hmmwv_tmeasy *self, const hmmwv_tmeasy *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
-/* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_tmeasy_dynamics. */
+/* tau = residual of the equations of motion at accelerations acc, body by body: another way than
+ * hmmwv_tmeasy_dynamics. */
 static GIC_COLD int hmmwv_tmeasy_inverse(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *acc, gic_real *tau)
 {
@@ -4738,297 +6426,552 @@ static GIC_COLD int hmmwv_tmeasy_inverse(const hmmwv_tmeasy *self, gic_real time
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[16] * R(3570.2);
-        const gic_real t2 = y[15] * R(2955.66);
-        const gic_real t3 = y[15] * R(0.056);
-        const gic_real t4 = y[15] * R(0.21300000000000008);
-        const gic_real t5 = y[14] * t3 + y[16] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[15] * t1 - y[16] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.05422899999999997) * y[14]));
-        const gic_real t9 = R(0.05422899999999997) * y[15] - m[1] * y[16];
-        const gic_real t10 = y[14] * t8 - y[15] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t3 + y[HMMWV_TMEASY_STATE_OMEGA_Z] * t4 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * R(0.056) - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t1 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t2 +
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] + (R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t10 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t8 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t9 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t14 = y[16] * t9 - y[14] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = u[2] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[16] * t16 + y[15] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[16] * t19 + y[15] * t21;
-        const gic_real t23 = y[15] * t20 - y[16] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[16];
-        const gic_real t28 = t27 - y[14] * t25 - t26 - t26;
+        const gic_real t13 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t14 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t9 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t17 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t18 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t19 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * t17 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * t18;
+        const gic_real t20 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t16 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * t17 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * t18;
+        const gic_real t22 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t19 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t20 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] + acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[15] * t25 - y[16] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[14] * t28 - y[15] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t25 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t28 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t30 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t24 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t26 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] +
+            t32) + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] *
+            t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[15];
-        const gic_real t37 = t35 + (t35 + (y[14] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[16] * t30 - y[14] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t30 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t37 + (t38 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t39 -
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t35 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t25) - acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[16] * t44 + y[15] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[16] * t47 + y[15] * t49;
-        const gic_real t51 = y[15] * t48 - y[16] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[14] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] + (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] *
+            t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t45 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t46 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t47 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * t45 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * t46;
+        const gic_real t48 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t44 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * t45 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * t46;
+        const gic_real t50 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t47 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t48 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] + acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[15] * t53 - y[16] * t56;
-        const gic_real t58 = y[14] * t55 - y[15] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t53 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t55 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t57 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t52 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t54 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] +
+            t58) + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] *
+            t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[14] * t56 - t36));
-        const gic_real t63 = y[16] * t57 - y[14] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t57 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t62 + (t38 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t63 -
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t61 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t53) - acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[163] + y[15];
-        const gic_real t68 = m[164] + y[16];
-        const gic_real t69 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t70 = m[158] * R(4.7728205);
-        const gic_real t71 = m[157] * R(0.19340000000000046);
-        const gic_real t72 = m[156] * R(4.8947505);
-        const gic_real t73 = m[161] * t70 + (m[160] * t71 + m[159] * t72);
-        const gic_real t74 = m[162] + y[14];
-        const gic_real t75 = m[155] * R(4.7728205);
-        const gic_real t76 = m[154] * R(0.19340000000000046);
-        const gic_real t77 = m[153] * R(4.8947505);
-        const gic_real t78 = m[161] * t75 + (m[160] * t76 + m[159] * t77);
+        /* wheel tire_f_l */
+        const gic_real t67 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t68 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t69 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t70 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t72 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t73 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t70 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t71 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t72);
+        const gic_real t74 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t75 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t76 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t77 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t78 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t75 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t76 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t77);
         const gic_real t79 = t68 * t69 + (t67 * t73 + t74 * t78);
-        const gic_real t80 = m[158] * t70 + (m[157] * t71 + m[156] * t72);
-        const gic_real t81 = m[158] * t75 + (m[157] * t76 + m[156] * t77);
+        const gic_real t80 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t70 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t71 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t72);
+        const gic_real t81 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t75 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t76 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t77);
         const gic_real t82 = t68 * t73 + (t67 * t80 + t74 * t81);
-        const gic_real t83 = m[170] + (acc[2] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t84 = t83 + m[182] * acc[6];
-        const gic_real t85 = m[169] + (acc[1] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t86 = t85 + m[181] * acc[6];
-        const gic_real t87 = m[155] * t75 + (m[154] * t76 + m[153] * t77);
-        const gic_real t88 = m[168] + (acc[0] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t89 = t88 + m[180] * acc[6];
+        const gic_real t83 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t84 = t83 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t86 = t85 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * t75 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t76 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * t77);
+        const gic_real t88 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t89 = t88 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t68 * t82 + (t78 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[158] * R(0.09182100000000004);
-        const gic_real t92 = m[156] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[157] * R(0.08910630000000008));
-        const gic_real t94 = m[155] * R(0.09182100000000004);
-        const gic_real t95 = m[153] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[154] * R(0.08910630000000008));
-        const gic_real t97 = m[161] * R(0.09182100000000004);
-        const gic_real t98 = m[159] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[160] * R(0.08910630000000008));
-        const gic_real t100 = m[164] * t96 - m[162] * t99;
-        const gic_real t101 = m[163] * t99 - m[164] * t93;
-        const gic_real t102 = m[162] * t100 - m[163] * t101 + (m[168] * t93 - m[169] * t96);
-        const gic_real t103 = m[166] + t100;
+        const gic_real t91 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t94 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t97 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t100 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t96 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t99;
+        const gic_real t101 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t99 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t93;
+        const gic_real t102 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t100 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t101 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t93 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t96);
+        const gic_real t103 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] + t100;
         const gic_real t104 = R(1.653405) + t96;
-        const gic_real t105 = m[152] + t99;
-        const gic_real t106 = t103 + (t103 + (y[16] * t104 - y[14] * t105));
-        const gic_real t107 = m[151] + t93;
-        const gic_real t108 = t101 + (t101 + (y[15] * t105 - y[16] * t107));
-        const gic_real t109 = y[14] * t106 - y[15] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[173] + t102 + (acc[5] + t109) + u[2] * (m[174] * t93 - m[175] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[185] + (m[180] * t93 - m[181] * t96));
+        const gic_real t105 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t104 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t105));
+        const gic_real t107 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t105 - y[HMMWV_TMEASY_STATE_OMEGA_Z] *
+            t107));
+        const gic_real t109 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t106 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t108 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t107 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Z] + t102 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + t109) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t93 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t96);
+        const gic_real t111 = t110 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t93 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[162] * t93 - m[163] * t96;
-        const gic_real t114 = m[164] * t101 - m[162] * t113 + (m[170] * t96 - m[168] * t99);
-        const gic_real t115 = m[167] + t113;
-        const gic_real t116 = t115 + (t115 + (y[14] * t107 - y[15] * t104));
-        const gic_real t117 = y[16] * t108 - y[14] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[172] + t114 + (acc[4] + t117) + u[2] * (m[176] * t96 - m[174] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[184] + (m[182] * t96 - m[180] * t99));
+        const gic_real t113 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t93 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t96;
+        const gic_real t114 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t101 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t113 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t96 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t99);
+        const gic_real t115 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t107 - y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t104));
+        const gic_real t117 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t108 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t116 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t104 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Y] + t114 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t117) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t96 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t99);
+        const gic_real t119 = t118 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t96 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[151] * t112 - m[152] * t120));
-        const gic_real t123 = m[199] + y[15];
-        const gic_real t124 = m[200] + y[16];
-        const gic_real t125 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t126 = m[194] * R(4.7728205);
-        const gic_real t127 = m[193] * R(0.19340000000000046);
-        const gic_real t128 = m[192] * R(4.8947505);
-        const gic_real t129 = m[197] * t126 + (m[196] * t127 + m[195] * t128);
-        const gic_real t130 = m[198] + y[14];
-        const gic_real t131 = m[191] * R(4.7728205);
-        const gic_real t132 = m[190] * R(0.19340000000000046);
-        const gic_real t133 = m[189] * R(4.8947505);
-        const gic_real t134 = m[197] * t131 + (m[196] * t132 + m[195] * t133);
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t112 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t120));
+        /* wheel tire_f_r */
+        const gic_real t123 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t124 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t125 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t126 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t128 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t129 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t126 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t127 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t128);
+        const gic_real t130 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t131 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t132 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t133 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t134 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t131 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t132 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t133);
         const gic_real t135 = t124 * t125 + (t123 * t129 + t130 * t134);
-        const gic_real t136 = m[194] * t126 + (m[193] * t127 + m[192] * t128);
-        const gic_real t137 = m[194] * t131 + (m[193] * t132 + m[192] * t133);
+        const gic_real t136 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t126 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t127 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t128);
+        const gic_real t137 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t131 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t132 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t133);
         const gic_real t138 = t124 * t129 + (t123 * t136 + t130 * t137);
-        const gic_real t139 = m[206] + (acc[2] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t140 = t139 + m[218] * acc[7];
-        const gic_real t141 = m[205] + (acc[1] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t142 = t141 + m[217] * acc[7];
-        const gic_real t143 = m[191] * t131 + (m[190] * t132 + m[189] * t133);
-        const gic_real t144 = m[204] + (acc[0] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t145 = t144 + m[216] * acc[7];
+        const gic_real t139 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t140 = t139 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t141 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t142 = t141 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t143 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * t131 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t132 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * t133);
+        const gic_real t144 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t145 = t144 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R];
         const gic_real t146 = t123 * t135 - t124 * t138 + (t134 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[194] * R(0.09182100000000004);
-        const gic_real t148 = m[192] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[193] * R(-0.08910630000000008));
-        const gic_real t150 = m[191] * R(0.09182100000000004);
-        const gic_real t151 = m[189] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[190] * R(-0.08910630000000008));
-        const gic_real t153 = m[197] * R(0.09182100000000004);
-        const gic_real t154 = m[195] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[196] * R(-0.08910630000000008));
-        const gic_real t156 = m[200] * t152 - m[198] * t155;
-        const gic_real t157 = m[199] * t155 - m[200] * t149;
-        const gic_real t158 = m[198] * t156 - m[199] * t157 + (m[204] * t149 - m[205] * t152);
-        const gic_real t159 = m[202] + t156;
+        const gic_real t147 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t150 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t153 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t156 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t152 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t155;
+        const gic_real t157 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t155 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t149;
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t156 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t157 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t149 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t152);
+        const gic_real t159 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] + t156;
         const gic_real t160 = R(1.653405) + t152;
-        const gic_real t161 = m[188] + t155;
-        const gic_real t162 = t159 + (t159 + (y[16] * t160 - y[14] * t161));
-        const gic_real t163 = m[187] + t149;
-        const gic_real t164 = t157 + (t157 + (y[15] * t161 - y[16] * t163));
-        const gic_real t165 = y[14] * t162 - y[15] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[209] + t158 + (acc[5] + t165) + u[2] * (m[210] * t149 - m[211] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[221] + (m[216] * t149 - m[217] * t152));
+        const gic_real t161 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t160 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t161));
+        const gic_real t163 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t161 - y[HMMWV_TMEASY_STATE_OMEGA_Z] *
+            t163));
+        const gic_real t165 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t162 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t164 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t163 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Z] + t158 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + t165) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t149 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t152);
+        const gic_real t167 = t166 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t149 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[198] * t149 - m[199] * t152;
-        const gic_real t170 = m[200] * t157 - m[198] * t169 + (m[206] * t152 - m[204] * t155);
-        const gic_real t171 = m[203] + t169;
-        const gic_real t172 = t171 + (t171 + (y[14] * t163 - y[15] * t160));
-        const gic_real t173 = y[16] * t164 - y[14] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[208] + t170 + (acc[4] + t173) + u[2] * (m[212] * t152 - m[210] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[220] + (m[218] * t152 - m[216] * t155));
+        const gic_real t169 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t149 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t152;
+        const gic_real t170 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t157 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t169 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t152 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t155);
+        const gic_real t171 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t163 - y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t160));
+        const gic_real t173 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t164 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t172 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t160 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Y] + t170 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t173) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t152 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t155);
+        const gic_real t175 = t174 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t152 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t179 = m[98] * R(0.8938);
-        const gic_real t180 = m[97] * R(0.4469);
-        const gic_real t181 = m[101] * t179 + m[100] * t180;
-        const gic_real t182 = y[16] * t178 + y[15] * t181;
-        const gic_real t183 = m[98] * t179 + m[97] * t180;
-        const gic_real t184 = y[16] * t181 + y[15] * t183;
-        const gic_real t185 = y[15] * t182 - y[16] * t184 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
-        const gic_real t186 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t187 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t188 = m[102] * t187;
-        const gic_real t189 = R(-1.688965) * y[16];
-        const gic_real t190 = t189 - y[14] * t187 - t188 - t188;
+        /* inertia of lca_r_l */
+        const gic_real t178 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t179 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t180 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t181 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * t179 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * t180;
+        const gic_real t182 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t178 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t181;
+        const gic_real t183 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * t179 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * t180;
+        const gic_real t184 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t181 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t183;
+        const gic_real t185 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t182 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t184 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] + acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L]);
+        const gic_real t186 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.246867347245056);
+        const gic_real t187 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * R(0.246867347245056);
+        const gic_real t188 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t187;
+        const gic_real t189 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t190 = t189 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t187 - t188 - t188;
         const gic_real t191 = R(0.307086) + t186;
-        const gic_real t192 = y[15] * t187 - y[16] * t191;
-        const gic_real t193 = R(-1.688965) * acc[1];
-        const gic_real t194 = y[14] * t190 - y[15] * t192 + (acc[0] * t191 - t193);
-        const gic_real t195 = m[108] * t186 - m[102] * t188 + (acc[5] + t194) + acc[8] * (m[114] * t186);
+        const gic_real t192 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t187 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t191;
+        const gic_real t193 = R(-1.688965) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y];
+        const gic_real t194 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t190 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t192 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t191 - t193);
+        const gic_real t195 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t186 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t188 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] +
+            t194) + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] *
+            t186);
         const gic_real t196 = R(23.965) * t195;
-        const gic_real t197 = m[102] * t186;
-        const gic_real t198 = R(-1.688965) * y[15];
-        const gic_real t199 = t197 + (t197 + (y[14] * t191 - t198));
-        const gic_real t200 = R(-1.688965) * acc[2];
-        const gic_real t201 = y[16] * t192 - y[14] * t199 + (t200 - acc[0] * t187);
-        const gic_real t202 = acc[4] + t201 - (m[102] * t197 + m[108] * t187) - acc[8] * (m[114] * t187);
+        const gic_real t197 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t186;
+        const gic_real t198 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t199 = t197 + (t197 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t191 - t198));
+        const gic_real t200 = R(-1.688965) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z];
+        const gic_real t201 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t192 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t199 + (t200 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t187);
+        const gic_real t202 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t201 -
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t197 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t187) - acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t187);
         const gic_real t203 = R(23.965) * t202;
         const gic_real t204 = t185 + (t186 * t196 - t187 * t203);
-        const gic_real t205 = t122 + (t177 + (m[187] * t168 - m[188] * t176)) + (t204 + R(7.359315990000001) * t195);
-        const gic_real t206 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t207 = m[128] * R(0.8938);
-        const gic_real t208 = m[127] * R(0.4469);
-        const gic_real t209 = m[131] * t207 + m[130] * t208;
-        const gic_real t210 = y[16] * t206 + y[15] * t209;
-        const gic_real t211 = m[128] * t207 + m[127] * t208;
-        const gic_real t212 = y[16] * t209 + y[15] * t211;
-        const gic_real t213 = y[15] * t210 - y[16] * t212 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
-        const gic_real t214 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t215 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t216 = m[132] * t215;
-        const gic_real t217 = t189 - y[14] * t215 - t216 - t216;
+        const gic_real t205 = t122 + (t177 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t168 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t176)) + (t204 + R(7.359315990000001) * t195);
+        /* inertia of lca_r_r */
+        const gic_real t206 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469));
+        const gic_real t207 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t208 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t209 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * t207 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * t208;
+        const gic_real t210 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t206 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t209;
+        const gic_real t211 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * t207 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * t208;
+        const gic_real t212 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t209 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t211;
+        const gic_real t213 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t210 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t212 + R(0.4469) *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] + acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R]);
+        const gic_real t214 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(-0.246867347245056);
+        const gic_real t215 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * R(-0.246867347245056);
+        const gic_real t216 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t215;
+        const gic_real t217 = t189 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t215 - t216 - t216;
         const gic_real t218 = R(-0.307086) + t214;
-        const gic_real t219 = y[15] * t215 - y[16] * t218;
-        const gic_real t220 = y[14] * t217 - y[15] * t219 + (acc[0] * t218 - t193);
-        const gic_real t221 = m[138] * t214 - m[132] * t216 + (acc[5] + t220) + acc[9] * (m[144] * t214);
+        const gic_real t219 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t215 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t218;
+        const gic_real t220 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t217 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t219 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t218 - t193);
+        const gic_real t221 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t214 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t216 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] +
+            t220) + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] *
+            t214);
         const gic_real t222 = R(23.965) * t221;
-        const gic_real t223 = m[132] * t214;
-        const gic_real t224 = t223 + (t223 + (y[14] * t218 - t198));
-        const gic_real t225 = y[16] * t219 - y[14] * t224 + (t200 - acc[0] * t215);
-        const gic_real t226 = acc[4] + t225 - (m[132] * t223 + m[138] * t215) - acc[9] * (m[144] * t215);
+        const gic_real t223 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t214;
+        const gic_real t224 = t223 + (t223 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t218 - t198));
+        const gic_real t225 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t219 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t224 + (t200 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t215);
+        const gic_real t226 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t225 -
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t223 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t215) - acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t215);
         const gic_real t227 = R(23.965) * t226;
         const gic_real t228 = t213 + (t214 * t222 - t215 * t227);
-        const gic_real t229 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
-        const gic_real t230 = m[230] * R(4.7728205);
-        const gic_real t231 = m[229] * R(0.19340000000000046);
-        const gic_real t232 = m[233] * t230 + m[232] * t231;
-        const gic_real t233 = y[16] * t229 + y[15] * t232;
-        const gic_real t234 = m[230] * t230 + m[229] * t231;
-        const gic_real t235 = y[16] * t232 + y[15] * t234;
-        const gic_real t236 = y[15] * t233 - y[16] * t235 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
-        const gic_real t237 = m[230] * R(0.09182100000000004);
-        const gic_real t238 = t237 + m[229] * R(0.08910630000000008);
-        const gic_real t239 = m[233] * R(0.09182100000000004);
-        const gic_real t240 = t239 + m[232] * R(0.08910630000000008);
-        const gic_real t241 = m[234] * t240;
-        const gic_real t242 = m[238] - t241;
-        const gic_real t243 = R(-1.653405) * y[16];
-        const gic_real t244 = m[224] + t240;
-        const gic_real t245 = t242 + (t242 + (t243 - y[14] * t244));
-        const gic_real t246 = m[223] + t238;
-        const gic_real t247 = y[15] * t244 - y[16] * t246;
-        const gic_real t248 = R(-1.653405) * acc[1];
-        const gic_real t249 = y[14] * t245 - y[15] * t247 + (acc[0] * t246 - t248);
-        const gic_real t250 = m[245] + (m[240] * t238 - m[234] * t241) + (acc[5] + t249);
-        const gic_real t251 = t250 + acc[8] * (m[251] + m[246] * t238);
+        /* inertia of wheel_r_l */
+        const gic_real t229 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046));
+        const gic_real t230 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t231 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t232 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * t230 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t231;
+        const gic_real t233 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t229 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t232;
+        const gic_real t234 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * t230 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t231;
+        const gic_real t235 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t232 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t234;
+        const gic_real t236 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t233 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t235 +
+            R(4.8947505) * (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] +
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L]);
+        /* wheel tire_r_l */
+        const gic_real t237 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t238 = t237 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008);
+        const gic_real t239 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t240 = t239 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008);
+        const gic_real t241 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t240;
+        const gic_real t242 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] - t241;
+        const gic_real t243 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t244 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t240;
+        const gic_real t245 = t242 + (t242 + (t243 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t244));
+        const gic_real t246 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t238;
+        const gic_real t247 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t244 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t246;
+        const gic_real t248 = R(-1.653405) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y];
+        const gic_real t249 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t245 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t247 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t246 - t248);
+        const gic_real t250 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t238 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t241) +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + t249);
+        const gic_real t251 = t250 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t238);
         const gic_real t252 = R(90.555) * t251;
-        const gic_real t253 = m[234] * t238;
-        const gic_real t254 = m[239] + t253;
-        const gic_real t255 = R(-1.653405) * y[15];
-        const gic_real t256 = t254 + (t254 + (y[14] * t246 - t255));
-        const gic_real t257 = R(-1.653405) * acc[2];
-        const gic_real t258 = y[16] * t247 - y[14] * t256 + (t257 - acc[0] * t244);
-        const gic_real t259 = m[244] - (m[234] * t253 + m[240] * t240) + (acc[4] + t258);
-        const gic_real t260 = t259 + acc[8] * (m[250] - m[246] * t240);
+        const gic_real t253 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t238;
+        const gic_real t254 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] + t253;
+        const gic_real t255 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t256 = t254 + (t254 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t246 - t255));
+        const gic_real t257 = R(-1.653405) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z];
+        const gic_real t258 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t247 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t256 + (t257 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t244);
+        const gic_real t259 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t253 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t240) +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t258);
+        const gic_real t260 = t259 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t240);
         const gic_real t261 = R(90.555) * t260;
         const gic_real t262 = t236 + (t238 * t252 - t240 * t261);
-        const gic_real t263 = t205 + (t228 + R(-7.359315990000001) * t221) + (t262 + (m[223] * t252 - m[224] * t261));
-        const gic_real t264 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
-        const gic_real t265 = m[260] * R(4.7728205);
-        const gic_real t266 = m[259] * R(0.19340000000000046);
-        const gic_real t267 = m[263] * t265 + m[262] * t266;
-        const gic_real t268 = y[16] * t264 + y[15] * t267;
-        const gic_real t269 = m[260] * t265 + m[259] * t266;
-        const gic_real t270 = y[16] * t267 + y[15] * t269;
-        const gic_real t271 = y[15] * t268 - y[16] * t270 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
-        const gic_real t272 = m[260] * R(0.09182100000000004);
-        const gic_real t273 = t272 + m[259] * R(-0.08910630000000008);
-        const gic_real t274 = m[263] * R(0.09182100000000004);
-        const gic_real t275 = t274 + m[262] * R(-0.08910630000000008);
-        const gic_real t276 = m[264] * t275;
-        const gic_real t277 = m[268] - t276;
-        const gic_real t278 = m[254] + t275;
-        const gic_real t279 = t277 + (t277 + (t243 - y[14] * t278));
-        const gic_real t280 = m[253] + t273;
-        const gic_real t281 = y[15] * t278 - y[16] * t280;
-        const gic_real t282 = y[14] * t279 - y[15] * t281 + (acc[0] * t280 - t248);
-        const gic_real t283 = m[275] + (m[270] * t273 - m[264] * t276) + (acc[5] + t282);
-        const gic_real t284 = t283 + acc[9] * (m[281] + m[276] * t273);
+        const gic_real t263 = t205 + (t228 + R(-7.359315990000001) * t221) + (t262 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t252 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t261));
+        /* inertia of wheel_r_r */
+        const gic_real t264 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046));
+        const gic_real t265 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t266 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t267 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * t265 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t266;
+        const gic_real t268 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t264 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t267;
+        const gic_real t269 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * t265 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t266;
+        const gic_real t270 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t267 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t269;
+        const gic_real t271 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t268 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t270 +
+            R(4.8947505) * (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] +
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] *
+            acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R]);
+        /* wheel tire_r_r */
+        const gic_real t272 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t273 = t272 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008);
+        const gic_real t274 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t275 = t274 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008);
+        const gic_real t276 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t275;
+        const gic_real t277 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] - t276;
+        const gic_real t278 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t275;
+        const gic_real t279 = t277 + (t277 + (t243 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t278));
+        const gic_real t280 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t273;
+        const gic_real t281 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t278 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t280;
+        const gic_real t282 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t279 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t281 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t280 - t248);
+        const gic_real t283 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t273 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t276) +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + t282);
+        const gic_real t284 = t283 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t273);
         const gic_real t285 = R(90.555) * t284;
-        const gic_real t286 = m[264] * t273;
-        const gic_real t287 = m[269] + t286;
-        const gic_real t288 = t287 + (t287 + (y[14] * t280 - t255));
-        const gic_real t289 = y[16] * t281 - y[14] * t288 + (t257 - acc[0] * t278);
-        const gic_real t290 = m[274] - (m[264] * t286 + m[270] * t275) + (acc[4] + t289);
-        const gic_real t291 = t290 + acc[9] * (m[280] - m[276] * t275);
+        const gic_real t286 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t273;
+        const gic_real t287 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] + t286;
+        const gic_real t288 = t287 + (t287 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t280 - t255));
+        const gic_real t289 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t281 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t288 + (t257 -
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] * t278);
+        const gic_real t290 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t286 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t275) +
+            (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] + t289);
+        const gic_real t291 = t290 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t275);
         const gic_real t292 = R(90.555) * t291;
         const gic_real t293 = t271 + (t273 * t285 - t275 * t292);
         const gic_real t294 = e[3] + e[3];
@@ -5043,204 +6986,376 @@ static GIC_COLD int hmmwv_tmeasy_inverse(const hmmwv_tmeasy *self, gic_real time
         const gic_real t303 = e[2] * t296;
         const gic_real t304 = e[3] * t294;
         const gic_real t305 = R(1.0) - (t303 + t304);
-        const gic_real t306 = t272 + m[259] * R(-0.12319000000000002);
+        const gic_real t306 = t272 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
         const gic_real t307 = e[1] * t299;
         const gic_real t308 = R(1.0) - (t307 + t303);
         const gic_real t309 = e[3] * t296;
         const gic_real t310 = e[0] * t299;
         const gic_real t311 = t309 - t310;
         const gic_real t312 = t295 + t297;
-        const gic_real t313 = t308 * self->grip[83] + (t311 * self->grip[82] + t312 * self->grip[81]);
-        const gic_real t314 = t274 + m[262] * R(-0.12319000000000002);
+        const gic_real t313 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t314 = t274 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
         const gic_real t315 = t309 + t310;
         const gic_real t316 = R(1.0) - (t307 + t304);
         const gic_real t317 = t300 - t301;
-        const gic_real t318 = t315 * self->grip[83] + (t316 * self->grip[82] + t317 * self->grip[81]);
-        const gic_real t319 = t298 * self->grip[86] + (t302 * self->grip[85] + t305 * self->grip[84]) + (t306 * t313 - t314 * t318);
-        const gic_real t320 = t237 + m[229] * R(0.12319000000000002);
-        const gic_real t321 = t308 * self->grip[56] + (t311 * self->grip[55] + t312 * self->grip[54]);
-        const gic_real t322 = t239 + m[232] * R(0.12319000000000002);
-        const gic_real t323 = t315 * self->grip[56] + (t316 * self->grip[55] + t317 * self->grip[54]);
-        const gic_real t324 = t298 * self->grip[59] + (t302 * self->grip[58] + t305 * self->grip[57]) + (t320 * t321 - t322 * t323);
-        const gic_real t325 = t147 + (m[193] * R(-0.12319000000000002) + t148);
-        const gic_real t326 = t308 * self->grip[29] + (t311 * self->grip[28] + t312 * self->grip[27]);
-        const gic_real t327 = t153 + (m[196] * R(-0.12319000000000002) + t154);
-        const gic_real t328 = t315 * self->grip[29] + (t316 * self->grip[28] + t317 * self->grip[27]);
-        const gic_real t329 = t298 * self->grip[32] + (t302 * self->grip[31] + t305 * self->grip[30]) + (t325 * t326 - t327 * t328);
-        const gic_real t330 = t91 + (m[157] * R(0.12319000000000002) + t92);
-        const gic_real t331 = t308 * self->grip[2] + (t311 * self->grip[1] + t312 * self->grip[0]);
-        const gic_real t332 = t97 + (m[160] * R(0.12319000000000002) + t98);
-        const gic_real t333 = t315 * self->grip[2] + (t316 * self->grip[1] + t317 * self->grip[0]);
-        const gic_real t334 = t298 * self->grip[5] + (t302 * self->grip[4] + t305 * self->grip[3]) + (t330 * t331 - t332 * t333);
-        const gic_real t335 = m[151] * t331 - m[152] * t333 - (m[154] * self->grip[6] + m[190] * self->grip[33]);
-        const gic_real t336 = t329 + (t334 + t335 + (m[187] * t326 - m[188] * t328));
-        const gic_real t337 = t324 + (t336 + (m[223] * t321 - m[224] * t323)) + (m[253] * t313 - m[254] * t318);
-        const gic_real t338 = t263 + (t293 + (m[253] * t285 - m[254] * t292)) - (t319 + t337);
-        const gic_real t339 = y[16] * R(0.056) - y[14] * R(0.21300000000000008);
-        const gic_real t340 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[16] * t339 + y[15] * t3));
-        const gic_real t341 = y[15] * t13 - y[16] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t342 = acc[3] + t341;
+        const gic_real t318 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t319 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t306 * t313 - t314 * t318);
+        const gic_real t320 = t237 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t321 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t322 = t239 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t323 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t324 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t320 * t321 - t322 * t323);
+        const gic_real t325 = t147 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            t148);
+        const gic_real t326 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t327 = t153 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            t154);
+        const gic_real t328 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t329 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t325 * t326 - t327 * t328);
+        const gic_real t330 = t91 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            t92);
+        const gic_real t331 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t332 = t97 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            t98);
+        const gic_real t333 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t334 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t330 * t331 - t332 * t333);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t335 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t331 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t333 -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]);
+        const gic_real t336 = t329 + (t334 + t335 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t326 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t328));
+        const gic_real t337 = t324 + (t336 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t321 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t323)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t313 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t318);
+        const gic_real residual_0 = t263 + (t293 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t285 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t292)) - (t319 + t337);
+        const gic_real t339 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t340 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000008) - (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t339 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t3));
+        const gic_real t341 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t13 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t8 +
+            (R(0.05422899999999997) * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z]);
+        const gic_real t342 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t341;
         const gic_real t343 = t342 * R(9.072);
-        const gic_real t344 = y[15] * t37 - y[16] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t345 = acc[3] + t344;
+        const gic_real t344 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t37 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t28 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t25 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t345 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t344;
         const gic_real t346 = t345 * R(23.965);
-        const gic_real t347 = y[15] * t62 - y[16] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t348 = acc[3] + t347;
+        const gic_real t347 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t62 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t55 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t53 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t348 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t347;
         const gic_real t349 = R(23.965) * t348;
-        const gic_real t350 = m[163] * t113 - m[164] * t100 + (m[169] * t99 - m[170] * t93);
-        const gic_real t351 = y[15] * t116 - y[16] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t352 = t350 + (acc[3] + t351) + u[2] * (m[175] * t99 - m[176] * t93);
-        const gic_real t353 = (t352 + acc[6] * (m[181] * t99 - m[182] * t93)) * R(90.555);
-        const gic_real t354 = m[199] * t169 - m[200] * t156 + (m[205] * t155 - m[206] * t149);
-        const gic_real t355 = y[15] * t172 - y[16] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t356 = t354 + (acc[3] + t355) + u[2] * (m[211] * t155 - m[212] * t149);
-        const gic_real t357 = R(90.555) * (t356 + acc[7] * (m[217] * t155 - m[218] * t149));
+        const gic_real t350 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t100 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t99 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t93);
+        const gic_real t351 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t116 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t106 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t105 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t352 = t350 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t351) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t99 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t93);
+        const gic_real t353 = (t352 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t99 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t93)) * R(90.555);
+        const gic_real t354 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t169 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t156 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t155 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t149);
+        const gic_real t355 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t172 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t162 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t161 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t356 = t354 + (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t355) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t155 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t149);
+        const gic_real t357 = R(90.555) * (t356 + acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t155 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t149));
         const gic_real t358 = t340 * R(2086.52) + t343 + t346 + t349 + t353 + t357;
-        const gic_real t359 = y[15] * t199 - y[16] * t190 + (acc[1] * t187 - acc[2] * t191);
-        const gic_real t360 = acc[3] + t359;
+        const gic_real t359 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t199 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t190 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t187 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t191);
+        const gic_real t360 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t359;
         const gic_real t361 = R(23.965) * t360;
-        const gic_real t362 = y[15] * t224 - y[16] * t217 + (acc[1] * t215 - acc[2] * t218);
-        const gic_real t363 = acc[3] + t362;
+        const gic_real t362 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t224 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t217 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t215 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t218);
+        const gic_real t363 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t362;
         const gic_real t364 = R(23.965) * t363;
-        const gic_real t365 = y[15] * t256 - y[16] * t245 + (acc[1] * t244 - acc[2] * t246);
-        const gic_real t366 = R(90.555) * (acc[3] + t365);
-        const gic_real t367 = y[15] * t288 - y[16] * t279 + (acc[1] * t278 - acc[2] * t280);
-        const gic_real t368 = R(90.555) * (acc[3] + t367);
-        const gic_real t369 = t298 * self->grip[83] + (t302 * self->grip[82] + t305 * self->grip[81]);
-        const gic_real t370 = t298 * self->grip[56] + (t302 * self->grip[55] + t305 * self->grip[54]);
-        const gic_real t371 = t298 * self->grip[2] + (t302 * self->grip[1] + t305 * self->grip[0]);
-        const gic_real t372 = t298 * self->grip[29] + (t302 * self->grip[28] + t305 * self->grip[27]);
-        const gic_real t373 = t358 + t361 + t364 + t366 + t368 - (t369 + (t370 + (t371 + t372)));
-        const gic_real t374 = y[14] * R(1078.52);
-        const gic_real t375 = acc[5] + (y[14] * t339 - y[15] * t4 - acc[1] * R(0.056));
-        const gic_real t376 = y[16] * t374 - y[14] * t1 + acc[1] * R(2955.66) + (t340 * R(444.4287600000002) - t375 * R(116.84512));
-        const gic_real t377 = m[42] + y[14];
+        const gic_real t365 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t256 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t245 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t244 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t246);
+        const gic_real t366 = R(90.555) * (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t365);
+        const gic_real t367 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t288 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t279 +
+            (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * t278 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * t280);
+        const gic_real t368 = R(90.555) * (acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] + t367);
+        const gic_real t369 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t370 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t371 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t372 = t298 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t302 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t305 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real residual_3 = t358 + t361 + t364 + t366 + t368 - (t369 + (t370 + (t371 + t372)));
+        const gic_real t374 = y[HMMWV_TMEASY_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t375 = acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t339 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t4 - acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t376 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t374 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t1 +
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] * R(2955.66) + (t340 * R(444.4287600000002) - t375 * R(116.84512));
+        const gic_real t377 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t378 = R(0.4469) * t377;
-        const gic_real t379 = acc[2] - m[42] * y[15];
-        const gic_real t380 = acc[1] + m[42] * y[16];
-        const gic_real t381 = y[16] * t378 - t377 * t20 + (t19 * t379 + t21 * t380);
-        const gic_real t382 = t376 + (acc[1] + (t342 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t381 + t25 * t346 - t33 * R(40.476046225));
-        const gic_real t383 = m[72] + y[14];
+        const gic_real t379 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t380 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t381 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t378 - t377 * t20 + (t19 * t379 + t21 * t380);
+        const gic_real t382 = t376 + (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] + (t342 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t381 + t25 * t346 - t33 * R(40.476046225));
+        const gic_real t383 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t384 = R(0.4469) * t383;
-        const gic_real t385 = acc[2] - m[72] * y[15];
-        const gic_real t386 = acc[1] + m[72] * y[16];
-        const gic_real t387 = y[16] * t384 - t383 * t48 + (t47 * t385 + t49 * t386);
+        const gic_real t385 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t386 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t387 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t384 - t383 * t48 + (t47 * t385 + t49 * t386);
         const gic_real t388 = t68 * t78 + (t67 * t81 + t74 * t87);
         const gic_real t389 = t68 * t388 - t74 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t390 = t389 + (t99 * t353 - t96 * t112);
-        const gic_real t391 = t382 + (t387 + t53 * t349 - R(40.476046225) * t59) + (t390 + (m[152] * t353 - t111 * R(149.724089775)));
+        const gic_real t391 = t382 + (t387 + t53 * t349 - R(40.476046225) * t59) + (t390 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t353 - t111 * R(149.724089775)));
         const gic_real t392 = t124 * t134 + (t123 * t137 + t130 * t143);
         const gic_real t393 = t124 * t392 - t130 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t394 = t393 + (t155 * t357 - t152 * t168);
-        const gic_real t395 = m[102] + y[14];
+        const gic_real t395 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t396 = R(0.4469) * t395;
-        const gic_real t397 = acc[2] - m[102] * y[15];
-        const gic_real t398 = acc[1] + m[102] * y[16];
-        const gic_real t399 = y[16] * t396 - t395 * t182 + (t181 * t397 + t183 * t398);
-        const gic_real t400 = t391 + (t394 + (m[188] * t357 - R(149.724089775) * t167)) + (t399 + t187 * t361 - t195 * R(-40.476046225));
-        const gic_real t401 = m[132] + y[14];
+        const gic_real t397 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t398 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t399 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t396 - t395 * t182 + (t181 * t397 + t183 * t398);
+        const gic_real t400 = t391 + (t394 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t357 -
+            R(149.724089775) * t167)) + (t399 + t187 * t361 - t195 * R(-40.476046225));
+        const gic_real t401 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t402 = R(0.4469) * t401;
-        const gic_real t403 = acc[2] - m[132] * y[15];
-        const gic_real t404 = acc[1] + m[132] * y[16];
-        const gic_real t405 = y[16] * t402 - t401 * t210 + (t209 * t403 + t211 * t404);
-        const gic_real t406 = m[234] + y[14];
+        const gic_real t403 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t404 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t405 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t402 - t401 * t210 + (t209 * t403 + t211 * t404);
+        const gic_real t406 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t407 = t406 * R(4.8947505);
-        const gic_real t408 = acc[2] - m[234] * y[15];
-        const gic_real t409 = acc[1] + m[234] * y[16];
-        const gic_real t410 = y[16] * t407 - t406 * t233 + (t232 * t408 + t234 * t409);
-        const gic_real t411 = t410 + t240 * t366 + (m[224] * t366 - t251 * R(-149.724089775));
+        const gic_real t408 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t409 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t410 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t407 - t406 * t233 + (t232 * t408 + t234 * t409);
+        const gic_real t411 = t410 + t240 * t366 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t366 - t251 *
+            R(-149.724089775));
         const gic_real t412 = t400 + (t405 + t215 * t364 - R(-40.476046225) * t221) + t411;
-        const gic_real t413 = m[264] + y[14];
+        const gic_real t413 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
         const gic_real t414 = t413 * R(4.8947505);
-        const gic_real t415 = acc[2] - m[264] * y[15];
-        const gic_real t416 = acc[1] + m[264] * y[16];
-        const gic_real t417 = y[16] * t414 - t413 * t268 + (t267 * t415 + t269 * t416);
-        const gic_real t418 = t417 + t275 * t368 + (m[254] * t368 - R(-149.724089775) * t284);
-        const gic_real t419 = t315 * self->grip[86] + (t316 * self->grip[85] + t317 * self->grip[84]) + t314 * t369;
-        const gic_real t420 = t315 * self->grip[59] + (t316 * self->grip[58] + t317 * self->grip[57]) + t322 * t370;
-        const gic_real t421 = t150 + (m[190] * R(-0.12319000000000002) + t151);
-        const gic_real t422 = t315 * self->grip[32] + (t316 * self->grip[31] + t317 * self->grip[30]) + (t327 * t372 - t421 * t326);
-        const gic_real t423 = t94 + (m[154] * R(0.12319000000000002) + t95);
-        const gic_real t424 = t315 * self->grip[5] + (t316 * self->grip[4] + t317 * self->grip[3]) + (t332 * t371 - t423 * t331);
-        const gic_real t425 = m[157] * self->grip[6] + m[193] * self->grip[33] + m[229] * self->grip[60] + m[259] * self->grip[87];
-        const gic_real t426 = t424 + (m[152] * t371 - R(1.653405) * t331 - t425) + (m[188] * t372 - R(1.653405) * t326);
-        const gic_real t427 = t420 + (t422 + t426 + (m[224] * t370 - R(-1.653405) * t321));
-        const gic_real t428 = t412 + t418 - (t419 + (t427 + (m[254] * t369 - R(-1.653405) * t313)));
+        const gic_real t415 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t416 = acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t417 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t414 - t413 * t268 + (t267 * t415 + t269 * t416);
+        const gic_real t418 = t417 + t275 * t368 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] * t368 -
+            R(-149.724089775) * t284);
+        const gic_real t419 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + t314 * t369;
+        const gic_real t420 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + t322 * t370;
+        const gic_real t421 = t150 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            t151);
+        const gic_real t422 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t327 * t372 - t421 * t326);
+        const gic_real t423 = t94 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            t95);
+        const gic_real t424 = t315 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t316 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t317 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t332 * t371 - t423 * t331);
+        const gic_real t425 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t426 = t424 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] * t371 - R(1.653405) * t331 -
+            t425) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] * t372 - R(1.653405) * t326);
+        const gic_real t427 = t420 + (t422 + t426 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] * t370 -
+            R(-1.653405) * t321));
+        const gic_real residual_1 = t412 + t418 - (t419 + (t427 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] *
+            t369 - R(-1.653405) * t313)));
         const gic_real t429 = t6 * R(2086.52) + t15 * R(9.072) + t41 + t65 + t120;
-        const gic_real t430 = t429 + t176 + t203 + t227 + t261 + t292 - (t318 + (t323 + (t333 + t328)));
-        const gic_real t431 = y[14] * t2 - y[15] * t374 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t432 = t377 * t22 - y[15] * t378 + (t16 * t379 + t19 * t380);
+        const gic_real residual_4 = t429 + t176 + t203 + t227 + t261 + t292 - (t318 + (t323 + (t333 + t328)));
+        const gic_real t431 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t2 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t374 +
+            acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t432 = t377 * t22 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t378 + (t16 * t379 + t19 * t380);
         const gic_real t433 = t432 - t24 * t346 + (t40 * R(40.476046225) - t345 * R(7.359315990000001));
-        const gic_real t434 = t431 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t343)) + t433;
-        const gic_real t435 = t383 * t50 - y[15] * t384 + (t44 * t385 + t47 * t386);
+        const gic_real t434 = t431 + (acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * t343)) + t433;
+        const gic_real t435 = t383 * t50 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t384 + (t44 * t385 + t47 * t386);
         const gic_real t436 = t435 - t52 * t349 + (R(40.476046225) * t64 - t348 * R(-7.359315990000001));
         const gic_real t437 = t74 * t82 - t67 * t388 + (t69 * t84 + (t73 * t86 + t78 * t89));
         const gic_real t438 = t437 + (t96 * t120 - t93 * t353);
-        const gic_real t439 = t434 + t436 + (t438 + (t119 * R(149.724089775) - m[151] * t353));
+        const gic_real t439 = t434 + t436 + (t438 + (t119 * R(149.724089775) -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t353));
         const gic_real t440 = t130 * t138 - t123 * t392 + (t125 * t140 + (t129 * t142 + t134 * t145));
         const gic_real t441 = t440 + (t152 * t176 - t149 * t357);
-        const gic_real t442 = t395 * t184 - y[15] * t396 + (t178 * t397 + t181 * t398);
+        const gic_real t442 = t395 * t184 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t396 + (t178 * t397 + t181 * t398);
         const gic_real t443 = t442 - t186 * t361 + (t202 * R(-40.476046225) - R(7.359315990000001) * t360);
-        const gic_real t444 = t439 + (t441 + (R(149.724089775) * t175 - m[187] * t357)) + t443;
-        const gic_real t445 = t401 * t212 - y[15] * t402 + (t206 * t403 + t209 * t404);
+        const gic_real t444 = t439 + (t441 + (R(149.724089775) * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t357)) + t443;
+        const gic_real t445 = t401 * t212 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t402 + (t206 * t403 + t209 * t404);
         const gic_real t446 = t445 - t214 * t364 + (R(-40.476046225) * t226 - R(-7.359315990000001) * t363);
-        const gic_real t447 = t406 * t235 - y[15] * t407 + (t229 * t408 + t232 * t409);
-        const gic_real t448 = t447 - t238 * t366 + (t260 * R(-149.724089775) - m[223] * t366);
-        const gic_real t449 = t413 * t270 - y[15] * t414 + (t264 * t415 + t267 * t416);
-        const gic_real t450 = t449 - t273 * t368 + (R(-149.724089775) * t291 - m[253] * t368);
-        const gic_real t451 = t308 * self->grip[86] + (t311 * self->grip[85] + t312 * self->grip[84]) - t306 * t369;
-        const gic_real t452 = t308 * self->grip[59] + (t311 * self->grip[58] + t312 * self->grip[57]) - t320 * t370;
-        const gic_real t453 = t308 * self->grip[32] + (t311 * self->grip[31] + t312 * self->grip[30]) + (t421 * t328 - t325 * t372);
-        const gic_real t454 = t308 * self->grip[5] + (t311 * self->grip[4] + t312 * self->grip[3]) + (t423 * t333 - t330 * t371);
-        const gic_real t455 = m[160] * self->grip[6] + m[196] * self->grip[33] + m[232] * self->grip[60] + m[262] * self->grip[87];
-        const gic_real t456 = t454 + (R(1.653405) * t333 - m[151] * t371 - t455) + (R(1.653405) * t328 - m[187] * t372);
-        const gic_real t457 = t452 + (t453 + t456 + (R(-1.653405) * t323 - m[223] * t370));
-        const gic_real t458 = t444 + t446 + t448 + t450 - (t451 + (t457 + (R(-1.653405) * t318 - m[253] * t369)));
+        const gic_real t447 = t406 * t235 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t407 + (t229 * t408 + t232 * t409);
+        const gic_real t448 = t447 - t238 * t366 + (t260 * R(-149.724089775) -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t366);
+        const gic_real t449 = t413 * t270 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t414 + (t264 * t415 + t267 * t416);
+        const gic_real t450 = t449 - t273 * t368 + (R(-149.724089775) * t291 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t368);
+        const gic_real t451 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]) - t306 * t369;
+        const gic_real t452 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]) - t320 * t370;
+        const gic_real t453 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t421 * t328 - t325 * t372);
+        const gic_real t454 = t308 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t311 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t312 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]) + (t423 * t333 - t330 * t371);
+        const gic_real t455 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE];
+        const gic_real t456 = t454 + (R(1.653405) * t333 - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] * t371 -
+            t455) + (R(1.653405) * t328 - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] * t372);
+        const gic_real t457 = t452 + (t453 + t456 + (R(-1.653405) * t323 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] * t370));
+        const gic_real residual_2 = t444 + t446 + t448 + t450 - (t451 + (t457 + (R(-1.653405) * t318 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] * t369)));
         const gic_real t459 = t375 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
-        const gic_real t460 = t459 + t196 + t222 + t252 + t285 - (t313 + (t321 + (t331 + t326)));
-        const gic_real t461 = m[185] * t112 + m[184] * t120 + (m[182] * t438 + (m[181] * t390 + m[180] * t121));
-        const gic_real t462 = m[185] * t331 + m[184] * t333 + (m[182] * t454 + (m[181] * t424 + m[180] * t334));
-        const gic_real t463 = m[54] * t42 + t461 - (t462 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t464 = m[221] * t168 + m[220] * t176 + (m[218] * t441 + (m[217] * t394 + m[216] * t177));
-        const gic_real t465 = m[221] * t326 + m[220] * t328 + (m[218] * t453 + (m[217] * t422 + m[216] * t329));
-        const gic_real t466 = m[84] * t66 + t464 - (t465 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)));
-        const gic_real t467 = m[114] * t204 + (m[251] * t252 + m[250] * t261 + m[246] * t262);
-        const gic_real t468 = m[251] * t321 + m[250] * t323 + m[246] * t324 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4));
-        const gic_real t469 = m[144] * t228 + (m[281] * t285 + m[280] * t292 + m[276] * t293);
-        const gic_real t470 = m[281] * t313 + m[280] * t318 + m[276] * t319 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4));
-        const gic_real t471 = t467 - t468;
-        const gic_real t472 = t469 - t470;
-        tau[0] = t338;
-        tau[3] = t373;
-        tau[1] = t428;
-        tau[4] = t430;
-        tau[2] = t458;
-        tau[5] = t460;
-        tau[6] = t463;
-        tau[7] = t466;
-        tau[8] = t471;
-        tau[9] = t472;
+        const gic_real residual_5 = t459 + t196 + t222 + t252 + t285 - (t313 + (t321 + (t331 + t326)));
+        const gic_real t461 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] * t112 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] * t120 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t438 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t390 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t121));
+        const gic_real t462 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] * t331 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] * t333 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t454 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t424 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t334));
+        const gic_real residual_6 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t42 + t461 - (t462 -
+            ((x[HMMWV_TMEASY_X_SPRING_F_L] - R(0.31903)) * R(167070.9) + xd[HMMWV_TMEASY_X_SPRING_F_L] * R(17490.8)));
+        const gic_real t464 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] * t168 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] * t176 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t441 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t394 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t177));
+        const gic_real t465 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] * t326 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] * t328 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t453 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t422 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t329));
+        const gic_real residual_7 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t66 + t464 - (t465 -
+            (R(167070.9) * (x[HMMWV_TMEASY_X_SPRING_F_R] - R(0.31903)) + xd[HMMWV_TMEASY_X_SPRING_F_R] * R(17490.8)));
+        const gic_real t467 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t204 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] * t252 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] * t261 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t262);
+        const gic_real t468 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] * t321 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] * t323 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t324 - ((x[HMMWV_TMEASY_X_SPRING_R_L] -
+            R(0.33727)) * R(369167.2) + xd[HMMWV_TMEASY_X_SPRING_R_L] * R(24780.4));
+        const gic_real t469 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t228 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] * t285 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] * t292 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t293);
+        const gic_real t470 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] * t313 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] * t318 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t319 - (R(369167.2) *
+            (x[HMMWV_TMEASY_X_SPRING_R_R] - R(0.33727)) + xd[HMMWV_TMEASY_X_SPRING_R_R] * R(24780.4));
+        const gic_real residual_8 = t467 - t468;
+        const gic_real residual_9 = t469 - t470;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_X] = residual_0;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] = residual_9;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31903)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31903)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.33727)) * R(369167.2)) + xd[3] * (R(369167.2) * (x[3] - R(0.33727)));
+        /* force spring_f_r */
+        const gic_real t1 = xd[HMMWV_TMEASY_X_SPRING_F_L] * ((x[HMMWV_TMEASY_X_SPRING_F_L] - R(0.31903)) *
+            R(167070.9)) + xd[HMMWV_TMEASY_X_SPRING_F_R] * (R(167070.9) * (x[HMMWV_TMEASY_X_SPRING_F_R] - R(0.31903)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[HMMWV_TMEASY_X_SPRING_R_L] * ((x[HMMWV_TMEASY_X_SPRING_R_L] - R(0.33727)) *
+            R(369167.2)) + xd[HMMWV_TMEASY_X_SPRING_R_R] * (R(369167.2) * (x[HMMWV_TMEASY_X_SPRING_R_R] - R(0.33727)));
         const gic_real t3 = e[1] + e[1];
         const gic_real t4 = e[1] * t3;
         const gic_real t5 = e[2] + e[2];
         const gic_real t6 = e[2] * t5;
         const gic_real t7 = R(1.0) - (t4 + t6);
-        const gic_real t8 = rate[13] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t8 = rate[HMMWV_TMEASY_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[3] * t5;
         const gic_real t10 = e[0] * t3;
         const gic_real t11 = t9 - t10;
@@ -5248,420 +7363,803 @@ static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time,
         const gic_real t13 = e[1] * t12;
         const gic_real t14 = e[0] * t5;
         const gic_real t15 = t13 + t14;
-        const gic_real t16 = t7 * t8 + (t11 * rate[12] + t15 * rate[11]);
-        const gic_real t17 = y[16] * R(0.056) - y[14] * R(0.21300000000000008);
-        const gic_real t18 = y[15] * R(0.21300000000000008);
-        const gic_real t19 = t16 + (y[14] * t17 - y[15] * t18 - rate[15] * R(0.056));
-        const gic_real t20 = y[13] * t7 + (y[12] * t11 + y[11] * t15);
-        const gic_real t21 = y[15] * R(0.056);
+        const gic_real t16 = t7 * t8 + (t11 * rate[HMMWV_TMEASY_STATE_V_Y] + t15 * rate[HMMWV_TMEASY_STATE_V_X]);
+        /* inertia of chassis */
+        const gic_real t17 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t18 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = t16 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t17 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t18 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056));
+        /* wheel tire_f_l */
+        const gic_real t20 = y[HMMWV_TMEASY_STATE_V_Z] * t7 + (y[HMMWV_TMEASY_STATE_V_Y] * t11 +
+            y[HMMWV_TMEASY_STATE_V_X] * t15);
+        const gic_real t21 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.056);
         const gic_real t22 = t9 + t10;
         const gic_real t23 = e[3] * t12;
         const gic_real t24 = R(1.0) - (t4 + t23);
         const gic_real t25 = e[2] * t3;
         const gic_real t26 = e[0] * t12;
         const gic_real t27 = t25 - t26;
-        const gic_real t28 = t22 * t8 + (t24 * rate[12] + t27 * rate[11]);
-        const gic_real t29 = y[14] * t21 + y[16] * t18 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000008));
-        const gic_real t30 = y[13] * t22 + (y[12] * t24 + y[11] * t27);
+        const gic_real t28 = t22 * t8 + (t24 * rate[HMMWV_TMEASY_STATE_V_Y] + t27 * rate[HMMWV_TMEASY_STATE_V_X]);
+        const gic_real t29 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t21 + y[HMMWV_TMEASY_STATE_OMEGA_Z] * t18 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV_TMEASY_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t30 = y[HMMWV_TMEASY_STATE_V_Z] * t22 + (y[HMMWV_TMEASY_STATE_V_Y] * t24 +
+            y[HMMWV_TMEASY_STATE_V_X] * t27);
         const gic_real t31 = t13 - t14;
         const gic_real t32 = t25 + t26;
         const gic_real t33 = R(1.0) - (t6 + t23);
-        const gic_real t34 = t31 * t8 + (t32 * rate[12] + t33 * rate[11]);
-        const gic_real t35 = t34 + (rate[15] * R(0.21300000000000008) - (y[16] * t17 + y[15] * t21));
-        const gic_real t36 = y[13] * t31 + (y[12] * t32 + y[11] * t33);
+        const gic_real t34 = t31 * t8 + (t32 * rate[HMMWV_TMEASY_STATE_V_Y] + t33 * rate[HMMWV_TMEASY_STATE_V_X]);
+        const gic_real t35 = t34 + (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t17 + y[HMMWV_TMEASY_STATE_OMEGA_Y] * t21));
+        const gic_real t36 = y[HMMWV_TMEASY_STATE_V_Z] * t31 + (y[HMMWV_TMEASY_STATE_V_Y] * t32 +
+            y[HMMWV_TMEASY_STATE_V_X] * t33);
+        /* inertia of wheel_r_r */
         const gic_real t37 = (t28 + t29) * (t30 + t17) + t35 * (t36 + t18);
         const gic_real t38 = R(2086.52) * (t19 * (t20 - t21) + t37);
-        const gic_real t39 = y[16] * (rate[16] * R(3570.2)) + (y[15] * (rate[15] * R(2955.66)) + y[14] * (rate[14] * R(1078.52)));
-        const gic_real t40 = m[16] + (R(1.438648) * y[16] - R(0.05422899999999997) * y[14]);
-        const gic_real t41 = m[16] + t40;
-        const gic_real t42 = R(0.05422899999999997) * y[15] - m[1] * y[16];
-        const gic_real t43 = y[14] * t41 - y[15] * t42 + (m[1] * rate[14] - R(1.438648) * rate[15]);
-        const gic_real t44 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t45 = y[16] * t42 - y[14] * t44 + (R(1.438648) * rate[16] - R(0.05422899999999997) * rate[14]);
-        const gic_real t46 = u[2] + (t28 + t45);
-        const gic_real t47 = y[15] * t44 - y[16] * t41 + (R(0.05422899999999997) * rate[15] - m[1] * rate[16]);
+        const gic_real t39 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * R(2955.66)) +
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * (rate[HMMWV_TMEASY_STATE_OMEGA_X] * R(1078.52)));
+        /* inertia of rack */
+        const gic_real t40 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] + (R(1.438648) *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t41 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_VELOCITY_Y] + t40;
+        const gic_real t42 = R(0.05422899999999997) * y[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t43 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t41 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t42 +
+            (m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * rate[HMMWV_TMEASY_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV_TMEASY_STATE_OMEGA_Y]);
+        const gic_real t44 = m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * y[HMMWV_TMEASY_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t45 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t42 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t44 + (R(1.438648) *
+            rate[HMMWV_TMEASY_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[HMMWV_TMEASY_STATE_OMEGA_X]);
+        const gic_real t46 = u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] + (t28 + t45);
+        const gic_real t47 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t44 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t41 +
+            (R(0.05422899999999997) * rate[HMMWV_TMEASY_STATE_OMEGA_Y] -
+            m[HMMWV_TMEASY_MOTION_RACK + HMMWV_TMEASY_C_Y] * rate[HMMWV_TMEASY_STATE_OMEGA_Z]);
         const gic_real t48 = t46 * (t30 + t40) + (t34 + t47) * (t36 + t42);
         const gic_real t49 = R(9.072) * ((t16 + t43) * (t20 + t44) + t48);
-        const gic_real t50 = y[16] * rate[16] + (y[15] * rate[15] + y[14] * rate[14]);
-        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = R(1.688965) * y[16];
-        const gic_real t55 = t54 - y[14] * t52 - t53;
+        const gic_real t50 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * rate[HMMWV_TMEASY_STATE_OMEGA_Z] +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * rate[HMMWV_TMEASY_STATE_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            rate[HMMWV_TMEASY_STATE_OMEGA_X]);
+        /* inertia of lca_f_l */
+        const gic_real t51 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.24689200985615367);
+        const gic_real t52 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t52;
+        const gic_real t54 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t55 = t54 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t52 - t53;
         const gic_real t56 = t55 - t53;
         const gic_real t57 = R(0.307086) + t51;
-        const gic_real t58 = y[15] * t52 - y[16] * t57;
-        const gic_real t59 = R(1.688965) * rate[15];
-        const gic_real t60 = y[14] * t56 - y[15] * t58 + (rate[14] * t57 - t59);
-        const gic_real t61 = m[48] * t51 - m[42] * t53 + (t16 + t60) + rate[17] * (m[54] * t51);
-        const gic_real t62 = m[42] * t51;
-        const gic_real t63 = R(1.688965) * y[15];
-        const gic_real t64 = t62 + (y[14] * t57 - t63);
+        const gic_real t58 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t52 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t60 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t56 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t58 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t57 - t59);
+        const gic_real t61 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t51 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t53 + (t16 + t60) +
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t51);
+        const gic_real t62 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t51;
+        const gic_real t63 = R(1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t64 = t62 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t57 - t63);
         const gic_real t65 = t62 + t64;
-        const gic_real t66 = R(1.688965) * rate[16];
-        const gic_real t67 = y[16] * t58 - y[14] * t65 + (t66 - rate[14] * t52);
-        const gic_real t68 = t28 + t67 - (m[42] * t62 + m[48] * t52) - rate[17] * (m[54] * t52);
-        const gic_real t69 = y[15] * t65 - y[16] * t56 + (rate[15] * t52 - rate[16] * t57);
+        const gic_real t66 = R(1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t67 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t58 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t65 + (t66 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t52);
+        const gic_real t68 = t28 + t67 - (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] * t62 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] * t52) - rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * t52);
+        const gic_real t69 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t65 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t56 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t52 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t57);
         const gic_real t70 = t68 * (t30 + t55) + (t34 + t69) * (t36 + t58);
         const gic_real t71 = R(23.965) * (t61 * (t20 + t64) + t70);
-        const gic_real t72 = rate[16] - m[42] * y[15];
-        const gic_real t73 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t72;
-        const gic_real t74 = m[38] * R(0.8938);
-        const gic_real t75 = m[37] * R(0.4469);
-        const gic_real t76 = m[41] * t74 + m[40] * t75;
-        const gic_real t77 = rate[15] + m[42] * y[16];
-        const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[14]) * (R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]));
-        const gic_real t80 = y[16] * (t73 + t76 * t77) + (y[15] * t78 + t79);
-        const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t83 = m[72] * t82;
-        const gic_real t84 = t54 - y[14] * t82 - t83;
+        const gic_real t72 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t73 = (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469))) * t72;
+        const gic_real t74 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t75 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t76 = m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZZ] * t74 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_ZY] * t75;
+        const gic_real t77 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t78 = t76 * t72 + (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YZ] * t74 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_A_YY] * t75) * t77;
+        const gic_real t79 = (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE]));
+        const gic_real t80 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t73 + t76 * t77) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t78 +
+            t79);
+        /* inertia of lca_f_r */
+        const gic_real t81 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(-0.24689200985615367);
+        const gic_real t82 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * R(-0.24689200985615367);
+        const gic_real t83 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t82;
+        const gic_real t84 = t54 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t82 - t83;
         const gic_real t85 = t84 - t83;
         const gic_real t86 = R(-0.307086) + t81;
-        const gic_real t87 = y[15] * t82 - y[16] * t86;
-        const gic_real t88 = y[14] * t85 - y[15] * t87 + (rate[14] * t86 - t59);
-        const gic_real t89 = m[78] * t81 - m[72] * t83 + (t16 + t88) + rate[18] * (m[84] * t81);
-        const gic_real t90 = m[72] * t81;
-        const gic_real t91 = t90 + (y[14] * t86 - t63);
+        const gic_real t87 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t82 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t86;
+        const gic_real t88 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t85 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t87 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t86 - t59);
+        const gic_real t89 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t81 -
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t83 + (t16 + t88) +
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t81);
+        const gic_real t90 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t81;
+        const gic_real t91 = t90 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t86 - t63);
         const gic_real t92 = t90 + t91;
-        const gic_real t93 = y[16] * t87 - y[14] * t92 + (t66 - rate[14] * t82);
-        const gic_real t94 = t28 + t93 - (m[72] * t90 + m[78] * t82) - rate[18] * (m[84] * t82);
-        const gic_real t95 = y[15] * t92 - y[16] * t85 + (rate[15] * t82 - rate[16] * t86);
+        const gic_real t93 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t87 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t92 + (t66 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t82);
+        const gic_real t94 = t28 + t93 - (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] * t90 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] * t82) - rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * t82);
+        const gic_real t95 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t92 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t85 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t82 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t86);
         const gic_real t96 = t94 * (t30 + t84) + (t34 + t95) * (t36 + t87);
         const gic_real t97 = R(23.965) * (t89 * (t20 + t91) + t96);
-        const gic_real t98 = rate[16] - m[72] * y[15];
-        const gic_real t99 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t98;
-        const gic_real t100 = m[68] * R(0.8938);
-        const gic_real t101 = m[67] * R(0.4469);
-        const gic_real t102 = m[71] * t100 + m[70] * t101;
-        const gic_real t103 = rate[15] + m[72] * y[16];
-        const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[14]) * (R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]));
-        const gic_real t106 = y[16] * (t99 + t102 * t103) + (y[15] * t104 + t105);
+        const gic_real t98 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t99 = (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469))) * t98;
+        const gic_real t100 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t101 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t102 = m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZZ] * t100 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_ZY] * t101;
+        const gic_real t103 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t104 = t102 * t98 + (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YZ] * t100 +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_A_YY] * t101) * t103;
+        const gic_real t105 = (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_F_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE]));
+        const gic_real t106 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t99 + t102 * t103) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t104 + t105);
         const gic_real t107 = t38 + t39 + (t49 + t50) + (t71 + t80) + (t97 + t106);
-        const gic_real t108 = m[155] * R(0.09182100000000004);
-        const gic_real t109 = m[153] * R(-0.004825999999999997);
-        const gic_real t110 = t108 + (t109 + m[154] * R(0.08910630000000008));
-        const gic_real t111 = m[161] * R(0.09182100000000004);
-        const gic_real t112 = m[159] * R(-0.004825999999999997);
-        const gic_real t113 = t111 + (t112 + m[160] * R(0.08910630000000008));
-        const gic_real t114 = m[164] * t110 - m[162] * t113;
-        const gic_real t115 = m[158] * R(0.09182100000000004);
-        const gic_real t116 = m[156] * R(-0.004825999999999997);
-        const gic_real t117 = t115 + (t116 + m[157] * R(0.08910630000000008));
-        const gic_real t118 = m[163] * t113 - m[164] * t117;
-        const gic_real t119 = m[162] * t114 - m[163] * t118 + (m[168] * t117 - m[169] * t110);
-        const gic_real t120 = m[166] + t114;
+        const gic_real t108 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t109 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel_f_l */
+        const gic_real t110 = t108 + (t109 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t111 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t112 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t113 = t111 + (t112 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t114 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t110 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t113;
+        const gic_real t115 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t116 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = t115 + (t116 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t118 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t117;
+        const gic_real t119 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t114 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t118 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t117 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t110);
+        const gic_real t120 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] + t114;
         const gic_real t121 = R(1.653405) + t110;
-        const gic_real t122 = m[152] + t113;
-        const gic_real t123 = t120 + (y[16] * t121 - y[14] * t122);
+        const gic_real t122 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t113;
+        const gic_real t123 = t120 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t121 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t122);
         const gic_real t124 = t120 + t123;
-        const gic_real t125 = m[151] + t117;
-        const gic_real t126 = t118 + (y[15] * t122 - y[16] * t125);
+        const gic_real t125 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t117;
+        const gic_real t126 = t118 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t122 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t125);
         const gic_real t127 = t118 + t126;
-        const gic_real t128 = y[14] * t124 - y[15] * t127 + (rate[14] * t125 - rate[15] * t121);
-        const gic_real t129 = m[173] + t119 + (t16 + t128) + u[2] * (m[174] * t117 - m[175] * t110);
-        const gic_real t130 = t129 + rate[17] * (m[185] + (m[180] * t117 - m[181] * t110));
-        const gic_real t131 = m[162] * t117 - m[163] * t110;
-        const gic_real t132 = m[167] + t131;
-        const gic_real t133 = t132 + (y[14] * t125 - y[15] * t121);
-        const gic_real t134 = m[164] * t118 - m[162] * t131 + (m[170] * t110 - m[168] * t113);
+        const gic_real t128 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t124 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t127 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t125 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t121);
+        const gic_real t129 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Z] + t119 + (t16 + t128) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t117 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t110);
+        const gic_real t130 = t129 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t117 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t110));
+        const gic_real t131 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t117 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t110;
+        const gic_real t132 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] + t131;
+        const gic_real t133 = t132 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t125 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t121);
+        const gic_real t134 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t118 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t131 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t110 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] * t113);
         const gic_real t135 = t132 + t133;
-        const gic_real t136 = y[16] * t127 - y[14] * t135 + (rate[16] * t121 - rate[14] * t122);
-        const gic_real t137 = m[172] + t134 + (t28 + t136) + u[2] * (m[176] * t110 - m[174] * t113);
-        const gic_real t138 = t137 + rate[17] * (m[184] + (m[182] * t110 - m[180] * t113));
-        const gic_real t139 = m[163] * t131 - m[164] * t114 + (m[169] * t113 - m[170] * t117);
-        const gic_real t140 = y[15] * t135 - y[16] * t124 + (rate[15] * t122 - rate[16] * t125);
-        const gic_real t141 = t139 + (t34 + t140) + u[2] * (m[175] * t113 - m[176] * t117);
-        const gic_real t142 = t141 + rate[17] * (m[181] * t113 - m[182] * t117);
+        const gic_real t136 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t127 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t135 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t121 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t122);
+        const gic_real t137 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ACCELERATION_Y] + t134 + (t28 + t136) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t110 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t113);
+        const gic_real t138 = t137 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t110 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] * t113));
+        const gic_real t139 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t131 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t114 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] * t117);
+        const gic_real t140 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t135 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t124 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t122 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t125);
+        const gic_real t141 = t139 + (t34 + t140) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t117);
+        const gic_real t142 = t141 + rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] * t113 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] * t117);
         const gic_real t143 = t130 * (t20 + t133) + (t138 * (t30 + t123) + t142 * (t36 + t126));
         const gic_real t144 = R(90.555) * t143;
-        const gic_real t145 = m[164] + y[16];
-        const gic_real t146 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t147 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t148 = t147 + m[182] * rate[17];
-        const gic_real t149 = m[158] * R(4.7728205);
-        const gic_real t150 = m[157] * R(0.19340000000000046);
-        const gic_real t151 = m[156] * R(4.8947505);
-        const gic_real t152 = m[161] * t149 + (m[160] * t150 + m[159] * t151);
-        const gic_real t153 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t154 = t153 + m[181] * rate[17];
-        const gic_real t155 = m[155] * R(4.7728205);
-        const gic_real t156 = m[154] * R(0.19340000000000046);
-        const gic_real t157 = m[153] * R(4.8947505);
-        const gic_real t158 = m[161] * t155 + (m[160] * t156 + m[159] * t157);
-        const gic_real t159 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t160 = t159 + m[180] * rate[17];
+        const gic_real t145 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t146 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t147 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t148 = t147 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t149 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t150 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t151 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t152 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t149 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t150 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t151);
+        const gic_real t153 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t154 = t153 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t155 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t156 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t157 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t158 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZZ] * t155 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * t156 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZX] * t157);
+        const gic_real t159 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t160 = t159 + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
         const gic_real t161 = t146 * t148 + (t152 * t154 + t158 * t160);
-        const gic_real t162 = m[163] + y[15];
-        const gic_real t163 = m[158] * t149 + (m[157] * t150 + m[156] * t151);
-        const gic_real t164 = m[158] * t155 + (m[157] * t156 + m[156] * t157);
+        const gic_real t162 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t163 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t149 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t150 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t151);
+        const gic_real t164 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YZ] * t155 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * t156 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YX] * t157);
         const gic_real t165 = t152 * t148 + (t163 * t154 + t164 * t160);
-        const gic_real t166 = m[162] + y[14];
-        const gic_real t167 = m[155] * t155 + (m[154] * t156 + m[153] * t157);
+        const gic_real t166 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t167 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XZ] * t155 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * t156 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XX] * t157);
         const gic_real t168 = t158 * t148 + (t164 * t154 + t167 * t160);
         const gic_real t169 = t145 * t161 + (t162 * t165 + t166 * t168);
-        const gic_real t170 = m[191] * R(0.09182100000000004);
-        const gic_real t171 = m[189] * R(-0.004825999999999997);
-        const gic_real t172 = t170 + (t171 + m[190] * R(-0.08910630000000008));
-        const gic_real t173 = m[197] * R(0.09182100000000004);
-        const gic_real t174 = m[195] * R(-0.004825999999999997);
-        const gic_real t175 = t173 + (t174 + m[196] * R(-0.08910630000000008));
-        const gic_real t176 = m[200] * t172 - m[198] * t175;
-        const gic_real t177 = m[194] * R(0.09182100000000004);
-        const gic_real t178 = m[192] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[193] * R(-0.08910630000000008));
-        const gic_real t180 = m[199] * t175 - m[200] * t179;
-        const gic_real t181 = m[198] * t176 - m[199] * t180 + (m[204] * t179 - m[205] * t172);
-        const gic_real t182 = m[202] + t176;
+        /* wheel tire_f_r */
+        const gic_real t170 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(0.09182100000000004);
+        const gic_real t171 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel_f_r */
+        const gic_real t172 = t170 + (t171 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t173 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t174 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(-0.004825999999999997);
+        const gic_real t175 = t173 + (t174 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t176 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t172 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t175;
+        const gic_real t177 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t178 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t180 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t179;
+        const gic_real t181 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t176 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t180 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t172);
+        const gic_real t182 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] + t176;
         const gic_real t183 = R(1.653405) + t172;
-        const gic_real t184 = m[188] + t175;
-        const gic_real t185 = t182 + (y[16] * t183 - y[14] * t184);
+        const gic_real t184 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t175;
+        const gic_real t185 = t182 + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t183 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t184);
         const gic_real t186 = t182 + t185;
-        const gic_real t187 = m[187] + t179;
-        const gic_real t188 = t180 + (y[15] * t184 - y[16] * t187);
+        const gic_real t187 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t179;
+        const gic_real t188 = t180 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t184 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t187);
         const gic_real t189 = t180 + t188;
-        const gic_real t190 = y[14] * t186 - y[15] * t189 + (rate[14] * t187 - rate[15] * t183);
-        const gic_real t191 = m[209] + t181 + (t16 + t190) + u[2] * (m[210] * t179 - m[211] * t172);
-        const gic_real t192 = t191 + rate[18] * (m[221] + (m[216] * t179 - m[217] * t172));
-        const gic_real t193 = m[198] * t179 - m[199] * t172;
-        const gic_real t194 = m[203] + t193;
-        const gic_real t195 = t194 + (y[14] * t187 - y[15] * t183);
-        const gic_real t196 = m[200] * t180 - m[198] * t193 + (m[206] * t172 - m[204] * t175);
+        const gic_real t190 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t186 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t189 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t187 - rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t183);
+        const gic_real t191 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Z] + t181 + (t16 + t190) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t172);
+        const gic_real t192 = t191 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 11] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t172));
+        const gic_real t193 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t179 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t172;
+        const gic_real t194 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] + t193;
+        const gic_real t195 = t194 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t187 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t183);
+        const gic_real t196 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t180 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t193 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t172 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] * t175);
         const gic_real t197 = t194 + t195;
-        const gic_real t198 = y[16] * t189 - y[14] * t197 + (rate[16] * t183 - rate[14] * t184);
-        const gic_real t199 = m[208] + t196 + (t28 + t198) + u[2] * (m[212] * t172 - m[210] * t175);
-        const gic_real t200 = t199 + rate[18] * (m[220] + (m[218] * t172 - m[216] * t175));
-        const gic_real t201 = m[199] * t193 - m[200] * t176 + (m[205] * t175 - m[206] * t179);
-        const gic_real t202 = y[15] * t197 - y[16] * t186 + (rate[15] * t184 - rate[16] * t187);
-        const gic_real t203 = t201 + (t34 + t202) + u[2] * (m[211] * t175 - m[212] * t179);
-        const gic_real t204 = t203 + rate[18] * (m[217] * t175 - m[218] * t179);
+        const gic_real t198 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t189 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t197 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t183 - rate[HMMWV_TMEASY_STATE_OMEGA_X] * t184);
+        const gic_real t199 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ACCELERATION_Y] + t196 + (t28 + t198) +
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t172 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t175);
+        const gic_real t200 = t199 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 10] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t172 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] * t175));
+        const gic_real t201 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t193 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t176 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] * t179);
+        const gic_real t202 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t197 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t186 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t184 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t187);
+        const gic_real t203 = t201 + (t34 + t202) + u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t179);
+        const gic_real t204 = t203 + rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] * t175 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] * t179);
         const gic_real t205 = t192 * (t20 + t195) + (t200 * (t30 + t185) + t204 * (t36 + t188));
         const gic_real t206 = R(90.555) * t205;
-        const gic_real t207 = m[200] + y[16];
-        const gic_real t208 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t209 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t210 = t209 + m[218] * rate[18];
-        const gic_real t211 = m[194] * R(4.7728205);
-        const gic_real t212 = m[193] * R(0.19340000000000046);
-        const gic_real t213 = m[192] * R(4.8947505);
-        const gic_real t214 = m[197] * t211 + (m[196] * t212 + m[195] * t213);
-        const gic_real t215 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t216 = t215 + m[217] * rate[18];
-        const gic_real t217 = m[191] * R(4.7728205);
-        const gic_real t218 = m[190] * R(0.19340000000000046);
-        const gic_real t219 = m[189] * R(4.8947505);
-        const gic_real t220 = m[197] * t217 + (m[196] * t218 + m[195] * t219);
-        const gic_real t221 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t222 = t221 + m[216] * rate[18];
+        const gic_real t207 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] + y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t208 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * R(4.8947505)));
+        const gic_real t209 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Z] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Z] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t210 = t209 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 8] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t211 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t212 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t213 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * R(4.8947505);
+        const gic_real t214 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t211 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t212 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t213);
+        const gic_real t215 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_Y] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_X])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t216 = t215 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 7] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t217 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * R(4.7728205);
+        const gic_real t218 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(0.19340000000000046);
+        const gic_real t219 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * R(4.8947505);
+        const gic_real t220 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZZ] * t217 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * t218 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZX] * t219);
+        const gic_real t221 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_ALPHA_X] +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] - m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z])) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] *
+            u[HMMWV_TMEASY_INPUT_RACK_ACCELERATION];
+        const gic_real t222 = t221 + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 6] *
+            rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
         const gic_real t223 = t208 * t210 + (t214 * t216 + t220 * t222);
-        const gic_real t224 = m[199] + y[15];
-        const gic_real t225 = m[194] * t211 + (m[193] * t212 + m[192] * t213);
-        const gic_real t226 = m[194] * t217 + (m[193] * t218 + m[192] * t219);
+        const gic_real t224 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] + y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t225 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t211 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t212 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t213);
+        const gic_real t226 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YZ] * t217 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * t218 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YX] * t219);
         const gic_real t227 = t214 * t210 + (t225 * t216 + t226 * t222);
-        const gic_real t228 = m[198] + y[14];
-        const gic_real t229 = m[191] * t217 + (m[190] * t218 + m[189] * t219);
+        const gic_real t228 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t229 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XZ] * t217 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * t218 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XX] * t219);
         const gic_real t230 = t220 * t210 + (t226 * t216 + t229 * t222);
         const gic_real t231 = t207 * t223 + (t224 * t227 + t228 * t230);
-        const gic_real t232 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t233 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t234 = m[102] * t233;
-        const gic_real t235 = R(-1.688965) * y[16];
-        const gic_real t236 = t235 - y[14] * t233 - t234;
+        /* inertia of lca_r_l */
+        const gic_real t232 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.246867347245056);
+        const gic_real t233 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * R(0.246867347245056);
+        const gic_real t234 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t233;
+        const gic_real t235 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t236 = t235 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t233 - t234;
         const gic_real t237 = t236 - t234;
         const gic_real t238 = R(0.307086) + t232;
-        const gic_real t239 = y[15] * t233 - y[16] * t238;
-        const gic_real t240 = R(-1.688965) * rate[15];
-        const gic_real t241 = y[14] * t237 - y[15] * t239 + (rate[14] * t238 - t240);
-        const gic_real t242 = m[108] * t232 - m[102] * t234 + (t16 + t241) + rate[19] * (m[114] * t232);
-        const gic_real t243 = m[102] * t232;
-        const gic_real t244 = R(-1.688965) * y[15];
-        const gic_real t245 = t243 + (y[14] * t238 - t244);
+        const gic_real t239 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t233 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t238;
+        const gic_real t240 = R(-1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t241 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t237 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t239 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t238 - t240);
+        const gic_real t242 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t232 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t234 + (t16 + t241) +
+            rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t232);
+        const gic_real t243 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t232;
+        const gic_real t244 = R(-1.688965) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t245 = t243 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t238 - t244);
         const gic_real t246 = t243 + t245;
-        const gic_real t247 = R(-1.688965) * rate[16];
-        const gic_real t248 = y[16] * t239 - y[14] * t246 + (t247 - rate[14] * t233);
-        const gic_real t249 = t28 + t248 - (m[102] * t243 + m[108] * t233) - rate[19] * (m[114] * t233);
-        const gic_real t250 = y[15] * t246 - y[16] * t237 + (rate[15] * t233 - rate[16] * t238);
+        const gic_real t247 = R(-1.688965) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t248 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t239 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t246 + (t247 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t233);
+        const gic_real t249 = t28 + t248 - (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] * t243 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] * t233) - rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * t233);
+        const gic_real t250 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t246 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t237 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t233 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t238);
         const gic_real t251 = t249 * (t30 + t236) + (t34 + t250) * (t36 + t239);
         const gic_real t252 = R(23.965) * (t242 * (t20 + t245) + t251);
-        const gic_real t253 = rate[16] - m[102] * y[15];
-        const gic_real t254 = (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469))) * t253;
-        const gic_real t255 = m[98] * R(0.8938);
-        const gic_real t256 = m[97] * R(0.4469);
-        const gic_real t257 = m[101] * t255 + m[100] * t256;
-        const gic_real t258 = rate[15] + m[102] * y[16];
-        const gic_real t259 = t257 * t253 + (m[98] * t255 + m[97] * t256) * t258;
-        const gic_real t260 = (m[102] + y[14]) * (R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]));
-        const gic_real t261 = y[16] * (t254 + t257 * t258) + (y[15] * t259 + t260);
+        const gic_real t253 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t254 = (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] *
+            R(0.4469))) * t253;
+        const gic_real t255 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t256 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t257 = m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZZ] * t255 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_ZY] * t256;
+        const gic_real t258 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t259 = t257 * t253 + (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YZ] * t255 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_A_YY] * t256) * t258;
+        const gic_real t260 = (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE]));
+        const gic_real t261 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t254 + t257 * t258) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t259 + t260);
         const gic_real t262 = t107 + (t144 + t169) + (t206 + t231) + (t252 + t261);
-        const gic_real t263 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t264 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t265 = m[132] * t264;
-        const gic_real t266 = t235 - y[14] * t264 - t265;
+        /* inertia of lca_r_r */
+        const gic_real t263 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(-0.246867347245056);
+        const gic_real t264 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * R(-0.246867347245056);
+        const gic_real t265 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t264;
+        const gic_real t266 = t235 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t264 - t265;
         const gic_real t267 = t266 - t265;
         const gic_real t268 = R(-0.307086) + t263;
-        const gic_real t269 = y[15] * t264 - y[16] * t268;
-        const gic_real t270 = y[14] * t267 - y[15] * t269 + (rate[14] * t268 - t240);
-        const gic_real t271 = m[138] * t263 - m[132] * t265 + (t16 + t270) + rate[20] * (m[144] * t263);
-        const gic_real t272 = m[132] * t263;
-        const gic_real t273 = t272 + (y[14] * t268 - t244);
+        const gic_real t269 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t264 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t268;
+        const gic_real t270 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t267 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t269 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t268 - t240);
+        const gic_real t271 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t263 -
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t265 + (t16 + t270) +
+            rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t263);
+        const gic_real t272 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t263;
+        const gic_real t273 = t272 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t268 - t244);
         const gic_real t274 = t272 + t273;
-        const gic_real t275 = y[16] * t269 - y[14] * t274 + (t247 - rate[14] * t264);
-        const gic_real t276 = t28 + t275 - (m[132] * t272 + m[138] * t264) - rate[20] * (m[144] * t264);
-        const gic_real t277 = y[15] * t274 - y[16] * t267 + (rate[15] * t264 - rate[16] * t268);
+        const gic_real t275 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t269 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t274 + (t247 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t264);
+        const gic_real t276 = t28 + t275 - (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] * t272 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] * t264) - rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * t264);
+        const gic_real t277 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t274 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t267 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t264 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t268);
         const gic_real t278 = t276 * (t30 + t266) + (t34 + t277) * (t36 + t269);
         const gic_real t279 = R(23.965) * (t271 * (t20 + t273) + t278);
-        const gic_real t280 = rate[16] - m[132] * y[15];
-        const gic_real t281 = (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469))) * t280;
-        const gic_real t282 = m[128] * R(0.8938);
-        const gic_real t283 = m[127] * R(0.4469);
-        const gic_real t284 = m[131] * t282 + m[130] * t283;
-        const gic_real t285 = rate[15] + m[132] * y[16];
-        const gic_real t286 = t284 * t280 + (m[128] * t282 + m[127] * t283) * t285;
-        const gic_real t287 = (m[132] + y[14]) * (R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]));
-        const gic_real t288 = y[16] * (t281 + t284 * t285) + (y[15] * t286 + t287);
-        const gic_real t289 = m[230] * R(0.09182100000000004);
-        const gic_real t290 = t289 + m[229] * R(0.08910630000000008);
-        const gic_real t291 = m[233] * R(0.09182100000000004);
-        const gic_real t292 = t291 + m[232] * R(0.08910630000000008);
-        const gic_real t293 = m[234] * t292;
-        const gic_real t294 = m[238] - t293;
-        const gic_real t295 = R(-1.653405) * y[16];
-        const gic_real t296 = m[224] + t292;
-        const gic_real t297 = t294 + (t295 - y[14] * t296);
+        const gic_real t280 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] - m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t281 = (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * R(0.8938)) +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] *
+            R(0.4469))) * t280;
+        const gic_real t282 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * R(0.8938);
+        const gic_real t283 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * R(0.4469);
+        const gic_real t284 = m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZZ] * t282 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_ZY] * t283;
+        const gic_real t285 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] + m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] *
+            y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t286 = t284 * t280 + (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YZ] * t282 +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_A_YY] * t283) * t285;
+        const gic_real t287 = (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_LCA_R_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE]));
+        const gic_real t288 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t281 + t284 * t285) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            t286 + t287);
+        /* wheel tire_r_l */
+        const gic_real t289 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        /* inertia of wheel_r_l */
+        const gic_real t290 = t289 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.08910630000000008);
+        const gic_real t291 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t292 = t291 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.08910630000000008);
+        const gic_real t293 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t292;
+        const gic_real t294 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] - t293;
+        const gic_real t295 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t296 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t292;
+        const gic_real t297 = t294 + (t295 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t296);
         const gic_real t298 = t294 + t297;
-        const gic_real t299 = m[223] + t290;
-        const gic_real t300 = y[15] * t296 - y[16] * t299;
-        const gic_real t301 = R(-1.653405) * rate[15];
-        const gic_real t302 = y[14] * t298 - y[15] * t300 + (rate[14] * t299 - t301);
-        const gic_real t303 = m[245] + (m[240] * t290 - m[234] * t293) + (t16 + t302);
-        const gic_real t304 = m[234] * t290;
-        const gic_real t305 = m[239] + t304;
-        const gic_real t306 = R(-1.653405) * y[15];
-        const gic_real t307 = t305 + (y[14] * t299 - t306);
-        const gic_real t308 = (t303 + rate[19] * (m[251] + m[246] * t290)) * (t20 + t307);
+        const gic_real t299 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t290;
+        const gic_real t300 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t296 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t299;
+        const gic_real t301 = R(-1.653405) * rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t302 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t298 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t300 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t299 - t301);
+        const gic_real t303 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t290 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t293) + (t16 + t302);
+        const gic_real t304 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t290;
+        const gic_real t305 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] + t304;
+        const gic_real t306 = R(-1.653405) * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t307 = t305 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t299 - t306);
+        const gic_real t308 = (t303 + rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t290)) * (t20 + t307);
         const gic_real t309 = t305 + t307;
-        const gic_real t310 = R(-1.653405) * rate[16];
-        const gic_real t311 = y[16] * t300 - y[14] * t309 + (t310 - rate[14] * t296);
-        const gic_real t312 = m[244] - (m[234] * t304 + m[240] * t292) + (t28 + t311);
-        const gic_real t313 = (t312 + rate[19] * (m[250] - m[246] * t292)) * (t30 + t297);
-        const gic_real t314 = y[15] * t309 - y[16] * t298 + (rate[15] * t296 - rate[16] * t299);
+        const gic_real t310 = R(-1.653405) * rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t311 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t300 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t309 + (t310 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t296);
+        const gic_real t312 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t304 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] * t292) + (t28 + t311);
+        const gic_real t313 = (t312 + rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * t292)) * (t30 + t297);
+        const gic_real t314 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t309 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t298 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t296 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t299);
         const gic_real t315 = R(90.555) * (t308 + (t313 + (t34 + t314) * (t36 + t300)));
-        const gic_real t316 = rate[16] - m[234] * y[15];
-        const gic_real t317 = (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046))) * t316;
-        const gic_real t318 = m[230] * R(4.7728205);
-        const gic_real t319 = m[229] * R(0.19340000000000046);
-        const gic_real t320 = m[233] * t318 + m[232] * t319;
-        const gic_real t321 = rate[15] + m[234] * y[16];
-        const gic_real t322 = t320 * t316 + (m[230] * t318 + m[229] * t319) * t321;
-        const gic_real t323 = m[234] + y[14];
-        const gic_real t324 = y[15] * t322 + t323 * (R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]));
-        const gic_real t325 = y[16] * (t317 + t320 * t321) + t324;
-        const gic_real t326 = m[260] * R(0.09182100000000004);
-        const gic_real t327 = t326 + m[259] * R(-0.08910630000000008);
-        const gic_real t328 = m[263] * R(0.09182100000000004);
-        const gic_real t329 = t328 + m[262] * R(-0.08910630000000008);
-        const gic_real t330 = m[264] * t329;
-        const gic_real t331 = m[268] - t330;
-        const gic_real t332 = m[254] + t329;
-        const gic_real t333 = t331 + (t295 - y[14] * t332);
+        const gic_real t316 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t317 = (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046))) * t316;
+        const gic_real t318 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t319 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t320 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZZ] * t318 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * t319;
+        const gic_real t321 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t322 = t320 * t316 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YZ] * t318 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * t319) * t321;
+        const gic_real t323 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t324 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t322 + t323 * (R(4.8947505) *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE]));
+        const gic_real t325 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t317 + t320 * t321) + t324;
+        /* wheel tire_r_r */
+        const gic_real t326 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(0.09182100000000004);
+        const gic_real t327 = t326 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.08910630000000008);
+        const gic_real t328 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(0.09182100000000004);
+        const gic_real t329 = t328 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.08910630000000008);
+        const gic_real t330 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t329;
+        const gic_real t331 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] - t330;
+        const gic_real t332 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t329;
+        const gic_real t333 = t331 + (t295 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t332);
         const gic_real t334 = t331 + t333;
-        const gic_real t335 = m[253] + t327;
-        const gic_real t336 = y[15] * t332 - y[16] * t335;
-        const gic_real t337 = y[14] * t334 - y[15] * t336 + (rate[14] * t335 - t301);
-        const gic_real t338 = m[275] + (m[270] * t327 - m[264] * t330) + (t16 + t337);
-        const gic_real t339 = m[264] * t327;
-        const gic_real t340 = m[269] + t339;
-        const gic_real t341 = t340 + (y[14] * t335 - t306);
-        const gic_real t342 = (t338 + rate[20] * (m[281] + m[276] * t327)) * (t20 + t341);
+        const gic_real t335 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t327;
+        const gic_real t336 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t332 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t335;
+        const gic_real t337 = y[HMMWV_TMEASY_STATE_OMEGA_X] * t334 - y[HMMWV_TMEASY_STATE_OMEGA_Y] * t336 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_X] * t335 - t301);
+        const gic_real t338 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t327 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t330) + (t16 + t337);
+        const gic_real t339 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t327;
+        const gic_real t340 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] + t339;
+        const gic_real t341 = t340 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t335 - t306);
+        const gic_real t342 = (t338 + rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 5] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t327)) * (t20 + t341);
         const gic_real t343 = t340 + t341;
-        const gic_real t344 = y[16] * t336 - y[14] * t343 + (t310 - rate[14] * t332);
-        const gic_real t345 = m[274] - (m[264] * t339 + m[270] * t329) + (t28 + t344);
-        const gic_real t346 = (t345 + rate[20] * (m[280] - m[276] * t329)) * (t30 + t333);
-        const gic_real t347 = y[15] * t343 - y[16] * t334 + (rate[15] * t332 - rate[16] * t335);
+        const gic_real t344 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * t336 - y[HMMWV_TMEASY_STATE_OMEGA_X] * t343 + (t310 -
+            rate[HMMWV_TMEASY_STATE_OMEGA_X] * t332);
+        const gic_real t345 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ACCELERATION_Y] -
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t339 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] * t329) + (t28 + t344);
+        const gic_real t346 = (t345 + rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 4] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * t329)) * (t30 + t333);
+        const gic_real t347 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t343 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t334 +
+            (rate[HMMWV_TMEASY_STATE_OMEGA_Y] * t332 - rate[HMMWV_TMEASY_STATE_OMEGA_Z] * t335);
         const gic_real t348 = R(90.555) * (t342 + (t346 + (t34 + t347) * (t36 + t336)));
-        const gic_real t349 = rate[16] - m[264] * y[15];
-        const gic_real t350 = (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046))) * t349;
-        const gic_real t351 = m[260] * R(4.7728205);
-        const gic_real t352 = m[259] * R(0.19340000000000046);
-        const gic_real t353 = m[263] * t351 + m[262] * t352;
-        const gic_real t354 = rate[15] + m[264] * y[16];
-        const gic_real t355 = t353 * t349 + (m[260] * t351 + m[259] * t352) * t354;
-        const gic_real t356 = m[264] + y[14];
-        const gic_real t357 = y[15] * t355 + t356 * (R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]));
-        const gic_real t358 = y[16] * (t350 + t353 * t354) + t357;
+        const gic_real t349 = rate[HMMWV_TMEASY_STATE_OMEGA_Z] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t350 = (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(0.19340000000000046))) * t349;
+        const gic_real t351 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * R(4.7728205);
+        const gic_real t352 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(0.19340000000000046);
+        const gic_real t353 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZZ] * t351 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * t352;
+        const gic_real t354 = rate[HMMWV_TMEASY_STATE_OMEGA_Y] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * y[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t355 = t353 * t349 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YZ] * t351 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * t352) * t354;
+        const gic_real t356 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] + y[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t357 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * t355 + t356 * (R(4.8947505) *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_ALPHA_X] + rate[HMMWV_TMEASY_STATE_OMEGA_X] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_S + 0] * rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE]));
+        const gic_real t358 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t350 + t353 * t354) + t357;
         const gic_real t359 = t262 + (t279 + t288) + (t315 + t325) + (t348 + t358);
-        const gic_real t360 = rate[21] * y[21] * R(7.38782);
-        const gic_real t361 = R(7.38782) * (rate[25] * y[25]);
-        const gic_real t362 = R(7.38782) * (rate[29] * y[29]);
-        const gic_real t363 = R(7.38782) * (rate[33] * y[33]);
-        const gic_real t364 = t7 * self->grip[5] + (t11 * self->grip[4] + t15 * self->grip[3]);
-        const gic_real t365 = t22 * self->grip[5] + (t24 * self->grip[4] + t27 * self->grip[3]);
-        const gic_real t366 = t31 * self->grip[5] + (t32 * self->grip[4] + t33 * self->grip[3]);
-        const gic_real t367 = t7 * self->grip[2] + (t11 * self->grip[1] + t15 * self->grip[0]);
-        const gic_real t368 = t115 + (m[157] * R(0.12319000000000002) + t116);
-        const gic_real t369 = t108 + (m[154] * R(0.12319000000000002) + t109);
-        const gic_real t370 = m[151] + t368;
+        const gic_real t360 = rate[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN] * y[HMMWV_TMEASY_STATE_TIRE_F_L_SPIN] * R(7.38782);
+        const gic_real t361 = R(7.38782) * (rate[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN] *
+            y[HMMWV_TMEASY_STATE_TIRE_F_R_SPIN]);
+        const gic_real t362 = R(7.38782) * (rate[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN] *
+            y[HMMWV_TMEASY_STATE_TIRE_R_L_SPIN]);
+        const gic_real t363 = R(7.38782) * (rate[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN] *
+            y[HMMWV_TMEASY_STATE_TIRE_R_R_SPIN]);
+        const gic_real t364 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t365 = t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t366 = t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t367 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t368 = t115 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002) +
+            t116);
+        const gic_real t369 = t108 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] * R(0.12319000000000002) +
+            t109);
+        const gic_real t370 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Y] + t368;
         const gic_real t371 = R(1.653405) + t369;
-        const gic_real t372 = m[167] + (m[162] * t368 - m[163] * t369) + (y[14] * t370 - y[15] * t371);
-        const gic_real t373 = t22 * self->grip[2] + (t24 * self->grip[1] + t27 * self->grip[0]);
-        const gic_real t374 = t111 + (m[160] * R(0.12319000000000002) + t112);
-        const gic_real t375 = m[152] + t374;
-        const gic_real t376 = m[166] + (m[164] * t369 - m[162] * t374) + (y[16] * t371 - y[14] * t375);
-        const gic_real t377 = t31 * self->grip[2] + (t32 * self->grip[1] + t33 * self->grip[0]);
-        const gic_real t378 = m[163] * t374 - m[164] * t368 + (y[15] * t375 - y[16] * t370);
+        const gic_real t372 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t368 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t369) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t370 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t371);
+        const gic_real t373 = t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t374 = t111 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002) +
+            t112);
+        const gic_real t375 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_C_Z] + t374;
+        const gic_real t376 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t369 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_X] * t374) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t371 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t375);
+        const gic_real t377 = t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t378 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Y] * t374 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_OMEGA_Z] * t368 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t375 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t370);
         const gic_real t379 = t367 * (t20 + t372) + (t373 * (t30 + t376) + t377 * (t36 + t378));
         const gic_real t380 = t364 * t145 + (t365 * t162 + t366 * t166) + t379;
-        const gic_real t381 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(24780.4));
-        const gic_real t382 = y[16] * (m[160] * self->grip[6]) + (y[15] * (m[157] * self->grip[6]) + y[14] * (m[154] * self->grip[6]));
-        const gic_real t383 = self->grip[26] + (t380 - (t381 + xd[3] * (xd[3] * R(24780.4)))) - t382;
-        const gic_real t384 = t7 * self->grip[32] + (t11 * self->grip[31] + t15 * self->grip[30]);
-        const gic_real t385 = t22 * self->grip[32] + (t24 * self->grip[31] + t27 * self->grip[30]);
-        const gic_real t386 = t31 * self->grip[32] + (t32 * self->grip[31] + t33 * self->grip[30]);
-        const gic_real t387 = t7 * self->grip[29] + (t11 * self->grip[28] + t15 * self->grip[27]);
-        const gic_real t388 = t177 + (m[193] * R(-0.12319000000000002) + t178);
-        const gic_real t389 = t170 + (m[190] * R(-0.12319000000000002) + t171);
-        const gic_real t390 = m[187] + t388;
+        /* force spring_r_l */
+        const gic_real t381 = xd[HMMWV_TMEASY_X_SPRING_F_L] * (xd[HMMWV_TMEASY_X_SPRING_F_L] * R(17490.8)) +
+            xd[HMMWV_TMEASY_X_SPRING_F_R] * (xd[HMMWV_TMEASY_X_SPRING_F_R] * R(17490.8)) +
+            xd[HMMWV_TMEASY_X_SPRING_R_L] * (xd[HMMWV_TMEASY_X_SPRING_R_L] * R(24780.4));
+        const gic_real t382 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t383 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_POWER] + (t380 - (t381 +
+            xd[HMMWV_TMEASY_X_SPRING_R_R] * (xd[HMMWV_TMEASY_X_SPRING_R_R] * R(24780.4)))) - t382;
+        const gic_real t384 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t385 = t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t386 = t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_TORQUE_X]);
+        const gic_real t387 = t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t388 = t177 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002) +
+            t178);
+        const gic_real t389 = t170 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] * R(-0.12319000000000002) +
+            t171);
+        const gic_real t390 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Y] + t388;
         const gic_real t391 = R(1.653405) + t389;
-        const gic_real t392 = m[203] + (m[198] * t388 - m[199] * t389) + (y[14] * t390 - y[15] * t391);
-        const gic_real t393 = t22 * self->grip[29] + (t24 * self->grip[28] + t27 * self->grip[27]);
-        const gic_real t394 = t173 + (m[196] * R(-0.12319000000000002) + t174);
-        const gic_real t395 = m[188] + t394;
-        const gic_real t396 = m[202] + (m[200] * t389 - m[198] * t394) + (y[16] * t391 - y[14] * t395);
-        const gic_real t397 = t31 * self->grip[29] + (t32 * self->grip[28] + t33 * self->grip[27]);
-        const gic_real t398 = m[199] * t394 - m[200] * t388 + (y[15] * t395 - y[16] * t390);
+        const gic_real t392 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Z] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t388 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t389) + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t390 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Y] * t391);
+        const gic_real t393 = t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t394 = t173 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002) +
+            t174);
+        const gic_real t395 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_C_Z] + t394;
+        const gic_real t396 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_VELOCITY_Y] +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t389 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_X] * t394) + (y[HMMWV_TMEASY_STATE_OMEGA_Z] * t391 -
+            y[HMMWV_TMEASY_STATE_OMEGA_X] * t395);
+        const gic_real t397 = t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_FORCE_X]);
+        const gic_real t398 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Y] * t394 -
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_OMEGA_Z] * t388 + (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t395 -
+            y[HMMWV_TMEASY_STATE_OMEGA_Z] * t390);
         const gic_real t399 = t387 * (t20 + t392) + (t393 * (t30 + t396) + t397 * (t36 + t398));
         const gic_real t400 = t384 * t207 + (t385 * t224 + t386 * t228) + t399;
-        const gic_real t401 = y[16] * (m[196] * self->grip[33]) + (y[15] * (m[193] * self->grip[33]) + y[14] * (m[190] * self->grip[33]));
-        const gic_real t402 = y[16] * (t7 * self->grip[59] + (t11 * self->grip[58] + t15 * self->grip[57]));
-        const gic_real t403 = y[15] * (t22 * self->grip[59] + (t24 * self->grip[58] + t27 * self->grip[57]));
-        const gic_real t404 = (t31 * self->grip[59] + (t32 * self->grip[58] + t33 * self->grip[57])) * t323;
-        const gic_real t405 = t289 + m[229] * R(0.12319000000000002);
-        const gic_real t406 = m[223] + t405;
-        const gic_real t407 = t20 + (m[239] + m[234] * t405 + (y[14] * t406 - t306));
-        const gic_real t408 = (t7 * self->grip[56] + (t11 * self->grip[55] + t15 * self->grip[54])) * t407;
-        const gic_real t409 = t291 + m[232] * R(0.12319000000000002);
-        const gic_real t410 = m[224] + t409;
-        const gic_real t411 = t30 + (m[238] - m[234] * t409 + (t295 - y[14] * t410));
-        const gic_real t412 = (t22 * self->grip[56] + (t24 * self->grip[55] + t27 * self->grip[54])) * t411;
-        const gic_real t413 = (t31 * self->grip[56] + (t32 * self->grip[55] + t33 * self->grip[54])) * (t36 + (y[15] * t410 - y[16] * t406));
-        const gic_real t414 = self->grip[53] + (t383 + t400) - t401 + (t402 + (t403 + t404) + (t408 + (t412 + t413)));
-        const gic_real t415 = self->grip[80] + t414 - (y[16] * (m[232] * self->grip[60]) + y[15] * (m[229] * self->grip[60]));
-        const gic_real t416 = y[16] * (t7 * self->grip[86] + (t11 * self->grip[85] + t15 * self->grip[84]));
-        const gic_real t417 = y[15] * (t22 * self->grip[86] + (t24 * self->grip[85] + t27 * self->grip[84]));
-        const gic_real t418 = (t31 * self->grip[86] + (t32 * self->grip[85] + t33 * self->grip[84])) * t356;
-        const gic_real t419 = t326 + m[259] * R(-0.12319000000000002);
-        const gic_real t420 = m[253] + t419;
-        const gic_real t421 = t20 + (m[269] + m[264] * t419 + (y[14] * t420 - t306));
-        const gic_real t422 = (t7 * self->grip[83] + (t11 * self->grip[82] + t15 * self->grip[81])) * t421;
-        const gic_real t423 = t328 + m[262] * R(-0.12319000000000002);
-        const gic_real t424 = m[254] + t423;
-        const gic_real t425 = t30 + (m[268] - m[264] * t423 + (t295 - y[14] * t424));
-        const gic_real t426 = (t22 * self->grip[83] + (t24 * self->grip[82] + t27 * self->grip[81])) * t425;
-        const gic_real t427 = (t31 * self->grip[83] + (t32 * self->grip[82] + t33 * self->grip[81])) * (t36 + (y[15] * t424 - y[16] * t420));
+        const gic_real t401 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]) + (y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_A_XY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t402 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t7 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t403 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * (t22 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t404 = (t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_TORQUE_X])) * t323;
+        const gic_real t405 = t289 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] * R(0.12319000000000002);
+        const gic_real t406 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Y] + t405;
+        const gic_real t407 = t20 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t405 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t406 -
+            t306));
+        const gic_real t408 = (t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * t407;
+        const gic_real t409 = t291 + m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] * R(0.12319000000000002);
+        const gic_real t410 = m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_C_Z] + t409;
+        const gic_real t411 = t30 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_OMEGA_X] * t409 + (t295 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t410));
+        const gic_real t412 = (t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * t411;
+        const gic_real t413 = (t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_FORCE_X])) * (t36 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t410 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t406));
+        const gic_real t414 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_POWER] + (t383 + t400) -
+            t401 + (t402 + (t403 + t404) + (t408 + (t412 + t413)));
+        const gic_real t415 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_POWER] + t414 -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_L + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_DRIVE]));
+        const gic_real t416 = y[HMMWV_TMEASY_STATE_OMEGA_Z] * (t7 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t417 = y[HMMWV_TMEASY_STATE_OMEGA_Y] * (t22 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X]));
+        const gic_real t418 = (t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_TORQUE_X])) * t356;
+        const gic_real t419 = t326 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] * R(-0.12319000000000002);
+        const gic_real t420 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Y] + t419;
+        const gic_real t421 = t20 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Z] +
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t419 + (y[HMMWV_TMEASY_STATE_OMEGA_X] * t420 -
+            t306));
+        const gic_real t422 = (t7 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t11 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * t421;
+        const gic_real t423 = t328 + m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] * R(-0.12319000000000002);
+        const gic_real t424 = m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_C_Z] + t423;
+        const gic_real t425 = t30 + (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_VELOCITY_Y] -
+            m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_OMEGA_X] * t423 + (t295 - y[HMMWV_TMEASY_STATE_OMEGA_X] *
+            t424));
+        const gic_real t426 = (t22 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * t425;
+        const gic_real t427 = (t31 * self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Z] + (t32 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_Y] + t33 *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_FORCE_X])) * (t36 +
+            (y[HMMWV_TMEASY_STATE_OMEGA_Y] * t424 - y[HMMWV_TMEASY_STATE_OMEGA_Z] * t420));
         const gic_real t428 = t415 + (t416 + (t417 + t418) + (t422 + (t426 + t427)));
-        const gic_real t429 = self->grip[107] + t428 - (y[16] * (m[262] * self->grip[87]) + y[15] * (m[259] * self->grip[87]));
+        const gic_real t429 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_POWER] + t428 -
+            (y[HMMWV_TMEASY_STATE_OMEGA_Z] * (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_ZY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE]) + y[HMMWV_TMEASY_STATE_OMEGA_Y] *
+            (m[HMMWV_TMEASY_MOTION_WHEEL_R_R + HMMWV_TMEASY_A_YY] *
+            self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_DRIVE]));
         const gic_real t430 = t145 * t152 + (t162 * t163 + t166 * t164);
         const gic_real t431 = t145 * t158 + (t162 * t164 + t166 * t167);
         const gic_real t432 = t138 * R(90.555);
@@ -5671,7 +8169,9 @@ static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time,
         const gic_real t436 = t130 * R(90.555);
         const gic_real t437 = t145 * t431 - t166 * t435 + t165 + (t113 * t433 - t110 * t436);
         const gic_real t438 = t162 * t435 - t145 * t430 + t168 + (t117 * t436 - t113 * t432);
-        const gic_real t439 = t46 * R(9.072) + (m[176] * t434 + (m[175] * t437 + m[174] * t438));
+        const gic_real t439 = t46 * R(9.072) + (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * t434 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * t437 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * t438));
         const gic_real t440 = t207 * t214 + (t224 * t225 + t228 * t226);
         const gic_real t441 = t207 * t220 + (t224 * t226 + t228 * t229);
         const gic_real t442 = R(90.555) * t200;
@@ -5681,12 +8181,18 @@ static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time,
         const gic_real t446 = R(90.555) * t192;
         const gic_real t447 = t207 * t441 - t228 * t445 + t227 + (t175 * t443 - t172 * t446);
         const gic_real t448 = t224 * t445 - t207 * t440 + t230 + (t179 * t446 - t175 * t442);
-        const gic_real t449 = t439 + (m[212] * t444 + (m[211] * t447 + m[210] * t448));
-        const gic_real t450 = m[175] * (t365 + (t374 * t377 - t369 * t367)) + m[174] * (t366 + (t368 * t367 - t374 * t373));
-        const gic_real t451 = m[176] * (t364 + (t369 * t373 - t368 * t377)) + t450;
-        const gic_real t452 = m[211] * (t385 + (t394 * t397 - t389 * t387)) + m[210] * (t386 + (t388 * t387 - t394 * t393));
-        const gic_real t453 = m[212] * (t384 + (t389 * t393 - t388 * t397)) + t452;
-        const gic_real t454 = t429 + xd[4] * (t449 - (t451 + t453));
+        const gic_real t449 = t439 + (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * t444 +
+            (m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * t447 +
+            m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * t448));
+        const gic_real t450 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 1] * (t365 + (t374 * t377 - t369 *
+            t367)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 0] * (t366 + (t368 * t367 - t374 * t373));
+        const gic_real t451 = m[HMMWV_TMEASY_MOTION_WHEEL_F_L + HMMWV_TMEASY_S + 2] * (t364 + (t369 * t373 - t368 *
+            t377)) + t450;
+        const gic_real t452 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 1] * (t385 + (t394 * t397 - t389 *
+            t387)) + m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 0] * (t386 + (t388 * t387 - t394 * t393));
+        const gic_real t453 = m[HMMWV_TMEASY_MOTION_WHEEL_F_R + HMMWV_TMEASY_S + 2] * (t384 + (t389 * t393 - t388 *
+            t397)) + t452;
+        const gic_real t454 = t429 + xd[HMMWV_TMEASY_X_RACK] * (t449 - (t451 + t453));
         const gic_real t455 = GIC_FABS(t39) + GIC_FABS(t38) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t456 = t455 + (GIC_FABS(t80) + GIC_FABS(t71)) + (GIC_FABS(t106) + GIC_FABS(t97));
         const gic_real t457 = t456 + (GIC_FABS(t169) + GIC_FABS(t144)) + (GIC_FABS(t231) + GIC_FABS(t206));
@@ -5695,33 +8201,34 @@ static GIC_COLD int hmmwv_tmeasy_energy(const hmmwv_tmeasy *self, gic_real time,
         const gic_real t460 = t459 + GIC_FABS(t360) + GIC_FABS(t361) + GIC_FABS(t362);
         const gic_real t461 = t460 + GIC_FABS(t363) + (GIC_FABS(t454) + GIC_FABS(t2));
         const gic_real t462 = t2 + (t359 + t360 + t361 + t362 + t363);
-        const gic_real t463 = rate[14];
-        const gic_real t464 = rate[15];
-        const gic_real t465 = rate[16];
-        const gic_real t466 = rate[17];
-        const gic_real t467 = rate[18];
-        const gic_real t468 = rate[19];
-        const gic_real t469 = rate[20];
-        energy[0] = t462;
-        energy[1] = t454;
-        energy[2] = t461;
-        acc[0] = t463;
-        acc[3] = t34;
-        acc[1] = t464;
-        acc[4] = t28;
-        acc[2] = t465;
-        acc[5] = t16;
-        acc[6] = t466;
-        acc[7] = t467;
-        acc[8] = t468;
-        acc[9] = t469;
+        const gic_real t463 = rate[HMMWV_TMEASY_STATE_OMEGA_X];
+        const gic_real t464 = rate[HMMWV_TMEASY_STATE_OMEGA_Y];
+        const gic_real t465 = rate[HMMWV_TMEASY_STATE_OMEGA_Z];
+        const gic_real t466 = rate[HMMWV_TMEASY_STATE_SPRING_F_L_RATE];
+        const gic_real t467 = rate[HMMWV_TMEASY_STATE_SPRING_F_R_RATE];
+        const gic_real t468 = rate[HMMWV_TMEASY_STATE_SPRING_R_L_RATE];
+        const gic_real t469 = rate[HMMWV_TMEASY_STATE_SPRING_R_R_RATE];
+        energy[HMMWV_TMEASY_ENERGY_RATE] = t462;
+        energy[HMMWV_TMEASY_ENERGY_POWER] = t454;
+        energy[HMMWV_TMEASY_ENERGY_MAGNITUDES] = t461;
+        acc[HMMWV_TMEASY_UNKNOWN_ALPHA_X] = t463;
+        acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_X] = t34;
+        acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Y] = t464;
+        acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Y] = t28;
+        acc[HMMWV_TMEASY_UNKNOWN_ALPHA_Z] = t465;
+        acc[HMMWV_TMEASY_UNKNOWN_ACCELERATION_Z] = t16;
+        acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_L] = t466;
+        acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_F_R] = t467;
+        acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_L] = t468;
+        acc[HMMWV_TMEASY_UNKNOWN_OF_SPRING_R_R] = t469;
     }
     return GIC_OK;
 }
 
 GIC_COLD int hmmwv_tmeasy_self_test(hmmwv_tmeasy *self, gic_self_test *result)
 {
-    gic_real e[4], acc[HMMWV_TMEASY_UNKNOWN_ROOM], unit[HMMWV_TMEASY_UNKNOWN_ROOM], tau0[HMMWV_TMEASY_UNKNOWN_ROOM], tau[HMMWV_TMEASY_UNKNOWN_ROOM];
+    gic_real e[4], acc[HMMWV_TMEASY_UNKNOWN_ROOM], unit[HMMWV_TMEASY_UNKNOWN_ROOM], tau0[HMMWV_TMEASY_UNKNOWN_ROOM],
+        tau[HMMWV_TMEASY_UNKNOWN_ROOM];
     gic_real M[HMMWV_TMEASY_UNKNOWN_ROOM][HMMWV_TMEASY_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_tmeasy_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -5799,12 +8306,14 @@ static int hmmwv_tmeasy_any_link(void *instance, gic_real time, const gic_real *
     return GIC_OK;
 }
 
-static int hmmwv_tmeasy_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
+static int hmmwv_tmeasy_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast,
+    gic_real *rate)
 {
     hmmwv_tmeasy *const self = (hmmwv_tmeasy *)instance;
     gic_real result[HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW];
     int status;
-    if (!GIC_FINITE(link, HMMWV_TMEASY_LINKS) || !GIC_BOUNDED(fast, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW) || !GIC_FINITE(&time, 1) ||
+    if (!GIC_FINITE(link, HMMWV_TMEASY_LINKS) || !GIC_BOUNDED(fast, HMMWV_TMEASY_STATES - HMMWV_TMEASY_SLOW) ||
+        !GIC_FINITE(&time, 1) ||
         !GIC_FINITE(self->input, HMMWV_TMEASY_INPUTS) || !GIC_FINITE(self->parameter, HMMWV_TMEASY_PARAMETERS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_tmeasy_grip(self, time, link, fast, result);
@@ -5847,14 +8356,15 @@ static int hmmwv_tmeasy_any_roll(void *instance)
         for (j = 0; j < hmmwv_tmeasy_rolling[i].states; ++j)
             own[j] = R(0.0);
         own[0] = v_x / radius;
-        own[2] = v_y * hmmwv_tmeasy_rolling_share(speed / hmmwv_tmeasy_rolling[i].low_speed) / hmmwv_tmeasy_rolling[i].low_speed;
+        own[2] = v_y * hmmwv_tmeasy_rolling_share(speed / hmmwv_tmeasy_rolling[i].low_speed) /
+            hmmwv_tmeasy_rolling[i].low_speed;
     }
     if (status == GIC_OK)
         gic_restart(self, time);
     return self->head.status = status;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_tmeasy_any_setup(void *self)
 {

@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x3fb15107
+#if HMMWV_VEHICLE_H != 0xb96f51f1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -144,16 +144,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -173,10 +174,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -198,13 +215,235 @@
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct hmmwv_vehicle_links {
     const gic_real *known[HMMWV_VEHICLE_KNOWN_ROOM];
-    gic_real x[HMMWV_VEHICLE_DEPENDENCE_ROOM], rate[HMMWV_VEHICLE_DEPENDENCE_ROOM], change[HMMWV_VEHICLE_DEPENDENCE_ROOM], turn[3];
+    gic_real x[HMMWV_VEHICLE_DEPENDENCE_ROOM], rate[HMMWV_VEHICLE_DEPENDENCE_ROOM],
+        change[HMMWV_VEHICLE_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[HMMWV_VEHICLE_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[HMMWV_VEHICLE_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } hmmwv_vehicle_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef HMMWV_VEHICLE_LAYOUT_NAMES
+#define HMMWV_VEHICLE_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    HMMWV_VEHICLE_C_X = 0,
+    HMMWV_VEHICLE_C_Y = 1,
+    HMMWV_VEHICLE_C_Z = 2,
+    HMMWV_VEHICLE_A_XX = 3,
+    HMMWV_VEHICLE_A_XY = 4,
+    HMMWV_VEHICLE_A_XZ = 5,
+    HMMWV_VEHICLE_A_YX = 6,
+    HMMWV_VEHICLE_A_YY = 7,
+    HMMWV_VEHICLE_A_YZ = 8,
+    HMMWV_VEHICLE_A_ZX = 9,
+    HMMWV_VEHICLE_A_ZY = 10,
+    HMMWV_VEHICLE_A_ZZ = 11,
+    HMMWV_VEHICLE_OMEGA_X = 12,
+    HMMWV_VEHICLE_OMEGA_Y = 13,
+    HMMWV_VEHICLE_OMEGA_Z = 14,
+    HMMWV_VEHICLE_VELOCITY_X = 15,
+    HMMWV_VEHICLE_VELOCITY_Y = 16,
+    HMMWV_VEHICLE_VELOCITY_Z = 17,
+    HMMWV_VEHICLE_ALPHA_X = 18,
+    HMMWV_VEHICLE_ALPHA_Y = 19,
+    HMMWV_VEHICLE_ALPHA_Z = 20,
+    HMMWV_VEHICLE_ACCELERATION_X = 21,
+    HMMWV_VEHICLE_ACCELERATION_Y = 22,
+    HMMWV_VEHICLE_ACCELERATION_Z = 23,
+    HMMWV_VEHICLE_S = 24, /* unit velocities, 6 numbers a coordinate */
+    HMMWV_VEHICLE_I_FIRST_X = 0,
+    HMMWV_VEHICLE_I_FIRST_Y = 1,
+    HMMWV_VEHICLE_I_FIRST_Z = 2,
+    HMMWV_VEHICLE_I_SECOND_XX = 3,
+    HMMWV_VEHICLE_I_SECOND_YY = 4,
+    HMMWV_VEHICLE_I_SECOND_ZZ = 5,
+    HMMWV_VEHICLE_I_SECOND_XY = 6,
+    HMMWV_VEHICLE_I_SECOND_XZ = 7,
+    HMMWV_VEHICLE_I_SECOND_YZ = 8,
+    HMMWV_VEHICLE_I_FORCE_X = 9,
+    HMMWV_VEHICLE_I_FORCE_Y = 10,
+    HMMWV_VEHICLE_I_FORCE_Z = 11,
+    HMMWV_VEHICLE_I_MOMENT_X = 12,
+    HMMWV_VEHICLE_I_MOMENT_Y = 13,
+    HMMWV_VEHICLE_I_MOMENT_Z = 14,
+    HMMWV_VEHICLE_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    HMMWV_VEHICLE_MOTION_RACK = 0,
+    HMMWV_VEHICLE_MOTION_LCA_F_L = 30,
+    HMMWV_VEHICLE_MOTION_LCA_F_R = 60,
+    HMMWV_VEHICLE_MOTION_WHEEL_F_L = 150,
+    HMMWV_VEHICLE_MOTION_WHEEL_F_R = 186,
+    HMMWV_VEHICLE_MOTION_LCA_R_L = 90,
+    HMMWV_VEHICLE_MOTION_LCA_R_R = 120,
+    HMMWV_VEHICLE_MOTION_WHEEL_R_L = 222,
+    HMMWV_VEHICLE_MOTION_WHEEL_R_R = 252,
+    HMMWV_VEHICLE_INERTIA_RACK = 0,
+    HMMWV_VEHICLE_INERTIA_LCA_F_L = 23,
+    HMMWV_VEHICLE_INERTIA_LCA_F_R = 46,
+    HMMWV_VEHICLE_INERTIA_LCA_R_L = 69,
+    HMMWV_VEHICLE_INERTIA_LCA_R_R = 92,
+    HMMWV_VEHICLE_INERTIA_WHEEL_F_L = 115,
+    HMMWV_VEHICLE_INERTIA_WHEEL_F_R = 147,
+    HMMWV_VEHICLE_INERTIA_WHEEL_R_L = 179,
+    HMMWV_VEHICLE_INERTIA_WHEEL_R_R = 202,
+    HMMWV_VEHICLE_SUBSET_CHASSIS = 0,
+    HMMWV_VEHICLE_SUBSET_RACK = 1,
+    HMMWV_VEHICLE_SUBSET_LCA_F_L = 2,
+    HMMWV_VEHICLE_SUBSET_LCA_F_R = 3,
+    HMMWV_VEHICLE_SUBSET_LCA_R_L = 4,
+    HMMWV_VEHICLE_SUBSET_LCA_R_R = 5,
+    HMMWV_VEHICLE_SUBSET_WHEEL_F_L = 6,
+    HMMWV_VEHICLE_SUBSET_WHEEL_F_R = 7,
+    HMMWV_VEHICLE_SUBSET_WHEEL_R_L = 8,
+    HMMWV_VEHICLE_SUBSET_WHEEL_R_R = 9,
+    HMMWV_VEHICLE_X_SPRING_F_L = 0,
+    HMMWV_VEHICLE_X_SPRING_F_R = 1,
+    HMMWV_VEHICLE_X_SPRING_R_L = 2,
+    HMMWV_VEHICLE_X_SPRING_R_R = 3,
+    HMMWV_VEHICLE_X_RACK = 4,
+    HMMWV_VEHICLE_Q_X = 0,
+    HMMWV_VEHICLE_Q_Y = 1,
+    HMMWV_VEHICLE_Q_Z = 2,
+    HMMWV_VEHICLE_Q_P0 = 3,
+    HMMWV_VEHICLE_Q_P1 = 4,
+    HMMWV_VEHICLE_Q_P2 = 5,
+    HMMWV_VEHICLE_Q_P3 = 6,
+    HMMWV_VEHICLE_POSE_CHASSIS = 0,
+    HMMWV_VEHICLE_POSE_RACK = 7,
+    HMMWV_VEHICLE_POSE_LCA_F_L = 14,
+    HMMWV_VEHICLE_POSE_LCA_F_R = 21,
+    HMMWV_VEHICLE_POSE_WHEEL_F_L = 28,
+    HMMWV_VEHICLE_POSE_WHEEL_F_R = 35,
+    HMMWV_VEHICLE_POSE_LCA_R_L = 42,
+    HMMWV_VEHICLE_POSE_LCA_R_R = 49,
+    HMMWV_VEHICLE_POSE_WHEEL_R_L = 56,
+    HMMWV_VEHICLE_POSE_WHEEL_R_R = 63,
+    HMMWV_VEHICLE_UNKNOWN_ALPHA_X = 0,
+    HMMWV_VEHICLE_UNKNOWN_ALPHA_Y = 1,
+    HMMWV_VEHICLE_UNKNOWN_ALPHA_Z = 2,
+    HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X = 3,
+    HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y = 4,
+    HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z = 5,
+    HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L = 6,
+    HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R = 7,
+    HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L = 8,
+    HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R = 9,
+    HMMWV_VEHICLE_ENERGY_RATE = 0,
+    HMMWV_VEHICLE_ENERGY_POWER = 1,
+    HMMWV_VEHICLE_ENERGY_MAGNITUDES = 2,
+    HMMWV_VEHICLE_LINK_C_X = 0,
+    HMMWV_VEHICLE_LINK_C_Y = 1,
+    HMMWV_VEHICLE_LINK_C_Z = 2,
+    HMMWV_VEHICLE_LINK_V_X = 3,
+    HMMWV_VEHICLE_LINK_V_Y = 4,
+    HMMWV_VEHICLE_LINK_V_Z = 5,
+    HMMWV_VEHICLE_LINK_S_X = 6,
+    HMMWV_VEHICLE_LINK_S_Y = 7,
+    HMMWV_VEHICLE_LINK_S_Z = 8,
+    HMMWV_VEHICLE_LINK_OMEGA_X = 9,
+    HMMWV_VEHICLE_LINK_OMEGA_Y = 10,
+    HMMWV_VEHICLE_LINK_OMEGA_Z = 11,
+    HMMWV_VEHICLE_GRIP_FORCE_X = 0,
+    HMMWV_VEHICLE_GRIP_FORCE_Y = 1,
+    HMMWV_VEHICLE_GRIP_FORCE_Z = 2,
+    HMMWV_VEHICLE_GRIP_TORQUE_X = 3,
+    HMMWV_VEHICLE_GRIP_TORQUE_Y = 4,
+    HMMWV_VEHICLE_GRIP_TORQUE_Z = 5,
+    HMMWV_VEHICLE_GRIP_DRIVE = 6,
+    HMMWV_VEHICLE_GRIP_BRAKE = 7,
+    HMMWV_VEHICLE_GRIP_LOAD = 8,
+    HMMWV_VEHICLE_GRIP_DEFLECTION = 9,
+    HMMWV_VEHICLE_GRIP_DEFLECTION_RATE = 10,
+    HMMWV_VEHICLE_GRIP_HEIGHT = 11,
+    HMMWV_VEHICLE_GRIP_FX = 12,
+    HMMWV_VEHICLE_GRIP_FY = 13,
+    HMMWV_VEHICLE_GRIP_MX = 14,
+    HMMWV_VEHICLE_GRIP_MY = 15,
+    HMMWV_VEHICLE_GRIP_MZ = 16,
+    HMMWV_VEHICLE_GRIP_KAPPA = 17,
+    HMMWV_VEHICLE_GRIP_TANGENT = 18,
+    HMMWV_VEHICLE_GRIP_CAMBER = 19,
+    HMMWV_VEHICLE_GRIP_POINT_X = 20,
+    HMMWV_VEHICLE_GRIP_POINT_Y = 21,
+    HMMWV_VEHICLE_GRIP_POINT_Z = 22,
+    HMMWV_VEHICLE_GRIP_SPEED_X = 23,
+    HMMWV_VEHICLE_GRIP_SPEED_Y = 24,
+    HMMWV_VEHICLE_GRIP_RADIUS = 25,
+    HMMWV_VEHICLE_GRIP_POWER = 26,
+    HMMWV_VEHICLE_CONTACT_LOAD = 0,
+    HMMWV_VEHICLE_CONTACT_KAPPA = 1,
+    HMMWV_VEHICLE_CONTACT_TANGENT = 2,
+    HMMWV_VEHICLE_CONTACT_CAMBER = 3,
+    HMMWV_VEHICLE_CONTACT_FRICTION = 4,
+    HMMWV_VEHICLE_CONTACT_SPEED = 5,
+    HMMWV_VEHICLE_CONTACT_DEFLECTION = 6,
+    HMMWV_VEHICLE_CONTACT_RADIUS = 7,
+    HMMWV_VEHICLE_CONTACT_X_X = 8,
+    HMMWV_VEHICLE_CONTACT_X_Y = 9,
+    HMMWV_VEHICLE_CONTACT_X_Z = 10,
+    HMMWV_VEHICLE_CONTACT_Y_X = 11,
+    HMMWV_VEHICLE_CONTACT_Y_Y = 12,
+    HMMWV_VEHICLE_CONTACT_Y_Z = 13,
+    HMMWV_VEHICLE_CONTACT_N_X = 14,
+    HMMWV_VEHICLE_CONTACT_N_Y = 15,
+    HMMWV_VEHICLE_CONTACT_N_Z = 16,
+    HMMWV_VEHICLE_CONTACT_ARM_X = 17,
+    HMMWV_VEHICLE_CONTACT_ARM_Y = 18,
+    HMMWV_VEHICLE_CONTACT_ARM_Z = 19,
+    HMMWV_VEHICLE_TIRE_FX = 0,
+    HMMWV_VEHICLE_TIRE_FY = 1,
+    HMMWV_VEHICLE_TIRE_MX = 2,
+    HMMWV_VEHICLE_TIRE_MY = 3,
+    HMMWV_VEHICLE_TIRE_MZ = 4,
+    HMMWV_VEHICLE_TORQUE_DRIVE = 0,
+    HMMWV_VEHICLE_TORQUE_BRAKE = 1,
+    HMMWV_VEHICLE_FAST_SPIN = 0,
+    HMMWV_VEHICLE_FAST_SLIP_X = 1,
+    HMMWV_VEHICLE_FAST_SLIP_Y = 2,
+    HMMWV_VEHICLE_FAST_BRAKE = 3,
+    HMMWV_VEHICLE_LINK_OF_TIRE_F_L = 0,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_F_L = 0,
+    HMMWV_VEHICLE_TORQUE_OF_TIRE_F_L = 0,
+    HMMWV_VEHICLE_FAST_OF_TIRE_F_L = 0,
+    HMMWV_VEHICLE_LINK_OF_TIRE_F_R = 12,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_F_R = 27,
+    HMMWV_VEHICLE_TORQUE_OF_TIRE_F_R = 2,
+    HMMWV_VEHICLE_FAST_OF_TIRE_F_R = 4,
+    HMMWV_VEHICLE_LINK_OF_TIRE_R_L = 24,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_R_L = 54,
+    HMMWV_VEHICLE_TORQUE_OF_TIRE_R_L = 4,
+    HMMWV_VEHICLE_FAST_OF_TIRE_R_L = 8,
+    HMMWV_VEHICLE_LINK_OF_TIRE_R_R = 36,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_R_R = 81,
+    HMMWV_VEHICLE_TORQUE_OF_TIRE_R_R = 6,
+    HMMWV_VEHICLE_FAST_OF_TIRE_R_R = 12,
+    HMMWV_VEHICLE_GEAR_NUMBER = 0,
+    HMMWV_VEHICLE_GEAR_RATIO = 1,
+    HMMWV_VEHICLE_GEAR_RATIO_BEFORE = 2,
+    HMMWV_VEHICLE_GEAR_ENGAGED = 3,
+    HMMWV_VEHICLE_GEAR_ENGAGED_BEFORE = 4,
+    HMMWV_VEHICLE_WATCH_ENGINE_SPEED = 0,
+    HMMWV_VEHICLE_WATCH_ENGINE_TORQUE = 1,
+    HMMWV_VEHICLE_WATCH_THROTTLE = 2,
+    HMMWV_VEHICLE_WATCH_GEAR = 3,
+    HMMWV_VEHICLE_WATCH_RATIO = 4,
+    HMMWV_VEHICLE_WATCH_TURBINE_SPEED = 5,
+    HMMWV_VEHICLE_WATCH_TURBINE_TORQUE = 6,
+    HMMWV_VEHICLE_WATCH_PUMP_TORQUE = 7,
+    HMMWV_VEHICLE_CHOICE_SELECTOR = 0,
+    HMMWV_VEHICLE_CHOICE_TURBINE = 1,
+    HMMWV_VEHICLE_CHOICE_UP = 2,
+    HMMWV_VEHICLE_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real hmmwv_vehicle_k_rack[1][1] = {
     { /* rack */
@@ -215,48 +454,50 @@ static const gic_real hmmwv_vehicle_k_rack[1][1] = {
 /* Class 'rack': 6 unknowns of rack.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.054228999999999916) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.054228999999999916) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999992));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[HMMWV_VEHICLE_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[HMMWV_VEHICLE_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.054228999999999916) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.054228999999999916) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[HMMWV_VEHICLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[HMMWV_VEHICLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999992));
+        inertia[HMMWV_VEHICLE_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.0266787964487518);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999992) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999992) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.0266787964487518);
+        inertia[HMMWV_VEHICLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[HMMWV_VEHICLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[HMMWV_VEHICLE_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[HMMWV_VEHICLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999992) * t10 - R(13.051414655999999) * t11;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[HMMWV_VEHICLE_I_FORCE_Y] = inertia_force_y;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999992) * t12;
+        inertia[HMMWV_VEHICLE_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -267,20 +508,52 @@ static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RES
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[HMMWV_VEHICLE_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  spring_f_l.arm^2 + spring_f_l.distance^2
+ *    1  (a^2 + b^2 of spring_f_l)
+ *    2  (a^2 + b^2 of spring_f_l) * 0.0001
+ *    3  spring_f_l.a
+ *    4  spring_f_l.b * sign
+ *    5  spring_f_l.a * sign
+ *    6  spring_f_l.b
+ *    7  from arm_f_l.side_b, spring_f_l.point_b, 1 / (a^2 + b^2 of spring_f_l)
+ *    8  1 / (a^2 + b^2 of spring_f_l) * 0.046609
+ *    9  (-0.046609) * 1 / (a^2 + b^2 of spring_f_l)
+ *   10  -arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   11  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   12  (-0.970969) * 1 / (a^2 + b^2 of spring_f_l)
+ *   13  arm_f_l.side_b_z * 1 / (a^2 + b^2 of spring_f_l)
+ *   14  arm_f_l.third_b_y * 1 / (a^2 + b^2 of spring_f_l)
+ *   15  0.970969 * 1 / (a^2 + b^2 of spring_f_l)
+ *   16  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *   17  spring_f_l.point_a_z
+ *   18  lca_f_l.com_z
+ *   19  lca_f_l.com_y
+ *   20  arm_f_l.point_a_y
+ *   21  arm_f_l.point_a_x * 23.965
+ *   22  scale of the determinant
+ *   23  arm_f_l.point_a_x
+ *   24  spring_f_l.point_b_z
+ *   25  spring_f_l.point_b_y
+ *   26  spring_f_l.point_a_y
+ *   27  scale of spring_f_l
+ */
 static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
     { /* lca_f_l */
         R(0.15826434734163985), R(0.004637870464427619), R(4.6378704644276194e-07), R(0.038649583990999964),
@@ -323,15 +596,17 @@ static const gic_real hmmwv_vehicle_k_lca_f_l[4][28] = {
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r, lca_r_l, lca_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (k[0] - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = k[1] - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -343,100 +618,105 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
         const gic_real t5 = t3 * k[5] + k[6] * t1;
         const gic_real t6 = t4 * k[7] + t5 * k[8];
         const gic_real t7 = t4 * k[9] + t5 * k[7];
-        const gic_real t8 = t5 * k[10] + t4 * k[11];
-        motion[7] = t8;
-        const gic_real t9 = t5 * k[12] + t4 * k[13];
-        motion[8] = t9;
-        const gic_real t10 = t5 * k[11] + t4 * k[14];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[13] + t4 * k[15];
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[10] + t4 * k[11];
+        motion[HMMWV_VEHICLE_A_YY] = a_yy;
+        const gic_real a_yz = t5 * k[12] + t4 * k[13];
+        motion[HMMWV_VEHICLE_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * k[11] + t4 * k[14];
+        motion[HMMWV_VEHICLE_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[13] + t4 * k[15];
+        motion[HMMWV_VEHICLE_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[16];
         const gic_real t13 = t7 - k[17];
-        const gic_real t14 = t9 * k[18] + t8 * k[19];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * k[18] + a_yy * k[19];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * k[18] + t10 * k[19];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * k[18] + a_zy * k[19];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[20] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * k[21]);
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * k[21]);
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[HMMWV_VEHICLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[HMMWV_VEHICLE_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * k[21]);
+        inertia[HMMWV_VEHICLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * k[21]);
+        inertia[HMMWV_VEHICLE_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[22] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[HMMWV_VEHICLE_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[HMMWV_VEHICLE_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[HMMWV_VEHICLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[HMMWV_VEHICLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_VEHICLE_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[HMMWV_VEHICLE_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[22] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - k[23] * turn[1] + t44);
         const gic_real t52 = k[23] * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[HMMWV_VEHICLE_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(k[21] * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(k[21] * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = k[21] * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - k[21] * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[HMMWV_VEHICLE_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(k[21] * t38);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(k[21] * t37);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[HMMWV_VEHICLE_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = k[21] * t59 + (t58 - t19 * inertia_force_x);
+        inertia[HMMWV_VEHICLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[HMMWV_VEHICLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - k[21] * t60;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[HMMWV_VEHICLE_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -447,38 +727,60 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[24] * motion[11] + k[25] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = k[24] * motion[HMMWV_VEHICLE_A_ZZ] + k[25] * motion[HMMWV_VEHICLE_A_ZY];
         const gic_real t2 = t1 - k[17];
-        const gic_real t3 = k[24] * motion[8] + k[25] * motion[7];
+        const gic_real t3 = k[24] * motion[HMMWV_VEHICLE_A_YZ] + k[25] * motion[HMMWV_VEHICLE_A_YY];
         const gic_real t4 = k[20] + t3 - k[26];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
         const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.2595404998909418) + k[27];
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[HMMWV_VEHICLE_A_ZY] *
+            motion[HMMWV_VEHICLE_A_ZY] + motion[HMMWV_VEHICLE_A_YY] * motion[HMMWV_VEHICLE_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[HMMWV_VEHICLE_A_YZ] + motion[HMMWV_VEHICLE_A_ZY])) +
+            GIC_FABS(motion[HMMWV_VEHICLE_A_YY] - motion[HMMWV_VEHICLE_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[HMMWV_VEHICLE_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[HMMWV_VEHICLE_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X] - rate[0] * motion[HMMWV_VEHICLE_S + 0]) /
+            (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t3 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t16 = t1 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[HMMWV_VEHICLE_ALPHA_X] - motion[HMMWV_VEHICLE_OMEGA_X] * t16) - t4 *
+            (motion[HMMWV_VEHICLE_OMEGA_X] * t15 + t1 * motion[HMMWV_VEHICLE_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[HMMWV_VEHICLE_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.axis_a_y
+ *    5  upper_f_l.axis_a_y * (-0.059522)
+ *    6  sign
+ *    7  sign * 2.92808
+ *    8  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *    9  upper_f_l.point_b_y * 8.57363
+ *   10  from tierod_f_l.point_b, upper_f_l.point_b
+ *   11  from upper_f_l.point_b, tierod_f_l.point_b
+ *   12  wheel_f_l.com_y
+ *   13  tierod_f_l.point_b_y
+ *   14  upper_f_l.point_b_y
+ */
 static const gic_real hmmwv_vehicle_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
@@ -497,8 +799,9 @@ static const gic_real hmmwv_vehicle_k_wheel_f_l[2][15] = {
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -507,37 +810,41 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = t1 + k[2];
-        motion[1] = t4;
-        const gic_real t5 = R(0.23411769999999993) - t2;
-        const gic_real t6 = R(0.054228999999999916) - t2;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = k[3] - t4;
+        const gic_real t1 = k[0] * m1[HMMWV_VEHICLE_A_YY];
+        const gic_real c_z = k[0] * m1[HMMWV_VEHICLE_A_ZY];
+        motion[HMMWV_VEHICLE_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[HMMWV_VEHICLE_C_Y];
+        const gic_real c_y = t1 + k[2];
+        motion[HMMWV_VEHICLE_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t5 = R(0.23411769999999993) - c_z;
+        const gic_real t6 = R(0.054228999999999916) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[HMMWV_VEHICLE_S + 0] * c_z;
+        const gic_real s_1_5 = m1[HMMWV_VEHICLE_S + 0] * t1;
+        motion[HMMWV_VEHICLE_S + 11] = s_1_5;
+        const gic_real t9 = m1[HMMWV_VEHICLE_OMEGA_X] * (m1[HMMWV_VEHICLE_OMEGA_X] * t1) + m1[HMMWV_VEHICLE_ALPHA_X] *
+            c_z;
+        const gic_real t10 = k[3] - c_y;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
-        const gic_real t12 = t3 - t4;
-        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t12 = t3 - c_y;
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * s_1_5;
         const gic_real t14 = rate[1] * t7;
         const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
         const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t19;
-        const gic_real t20 = rate[1] * t8;
-        motion[17] = t20;
-        const gic_real t21 = -t14;
-        motion[16] = t21;
-        const gic_real t22 = -t9;
-        motion[22] = t22;
-        const gic_real t23 = -t7;
-        motion[34] = t23;
+        const gic_real acceleration_z = m1[HMMWV_VEHICLE_ALPHA_X] * t1 - m1[HMMWV_VEHICLE_OMEGA_X] *
+            (m1[HMMWV_VEHICLE_OMEGA_X] * c_z);
+        motion[HMMWV_VEHICLE_ACCELERATION_Z] = acceleration_z;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[HMMWV_VEHICLE_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t14;
+        motion[HMMWV_VEHICLE_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t9;
+        motion[HMMWV_VEHICLE_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[HMMWV_VEHICLE_S + 10] = s_1_4;
         const gic_real t24 = R(0.5) * (R(0.04548219048831001) + t15);
         const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
         const gic_real t26 = R(4.3116545195287515e-08) + t16;
@@ -555,8 +862,9 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
         const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
         const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
-        const gic_real t37 = t34 + (t2 - R(0.23411769999999993));
-        const gic_real t38 = t35 + (t4 - k[3]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t37 = t34 + (c_z - R(0.23411769999999993));
+        const gic_real t38 = t35 + (c_y - k[3]);
         const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
         const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
         const gic_real t41 = t36 + R(0.059522000000000075);
@@ -565,7 +873,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t44 = t35 * t37 - t34 * t38;
         const gic_real t45 = t36 * t38 - t35 * t41;
         const gic_real t46 = t34 * t41 - t36 * t37;
-        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t47 = t7 * t38 - s_1_5 * t37;
         const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
         const gic_real t49 = R(8.573627050492616) * t40;
         const gic_real t50 = t44 * t43 - t45 * t39;
@@ -591,39 +899,41 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t66 = t35 * t62 - t34 * t61;
         const gic_real t67 = t63 + R(0.2910617987184667) * t36;
         const gic_real t68 = t34 * t63 - t36 * t62;
-        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t69 = t64 + (c_y - t3);
         const gic_real t70 = t36 * t61 - t35 * t63;
-        const gic_real t71 = t65 + (t2 - R(0.054228999999999916));
-        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
-        motion[4] = t72;
+        const gic_real t71 = t65 + (c_z - R(0.054228999999999916));
+        const gic_real a_xy = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[HMMWV_VEHICLE_A_XY] = a_xy;
         const gic_real t73 = t67 + R(0.2147570000000001);
-        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
-        motion[7] = t74;
-        const gic_real t75 = k[10] * t68 + (R(0.21916659821076587) * t61 + R(2.860192849101719) * t35);
-        motion[8] = t75;
+        const gic_real a_yy = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[HMMWV_VEHICLE_A_YY] = a_yy;
+        const gic_real a_yz = k[10] * t68 + (R(0.21916659821076587) * t61 + R(2.860192849101719) * t35);
+        motion[HMMWV_VEHICLE_A_YZ] = a_yz;
         const gic_real t76 = t67 * t69 - t64 * t73;
         const gic_real t77 = t65 * t73 - t67 * t71;
         const gic_real t78 = t64 * t71 - t65 * t69;
-        const gic_real t79 = t7 * t69 - t8 * t71;
-        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
-        motion[10] = t80;
-        const gic_real t81 = k[10] * t70 + (R(0.21916659821076587) * t62 + R(2.860192849101719) * t34);
-        motion[11] = t81;
+        const gic_real t79 = t7 * t69 - s_1_5 * t71;
+        const gic_real a_zy = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[HMMWV_VEHICLE_A_ZY] = a_zy;
+        const gic_real a_zz = k[10] * t70 + (R(0.21916659821076587) * t62 + R(2.860192849101719) * t34);
+        motion[HMMWV_VEHICLE_A_ZZ] = a_zz;
         const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
-        const gic_real t83 = k[10] * t66 + (R(0.21916659821076587) * t63 + R(2.860192849101719) * t36);
-        motion[5] = t83;
-        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276878) * t35);
-        motion[6] = t84;
-        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276878) * t34);
-        motion[9] = t85;
-        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276878) * t36);
-        motion[3] = t86;
+        const gic_real a_xz = k[10] * t66 + (R(0.21916659821076587) * t63 + R(2.860192849101719) * t36);
+        motion[HMMWV_VEHICLE_A_XZ] = a_xz;
+        const gic_real a_yx = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276878) * t35);
+        motion[HMMWV_VEHICLE_A_YX] = a_yx;
+        const gic_real a_zx = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276878) * t34);
+        motion[HMMWV_VEHICLE_A_ZX] = a_zx;
+        const gic_real a_xx = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276878) * t36);
+        motion[HMMWV_VEHICLE_A_XX] = a_xx;
         const gic_real t87 = R(1.0) / t82;
-        const gic_real t88 = R(-4.5794204999999994) * t74;
-        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182099999999999) * t75 + k[12] * t74);
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182099999999999) * t81 + k[12] * t80);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182099999999999) * t83 + k[12] * t72);
-        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(-4.5794204999999994) * t80));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t88 = R(-4.5794204999999994) * a_yy;
+        const gic_real t89 = R(-0.004825999999999997) * a_yx + (R(0.09182099999999999) * a_yz + k[12] * a_yy);
+        const gic_real t90 = R(-0.004825999999999997) * a_zx + (R(0.09182099999999999) * a_zz + k[12] * a_zy);
+        const gic_real t91 = R(-0.004825999999999997) * a_xx + (R(0.09182099999999999) * a_xz + k[12] * a_xy);
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(-4.5794204999999994) *
+            a_zy));
         const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
         const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
         const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
@@ -633,173 +943,175 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
         const gic_real t99 = t51 * t87;
         const gic_real t100 = t52 * t87;
         const gic_real t101 = t50 * t87;
-        const gic_real t102 = t4 + t89;
-        const gic_real t103 = t2 + t90;
+        const gic_real t102 = c_y + t89;
+        const gic_real t103 = c_z + t90;
         const gic_real t104 = R(1.653405) + t91;
-        const gic_real t105 = R(0.12192999999999987) * t86;
-        const gic_real t106 = R(-4.5794204999999994) * t72;
-        const gic_real t107 = t69 * t99;
-        motion[26] = t107;
-        const gic_real t108 = t69 * t100;
-        motion[24] = t108;
-        const gic_real t109 = t69 * t101;
-        motion[25] = t109;
-        const gic_real t110 = R(0.12192999999999987) * t84;
-        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
-        motion[32] = t111;
-        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
-        motion[30] = t112;
-        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
-        motion[31] = t113;
-        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
-        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
-        const gic_real t116 = t74 * t106 + t84 * t105;
-        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
-        motion[14] = t117;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[12] = t118;
-        const gic_real t119 = t80 * t106 + t85 * t105;
-        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
-        motion[13] = t120;
-        const gic_real t121 = t80 * t88 + t85 * t110;
-        const gic_real t122 = t108 * t89 - t109 * t91;
-        const gic_real t123 = turn[2] + t117;
-        const gic_real t124 = t36 * t117 - t34 * t118;
-        const gic_real t125 = t67 * t117 - t65 * t118;
-        const gic_real t126 = t65 * t120 - t64 * t117;
-        const gic_real t127 = t64 * t118 - t67 * t120;
-        const gic_real t128 = t34 * t120 - t35 * t117;
-        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t105 = R(0.12192999999999987) * a_xx;
+        const gic_real t106 = R(-4.5794204999999994) * a_xy;
+        const gic_real s_0_2 = t69 * t99;
+        motion[HMMWV_VEHICLE_S + 2] = s_0_2;
+        const gic_real s_0_0 = t69 * t100;
+        motion[HMMWV_VEHICLE_S + 0] = s_0_0;
+        const gic_real s_0_1 = t69 * t101;
+        motion[HMMWV_VEHICLE_S + 1] = s_0_1;
+        const gic_real t110 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[HMMWV_VEHICLE_S + 8] = s_1_2;
+        const gic_real s_1_0 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[HMMWV_VEHICLE_S + 6] = s_1_0;
+        const gic_real s_1_1 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[HMMWV_VEHICLE_S + 7] = s_1_1;
+        const gic_real t114 = a_yx * t110 + (R(4.7728205) + a_yy * t88);
+        const gic_real t115 = a_xx * t105 + (R(4.7728205) + a_xy * t106);
+        const gic_real t116 = a_yy * t106 + a_yx * t105;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[HMMWV_VEHICLE_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[HMMWV_VEHICLE_OMEGA_X] = omega_x;
+        const gic_real t119 = a_zy * t106 + a_zx * t105;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[HMMWV_VEHICLE_OMEGA_Y] = omega_y;
+        const gic_real t121 = a_zy * t88 + a_zx * t110;
+        const gic_real t122 = s_0_0 * t89 - s_0_1 * t91;
+        const gic_real t123 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t124 = t36 * omega_z - t34 * omega_x;
+        const gic_real t125 = t67 * omega_z - t65 * omega_x;
+        const gic_real t126 = t65 * omega_y - t64 * omega_z;
+        const gic_real t127 = t64 * omega_x - t67 * omega_y;
+        const gic_real t128 = t34 * omega_y - t35 * omega_z;
+        const gic_real t129 = t35 * omega_x - t36 * omega_y;
         const gic_real t130 = t124 - t14;
-        const gic_real t131 = t125 - (m0[16] + t14);
-        const gic_real t132 = t118 * t89 - t120 * t91;
-        const gic_real t133 = t117 * t91 - t118 * t90;
-        const gic_real t134 = t20 + t127;
-        const gic_real t135 = t118 * t124 - t120 * t128;
-        const gic_real t136 = t20 + t129;
-        const gic_real t137 = t120 * t129 - t117 * t124;
-        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
-        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
-        const gic_real t140 = t117 * t128 - t118 * t129;
-        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
-        const gic_real t142 = t120 * t90 - t117 * t89;
-        const gic_real t143 = t20 + t132;
-        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
-        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t131 = t125 - (m0[HMMWV_VEHICLE_VELOCITY_Y] + t14);
+        const gic_real t132 = omega_x * t89 - omega_y * t91;
+        const gic_real t133 = omega_z * t91 - omega_x * t90;
+        const gic_real t134 = velocity_z + t127;
+        const gic_real t135 = omega_x * t124 - omega_y * t128;
+        const gic_real t136 = velocity_z + t129;
+        const gic_real t137 = omega_y * t129 - omega_z * t124;
+        const gic_real t138 = t9 * t69 - acceleration_z * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - acceleration_z * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = omega_z * t128 - omega_x * t129;
+        const gic_real t141 = t71 * (omega_x * t125 - omega_y * t126) + t69 * (omega_z * t126 - omega_x * t127);
+        const gic_real t142 = omega_y * t90 - omega_z * t89;
+        const gic_real t143 = velocity_z + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * acceleration_z - R(0.21526024724178433) * t135 -
+            (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (omega_y * t127 - omega_z * t125);
         const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
         const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
         const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
         const gic_real t149 = t133 - t14;
-        const gic_real t150 = turn[1] + t120;
-        const gic_real t151 = turn[0] + t118;
-        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t150 = turn[1] + omega_y;
+        const gic_real t151 = turn[0] + omega_x;
+        const gic_real t152 = s_0_0 * t115 + (s_0_2 * t119 + s_0_1 * t116);
         const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
         const gic_real t154 = t145 - t141;
         const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
         const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
-        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
-        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
-        motion[18] = t158;
-        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
-        motion[19] = t159;
-        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
-        motion[20] = t160;
-        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t157 = acceleration_z + omega_x * t133 - omega_y * t142 - turn[1] * t147;
+        const gic_real alpha_x = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[HMMWV_VEHICLE_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[HMMWV_VEHICLE_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[HMMWV_VEHICLE_ALPHA_Z] = alpha_z;
+        const gic_real t161 = turn[2] * t147 + (omega_z * t142 - t9 - omega_x * t132);
         const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
-        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
-        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
-        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
-        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
-        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
-        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
-        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
-        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
-        inertia[9] = t170;
+        const gic_real t163 = turn[1] * t148 + (omega_y * t132 - omega_z * t133) - turn[2] * t153;
+        const gic_real t164 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t165 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t166 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t167 = alpha_x * t89 + (turn[0] * t153 + t157) - alpha_y * t91;
+        const gic_real t168 = alpha_z * t91 + (t161 - turn[0] * t148) - alpha_x * t90;
+        const gic_real t169 = s_0_0 * t116 + (s_0_2 * t121 + s_0_1 * t114);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t90 + t163 - alpha_z * t89);
+        inertia[HMMWV_VEHICLE_I_FORCE_X] = inertia_force_x;
         const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
         const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
         const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
-        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
-        const gic_real t175 = t113 * t90 - t111 * t89;
-        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
-        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
-        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
-        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
-        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
-        const gic_real t181 = t109 * t90 - t107 * t89;
-        const gic_real t182 = t107 * t91 - t108 * t90;
-        const gic_real t183 = R(90.555) * t167;
-        inertia[11] = t183;
-        const gic_real t184 = R(90.555) * t122;
-        inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t175;
-        inertia[22] = t185;
-        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
-        const gic_real t187 = R(90.555) * t104;
-        inertia[0] = t187;
-        const gic_real t188 = R(90.555) * t102;
-        inertia[1] = t188;
-        const gic_real t189 = R(90.555) * t168;
-        inertia[10] = t189;
-        const gic_real t190 = R(90.555) * t181;
-        inertia[15] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[16] = t191;
-        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
-        const gic_real t193 = R(90.555) * t176;
-        inertia[23] = t193;
-        const gic_real t194 = R(90.555) * t177;
-        inertia[24] = t194;
-        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        const gic_real t174 = s_0_0 * t119 + (s_0_2 * t92 + s_0_1 * t121);
+        const gic_real t175 = s_1_1 * t90 - s_1_2 * t89;
+        const gic_real t176 = s_1_2 * t91 - t7 - s_1_0 * t90;
+        const gic_real t177 = s_1_5 + s_1_0 * t89 - s_1_1 * t91;
+        const gic_real t178 = s_1_0 * t115 + (s_1_2 * t119 + s_1_1 * t116);
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t121 + s_1_1 * t114);
+        const gic_real t180 = s_1_0 * t119 + (s_1_2 * t92 + s_1_1 * t121);
+        const gic_real t181 = s_0_1 * t90 - s_0_2 * t89;
+        const gic_real t182 = s_0_2 * t91 - s_0_0 * t90;
+        const gic_real inertia_force_z = R(90.555) * t167;
+        inertia[HMMWV_VEHICLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t122;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t175;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t186 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t104;
+        inertia[HMMWV_VEHICLE_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t102;
+        inertia[HMMWV_VEHICLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t168;
+        inertia[HMMWV_VEHICLE_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t181;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t182;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t192 = s_0_2 * t173 + s_0_1 * t172 + (s_0_0 * t171 + inertia_force_z * t122);
+        const gic_real along_1_force_y = R(90.555) * t176;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t177;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t195 = s_1_2 * t173 + s_1_1 * t172 + (s_1_0 * t171 + inertia_force_z * t177);
         if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
-        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
-        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
-        const gic_real t199 = R(90.555) * t103;
-        inertia[2] = t199;
-        const gic_real t200 = t102 * t188;
-        const gic_real t201 = t104 * t187;
-        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
-        inertia[12] = t202;
-        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
-        inertia[13] = t203;
-        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
-        inertia[14] = t204;
-        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
-        inertia[18] = t205;
-        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
-        inertia[19] = t206;
-        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
-        inertia[20] = t207;
-        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
-        inertia[21] = t208;
-        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
-        inertia[25] = t209;
-        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
-        inertia[26] = t210;
-        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
-        inertia[27] = t211;
-        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
-        inertia[28] = t212;
-        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
-        inertia[29] = t213;
-        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
-        inertia[30] = t214;
-        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
-        inertia[31] = t215;
-        const gic_real t216 = t103 * t199;
-        const gic_real t217 = t200 + (t92 + t201);
-        inertia[5] = t217;
-        const gic_real t218 = t116 - t102 * t187;
-        inertia[6] = t218;
-        const gic_real t219 = t119 - t103 * t187;
-        inertia[7] = t219;
-        const gic_real t220 = t121 - t103 * t188;
-        inertia[8] = t220;
-        const gic_real t221 = t216 + (t115 + t200);
-        inertia[3] = t221;
-        const gic_real t222 = t216 + (t114 + t201);
-        inertia[4] = t222;
+        const gic_real t196 = s_0_2 * t174 + s_0_1 * t169 + (s_0_0 * t152 + t122 * along_0_force_z);
+        const gic_real t197 = s_0_2 * t180 + s_0_1 * t179 + (s_0_0 * t178 + t181 * along_1_force_x);
+        const gic_real t198 = s_1_2 * t180 + s_1_1 * t179 + (s_1_0 * t178 + t175 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t103;
+        inertia[HMMWV_VEHICLE_I_FIRST_Z] = inertia_first_z;
+        const gic_real t200 = t102 * inertia_first_y;
+        const gic_real t201 = t104 * inertia_first_x;
+        const gic_real inertia_moment_x = t171 + t102 * inertia_force_z - t103 * inertia_force_y;
+        inertia[HMMWV_VEHICLE_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t172 + t103 * inertia_force_x - t104 * inertia_force_z;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t173 + t104 * inertia_force_y - t102 * inertia_force_x;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t152 + t102 * along_0_force_z - t103 * along_0_force_y;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t169 + t103 * along_0_force_x - t104 * along_0_force_z;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t174 + t104 * along_0_force_y - t102 * along_0_force_x;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t182 + inertia_force_x * t181 + t192;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t178 + t102 * along_1_force_z - t103 * along_1_force_y;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t179 + t103 * along_1_force_x - t104 * along_1_force_z;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t104 * along_1_force_y + (t180 - t102 * along_1_force_x);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t176 + inertia_force_x * t175 + t195;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t182 * along_0_force_y + t181 * along_0_force_x + t196;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t197 + (t122 * along_1_force_z + t182 * along_1_force_y);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t198 + (t177 * along_1_force_z + t176 * along_1_force_y);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 16] = mass_2;
+        const gic_real t216 = t103 * inertia_first_z;
+        const gic_real inertia_second_zz = t200 + (t92 + t201);
+        inertia[HMMWV_VEHICLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t116 - t102 * inertia_first_x;
+        inertia[HMMWV_VEHICLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t119 - t103 * inertia_first_x;
+        inertia[HMMWV_VEHICLE_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t121 - t103 * inertia_first_y;
+        inertia[HMMWV_VEHICLE_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t216 + (t115 + t200);
+        inertia[HMMWV_VEHICLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t216 + (t114 + t201);
+        inertia[HMMWV_VEHICLE_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -810,106 +1122,154 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.9280756565520325) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.9280756565520325) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.054228999999999916);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[HMMWV_VEHICLE_A_YY];
+        const gic_real t2 = k[0] * m1[HMMWV_VEHICLE_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.9280756565520325) * (motion[HMMWV_VEHICLE_C_Y] - (t1 + k[2]))) +
+            GIC_FABS(R(2.9280756565520325) * (motion[HMMWV_VEHICLE_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[HMMWV_VEHICLE_A_ZZ] + (k[13] * motion[HMMWV_VEHICLE_A_ZY] +
+            R(-0.14025880000000002) * motion[HMMWV_VEHICLE_A_ZX]);
+        const gic_real t5 = motion[HMMWV_VEHICLE_C_Z] + t4 - R(0.054228999999999916);
+        const gic_real t6 = R(0.10177780000000003) * motion[HMMWV_VEHICLE_A_YZ] + (k[13] * motion[HMMWV_VEHICLE_A_YY] +
+            R(-0.14025880000000002) * motion[HMMWV_VEHICLE_A_YX]);
+        const gic_real t7 = motion[HMMWV_VEHICLE_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[HMMWV_VEHICLE_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[HMMWV_VEHICLE_A_XZ] + (k[13] * motion[HMMWV_VEHICLE_A_XY] +
+            R(-0.14025880000000002) * motion[HMMWV_VEHICLE_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824064);
         const gic_real t14 = R(2.0) / (t13 + R(0.1272743069893343));
-        const gic_real t15 = R(0.3336036) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999993);
-        const gic_real t17 = R(0.3336036) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[3];
-        const gic_real t19 = R(0.3336036) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.3336036) * motion[HMMWV_VEHICLE_A_ZZ] + (k[14] * motion[HMMWV_VEHICLE_A_ZY] +
+            R(-0.017475200000000024) * motion[HMMWV_VEHICLE_A_ZX]);
+        const gic_real t16 = motion[HMMWV_VEHICLE_C_Z] + t15 - R(0.23411769999999993);
+        const gic_real t17 = R(0.3336036) * motion[HMMWV_VEHICLE_A_YZ] + (k[14] * motion[HMMWV_VEHICLE_A_YY] +
+            R(-0.017475200000000024) * motion[HMMWV_VEHICLE_A_YX]);
+        const gic_real t18 = motion[HMMWV_VEHICLE_C_Y] + t17 - k[3];
+        const gic_real t19 = R(0.3336036) * motion[HMMWV_VEHICLE_A_XZ] + (k[14] * motion[HMMWV_VEHICLE_A_XY] +
+            R(-0.017475200000000024) * motion[HMMWV_VEHICLE_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824064) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331867));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[HMMWV_VEHICLE_A_ZX] * motion[HMMWV_VEHICLE_A_ZX] + (motion[HMMWV_VEHICLE_A_YX] *
+            motion[HMMWV_VEHICLE_A_YX] + motion[HMMWV_VEHICLE_A_XX] * motion[HMMWV_VEHICLE_A_XX]) - R(1.0);
+        const gic_real t27 = motion[HMMWV_VEHICLE_A_ZY] * motion[HMMWV_VEHICLE_A_ZY] + (motion[HMMWV_VEHICLE_A_YY] *
+            motion[HMMWV_VEHICLE_A_YY] + motion[HMMWV_VEHICLE_A_XY] * motion[HMMWV_VEHICLE_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[HMMWV_VEHICLE_A_ZX] * motion[HMMWV_VEHICLE_A_ZY] +
+            (motion[HMMWV_VEHICLE_A_YX] * motion[HMMWV_VEHICLE_A_YY] + motion[HMMWV_VEHICLE_A_XX] *
+            motion[HMMWV_VEHICLE_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[HMMWV_VEHICLE_A_YX] * motion[HMMWV_VEHICLE_A_ZY] -
+            motion[HMMWV_VEHICLE_A_YY] * motion[HMMWV_VEHICLE_A_ZX] - motion[HMMWV_VEHICLE_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[HMMWV_VEHICLE_A_XY] * motion[HMMWV_VEHICLE_A_ZX] -
+            motion[HMMWV_VEHICLE_A_XX] * motion[HMMWV_VEHICLE_A_ZY] - motion[HMMWV_VEHICLE_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[HMMWV_VEHICLE_A_XX] * motion[HMMWV_VEHICLE_A_YY] -
+            motion[HMMWV_VEHICLE_A_XY] * motion[HMMWV_VEHICLE_A_YX] - motion[HMMWV_VEHICLE_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[HMMWV_VEHICLE_S + 0] + t34 * motion[HMMWV_VEHICLE_S + 1] + t35 *
+            motion[HMMWV_VEHICLE_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[HMMWV_VEHICLE_S + 0] + t38 * motion[HMMWV_VEHICLE_S + 1] + t39 *
+            motion[HMMWV_VEHICLE_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[HMMWV_VEHICLE_S + 0] + t42 *
+            motion[HMMWV_VEHICLE_S + 1] + t43 * motion[HMMWV_VEHICLE_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.9280756565520325) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.9280756565520325) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[35] - m1[24] * t1));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
-        const gic_real t52 = R(2.9280756565520325) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t53 = t52 + GIC_FABS(m1[24]);
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.9280756565520325) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.9280756565520325) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.9280756565520325) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t46 = R(2.9280756565520325) + (GIC_FABS(motion[HMMWV_VEHICLE_S + 0]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_S + 1]) + GIC_FABS(motion[HMMWV_VEHICLE_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.9280756565520325) * (m1[HMMWV_VEHICLE_S + 0] * t2 +
+            motion[HMMWV_VEHICLE_S + 10])) + GIC_FABS(R(2.9280756565520325) * (motion[HMMWV_VEHICLE_S + 11] -
+            m1[HMMWV_VEHICLE_S + 0] * t1));
+        const gic_real t48 = t33 * motion[HMMWV_VEHICLE_S + 6] + t34 * motion[HMMWV_VEHICLE_S + 7] + t35 *
+            motion[HMMWV_VEHICLE_S + 8] + t9 * motion[HMMWV_VEHICLE_S + 10];
+        const gic_real t49 = t37 * motion[HMMWV_VEHICLE_S + 6] + t38 * motion[HMMWV_VEHICLE_S + 7] + t39 *
+            motion[HMMWV_VEHICLE_S + 8] + t18 * motion[HMMWV_VEHICLE_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[HMMWV_VEHICLE_S + 11])) + GIC_FABS(t23 * (t49 +
+            t16 * motion[HMMWV_VEHICLE_S + 11]));
+        const gic_real t51 = t41 * motion[HMMWV_VEHICLE_S + 6] + t42 * motion[HMMWV_VEHICLE_S + 7] + t43 *
+            motion[HMMWV_VEHICLE_S + 8] + k[4] * motion[HMMWV_VEHICLE_S + 10];
+        const gic_real t52 = R(2.9280756565520325) * (GIC_FABS(motion[HMMWV_VEHICLE_S + 10]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_S + 11])) + (GIC_FABS(motion[HMMWV_VEHICLE_S + 6]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_S + 7]) + GIC_FABS(motion[HMMWV_VEHICLE_S + 8]));
+        const gic_real t53 = t52 + GIC_FABS(m1[HMMWV_VEHICLE_S + 0]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[HMMWV_VEHICLE_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X] - rate[0] * motion[HMMWV_VEHICLE_S + 0] - rate[1] *
+            motion[HMMWV_VEHICLE_S + 6]) + GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_Y] - rate[0] *
+            motion[HMMWV_VEHICLE_S + 1] - rate[1] * motion[HMMWV_VEHICLE_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_Z] - rate[0] * motion[HMMWV_VEHICLE_S + 2] -
+            rate[1] * motion[HMMWV_VEHICLE_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.9280756565520325) * (motion[HMMWV_VEHICLE_VELOCITY_Y] - rate[1] *
+            motion[HMMWV_VEHICLE_S + 10])) + GIC_FABS(R(2.9280756565520325) * (motion[HMMWV_VEHICLE_VELOCITY_Z] -
+            rate[1] * motion[HMMWV_VEHICLE_S + 11]));
+        const gic_real t58 = R(2.9280756565520325) * (GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X]) + GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_Y]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = R(2.9280756565520325) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t64 = R(2.9280756565520325) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t66 = motion[17] + t65;
-        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t68 = motion[16] + t67 - m0[16];
-        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t63 = R(2.9280756565520325) * (m1[HMMWV_VEHICLE_OMEGA_X] * (m1[HMMWV_VEHICLE_OMEGA_X] * t1) +
+            m1[HMMWV_VEHICLE_ALPHA_X] * t2 + motion[HMMWV_VEHICLE_ACCELERATION_Y]);
+        const gic_real t64 = R(2.9280756565520325) * (motion[HMMWV_VEHICLE_ACCELERATION_Z] -
+            (m1[HMMWV_VEHICLE_ALPHA_X] * t1 - m1[HMMWV_VEHICLE_OMEGA_X] * (m1[HMMWV_VEHICLE_OMEGA_X] * t2)));
+        const gic_real t65 = t6 * motion[HMMWV_VEHICLE_OMEGA_X] - t10 * motion[HMMWV_VEHICLE_OMEGA_Y];
+        const gic_real t66 = motion[HMMWV_VEHICLE_VELOCITY_Z] + t65;
+        const gic_real t67 = t10 * motion[HMMWV_VEHICLE_OMEGA_Z] - t4 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t68 = motion[HMMWV_VEHICLE_VELOCITY_Y] + t67 - m0[HMMWV_VEHICLE_VELOCITY_Y];
+        const gic_real t69 = t4 * motion[HMMWV_VEHICLE_OMEGA_Y] - t6 * motion[HMMWV_VEHICLE_OMEGA_Z];
+        const gic_real t70 = motion[HMMWV_VEHICLE_OMEGA_X] * t67 - motion[HMMWV_VEHICLE_OMEGA_Y] * t69 + (t6 *
+            motion[HMMWV_VEHICLE_ALPHA_X] - t10 * motion[HMMWV_VEHICLE_ALPHA_Y]);
+        const gic_real t71 = motion[HMMWV_VEHICLE_OMEGA_Z] * t69 - motion[HMMWV_VEHICLE_OMEGA_X] * t65 + (t10 *
+            motion[HMMWV_VEHICLE_ALPHA_Z] - t4 * motion[HMMWV_VEHICLE_ALPHA_X]);
+        const gic_real t72 = motion[HMMWV_VEHICLE_OMEGA_Y] * t65 - motion[HMMWV_VEHICLE_OMEGA_Z] * t67 + (t4 *
+            motion[HMMWV_VEHICLE_ALPHA_Y] - t6 * motion[HMMWV_VEHICLE_ALPHA_Z]);
+        const gic_real t73 = t5 * (motion[HMMWV_VEHICLE_ACCELERATION_Z] + t70) + (t9 *
+            (motion[HMMWV_VEHICLE_ACCELERATION_Y] + t71) + t11 * t72);
         const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
         const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
-        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t77 = motion[17] + t76;
-        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t79 = motion[16] + t78;
-        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t82 = motion[23] + t81;
-        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t84 = motion[22] + t83;
-        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t76 = t17 * motion[HMMWV_VEHICLE_OMEGA_X] - t19 * motion[HMMWV_VEHICLE_OMEGA_Y];
+        const gic_real t77 = motion[HMMWV_VEHICLE_VELOCITY_Z] + t76;
+        const gic_real t78 = t19 * motion[HMMWV_VEHICLE_OMEGA_Z] - t15 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t79 = motion[HMMWV_VEHICLE_VELOCITY_Y] + t78;
+        const gic_real t80 = t15 * motion[HMMWV_VEHICLE_OMEGA_Y] - t17 * motion[HMMWV_VEHICLE_OMEGA_Z];
+        const gic_real t81 = motion[HMMWV_VEHICLE_OMEGA_X] * t78 - motion[HMMWV_VEHICLE_OMEGA_Y] * t80 + (t17 *
+            motion[HMMWV_VEHICLE_ALPHA_X] - t19 * motion[HMMWV_VEHICLE_ALPHA_Y]);
+        const gic_real t82 = motion[HMMWV_VEHICLE_ACCELERATION_Z] + t81;
+        const gic_real t83 = motion[HMMWV_VEHICLE_OMEGA_Z] * t80 - motion[HMMWV_VEHICLE_OMEGA_X] * t76 + (t19 *
+            motion[HMMWV_VEHICLE_ALPHA_Z] - t15 * motion[HMMWV_VEHICLE_ALPHA_X]);
+        const gic_real t84 = motion[HMMWV_VEHICLE_ACCELERATION_Y] + t83;
+        const gic_real t85 = motion[HMMWV_VEHICLE_OMEGA_Y] * t76 - motion[HMMWV_VEHICLE_OMEGA_Z] * t78 + (t15 *
+            motion[HMMWV_VEHICLE_ALPHA_Y] - t17 * motion[HMMWV_VEHICLE_ALPHA_Z]);
         const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
-        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
-        const gic_real t88 = R(2.9280756565520325) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t89 = R(2.9280756565520325) * GIC_FABS(m0[16]);
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) *
+            R(2.559750693852431);
+        const gic_real t88 = R(2.9280756565520325) * (GIC_FABS(motion[HMMWV_VEHICLE_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_ACCELERATION_Z])) + (GIC_FABS(motion[HMMWV_VEHICLE_ALPHA_X]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_ALPHA_Y]) + GIC_FABS(motion[HMMWV_VEHICLE_ALPHA_Z]));
+        const gic_real t89 = R(2.9280756565520325) * GIC_FABS(m0[HMMWV_VEHICLE_VELOCITY_Y]);
         const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
-        const gic_real t91 = GIC_FABS(m1[12]);
-        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t91 = GIC_FABS(m1[HMMWV_VEHICLE_OMEGA_X]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[HMMWV_VEHICLE_ALPHA_X])) + t60 * t60;
         const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
         const gic_real t94 = t62 + t93;
         worst[0] = t32;
@@ -917,6 +1277,16 @@ static GIC_COLD void hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRI
     }
 }
 
+/* Columns, with the names of wheel_r_l:
+ *    0  hinge_r_l.point_a_y
+ *    1  lca_r_l.C_Y
+ *    2  upper_r_l.point_a_y
+ *    3  upper_r_l.point_b_y
+ *    4  sign
+ *    5  -upper_r_l.point_b_y
+ *    6  wheel_r_l.com_y
+ *    7  scale of the determinant
+ */
 static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
     { /* wheel_r_l */
         R(0.49375935710120966), R(0.307086), R(0.462153), R(-0.07099299999999997),
@@ -931,8 +1301,9 @@ static const gic_real hmmwv_vehicle_k_wheel_r_l[2][8] = {
 /* Class 'wheel_r_l': 6 unknowns of wheel_r_l, wheel_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
@@ -940,32 +1311,36 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        motion[2] = t2;
-        const gic_real t3 = t1 + k[1];
-        motion[1] = t3;
-        const gic_real t4 = R(0.22567900000000002) - t2;
-        const gic_real t5 = m0[24] * t2;
-        const gic_real t6 = m0[24] * t1;
-        motion[29] = t6;
-        const gic_real t7 = m0[12] * (m0[12] * t1) + m0[18] * t2;
-        const gic_real t8 = k[2] - t3;
-        const gic_real t9 = t3 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_VEHICLE_A_YY];
+        const gic_real c_z = k[0] * m0[HMMWV_VEHICLE_A_ZY];
+        motion[HMMWV_VEHICLE_C_Z] = c_z;
+        const gic_real c_y = t1 + k[1];
+        motion[HMMWV_VEHICLE_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t4 = R(0.22567900000000002) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t5 = m0[HMMWV_VEHICLE_S + 0] * c_z;
+        const gic_real s_0_5 = m0[HMMWV_VEHICLE_S + 0] * t1;
+        motion[HMMWV_VEHICLE_S + 5] = s_0_5;
+        const gic_real t7 = m0[HMMWV_VEHICLE_OMEGA_X] * (m0[HMMWV_VEHICLE_OMEGA_X] * t1) + m0[HMMWV_VEHICLE_ALPHA_X] *
+            c_z;
+        const gic_real t8 = k[2] - c_y;
+        const gic_real t9 = c_y - k[2];
         const gic_real t10 = rate[0] * t5;
-        const gic_real t11 = rate[0] * t6;
-        motion[17] = t11;
-        const gic_real t12 = m0[18] * t1 - m0[12] * (m0[12] * t2);
-        motion[23] = t12;
+        const gic_real velocity_z = rate[0] * s_0_5;
+        motion[HMMWV_VEHICLE_VELOCITY_Z] = velocity_z;
+        const gic_real acceleration_z = m0[HMMWV_VEHICLE_ALPHA_X] * t1 - m0[HMMWV_VEHICLE_OMEGA_X] *
+            (m0[HMMWV_VEHICLE_OMEGA_X] * c_z);
+        motion[HMMWV_VEHICLE_ACCELERATION_Z] = acceleration_z;
         const gic_real t13 = R(0.5) * (t8 * t8 + (t4 * t4 + R(0.05231323408299994)));
         const gic_real t14 = k[3] * t9 - R(0.3340099999999999) * t4;
         const gic_real t15 = R(0.3340099999999999) * t9 + k[3] * t4;
-        const gic_real t16 = -t10;
-        motion[16] = t16;
-        const gic_real t17 = -t7;
-        motion[22] = t17;
-        const gic_real t18 = -t5;
-        motion[28] = t18;
+        const gic_real velocity_y = -t10;
+        motion[HMMWV_VEHICLE_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t7;
+        motion[HMMWV_VEHICLE_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_0_4 = -t5;
+        motion[HMMWV_VEHICLE_S + 4] = s_0_4;
         const gic_real t19 = t14 * t14 + t15 * t15;
         const gic_real t20 = t19 - t13 * t13;
         if (!(t20 > R(0.0)))
@@ -974,110 +1349,113 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
             return GIC_ERROR_SINGULAR;
         const gic_real t21 = k[4] * GIC_SQRT(t20);
         const gic_real t22 = R(1.0) / t19;
-        const gic_real t23 = t22 * (t15 * t13 - t14 * t21);
-        motion[10] = t23;
+        const gic_real a_zy = t22 * (t15 * t13 - t14 * t21);
+        motion[HMMWV_VEHICLE_A_ZY] = a_zy;
         const gic_real t24 = t22 * (t15 * t21 + t14 * t13);
-        const gic_real t25 = R(4.7728205) + t23 * (R(-4.5794204999999994) * t23);
-        const gic_real t26 = -t23;
-        motion[8] = t26;
-        const gic_real t27 = R(-0.3340099999999999) * t23 + k[5] * t24;
-        const gic_real t28 = k[3] * t23 + R(-0.3340099999999999) * t24;
-        const gic_real t29 = R(0.09182099999999999) * t23 + k[6] * t24;
-        const gic_real t30 = k[6] * t23 - R(0.09182099999999999) * t24;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t25 = R(4.7728205) + a_zy * (R(-4.5794204999999994) * a_zy);
+        const gic_real a_yz = -a_zy;
+        motion[HMMWV_VEHICLE_A_YZ] = a_yz;
+        const gic_real t27 = R(-0.3340099999999999) * a_zy + k[5] * t24;
+        const gic_real t28 = k[3] * a_zy + R(-0.3340099999999999) * t24;
+        const gic_real t29 = R(0.09182099999999999) * a_zy + k[6] * t24;
+        const gic_real t30 = k[6] * a_zy - R(0.09182099999999999) * t24;
         const gic_real t31 = R(-4.5794204999999994) * t24;
-        const gic_real t32 = -t24;
-        motion[7] = t32;
-        motion[11] = t32;
+        const gic_real a_yy = -t24;
+        motion[HMMWV_VEHICLE_A_YY] = a_yy;
+        motion[HMMWV_VEHICLE_A_ZZ] = a_yy;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t33 = t9 + t27;
-        const gic_real t34 = t2 - R(0.22567900000000002) + t28;
+        const gic_real t34 = c_z - R(0.22567900000000002) + t28;
         const gic_real t35 = R(4.7728205) + t24 * t31;
-        const gic_real t36 = t3 - t29;
-        const gic_real t37 = t23 * t31;
-        const gic_real t38 = t2 + t30;
-        const gic_real t39 = R(90.555) * t36;
-        inertia[1] = t39;
+        const gic_real t36 = c_y - t29;
+        const gic_real t37 = a_zy * t31;
+        const gic_real t38 = c_z + t30;
+        const gic_real inertia_first_y = R(90.555) * t36;
+        inertia[HMMWV_VEHICLE_I_FIRST_Y] = inertia_first_y;
         const gic_real t40 = turn[2] * t25 - turn[1] * t37;
         const gic_real t41 = t27 * t34 - t28 * t33;
         const gic_real t42 = turn[1] * t38 - turn[2] * t36;
         const gic_real t43 = turn[1] * t35 - turn[2] * t37;
-        const gic_real t44 = R(90.555) * t38;
-        inertia[2] = t44;
-        const gic_real t45 = t36 * t39;
-        const gic_real t46 = -(t37 + t38 * t39);
-        inertia[8] = t46;
-        const gic_real t47 = -(R(-149.724089775) * t36);
-        inertia[6] = t47;
+        const gic_real inertia_first_z = R(90.555) * t38;
+        inertia[HMMWV_VEHICLE_I_FIRST_Z] = inertia_first_z;
+        const gic_real t45 = t36 * inertia_first_y;
+        const gic_real inertia_second_yz = -(t37 + t38 * inertia_first_y);
+        inertia[HMMWV_VEHICLE_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xy = -(R(-149.724089775) * t36);
+        inertia[HMMWV_VEHICLE_I_SECOND_XY] = inertia_second_xy;
         const gic_real t48 = R(1.0) / t41;
-        const gic_real t49 = t38 * t44;
-        const gic_real t50 = t45 + (R(247.5545586544339) + t25);
-        inertia[5] = t50;
-        const gic_real t51 = -(R(-149.724089775) * t38);
-        inertia[7] = t51;
-        const gic_real t52 = t49 + (R(4.8947505) + t45);
-        inertia[3] = t52;
-        const gic_real t53 = t49 + (R(247.5545586544339) + t35);
-        inertia[4] = t53;
-        const gic_real t54 = t48 * (t5 * t33 - t6 * t34);
-        motion[24] = t54;
-        const gic_real t55 = rate[0] * t54;
-        motion[12] = t55;
-        const gic_real t56 = t5 + t54 * t30;
-        const gic_real t57 = t6 - t54 * t29;
-        const gic_real t58 = R(4.8947505) * t54;
-        if (!(k[7] * t41 - ahead[0] * GIC_FABS(t55) > R(0.004)))
+        const gic_real t49 = t38 * inertia_first_z;
+        const gic_real inertia_second_zz = t45 + (R(247.5545586544339) + t25);
+        inertia[HMMWV_VEHICLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xz = -(R(-149.724089775) * t38);
+        inertia[HMMWV_VEHICLE_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_xx = t49 + (R(4.8947505) + t45);
+        inertia[HMMWV_VEHICLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t49 + (R(247.5545586544339) + t35);
+        inertia[HMMWV_VEHICLE_I_SECOND_YY] = inertia_second_yy;
+        const gic_real s_0_0 = t48 * (t5 * t33 - s_0_5 * t34);
+        motion[HMMWV_VEHICLE_S + 0] = s_0_0;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[HMMWV_VEHICLE_OMEGA_X] = omega_x;
+        const gic_real t56 = t5 + s_0_0 * t30;
+        const gic_real t57 = s_0_5 - s_0_0 * t29;
+        const gic_real t58 = R(4.8947505) * s_0_0;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[7] * t41 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t59 = t28 * t55;
-        const gic_real t60 = t27 * t55;
-        const gic_real t61 = t55 * t30;
-        const gic_real t62 = t55 * t29;
-        const gic_real t63 = turn[0] + t55;
-        const gic_real t64 = turn[1] * t55;
-        const gic_real t65 = turn[2] * t55;
+        const gic_real t59 = t28 * omega_x;
+        const gic_real t60 = t27 * omega_x;
+        const gic_real t61 = omega_x * t30;
+        const gic_real t62 = omega_x * t29;
+        const gic_real t63 = turn[0] + omega_x;
+        const gic_real t64 = turn[1] * omega_x;
+        const gic_real t65 = turn[2] * omega_x;
         const gic_real t66 = R(90.555) * t56;
-        const gic_real t67 = t34 * (t55 * t59) + (t7 * t33 - t12 * t34);
-        const gic_real t68 = t11 + t60;
+        const gic_real t67 = t34 * (omega_x * t59) + (t7 * t33 - acceleration_z * t34);
+        const gic_real t68 = velocity_z + t60;
         const gic_real t69 = t10 + t59;
         const gic_real t70 = t10 + t61;
-        const gic_real t71 = t11 - t62;
+        const gic_real t71 = velocity_z - t62;
         const gic_real t72 = R(4.8947505) * t63;
-        const gic_real t73 = R(90.555) * t57;
-        inertia[17] = t73;
-        const gic_real t74 = -(R(-149.724089775) * t57);
-        inertia[19] = t74;
-        const gic_real t75 = -(R(-149.724089775) * t56);
-        inertia[20] = t75;
+        const gic_real along_0_force_z = R(90.555) * t57;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_0_moment_y = -(R(-149.724089775) * t57);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(R(-149.724089775) * t56);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 5] = along_0_moment_z;
         const gic_real t76 = R(-1.653405) * turn[2] - turn[0] * t38 - t70 - t70;
         const gic_real t77 = t71 + (t71 + (turn[0] * t36 - R(-1.653405) * turn[1]));
-        const gic_real t78 = t33 * (t55 * t60) - t68 * t68 + (t67 - t69 * t69);
+        const gic_real t78 = t33 * (omega_x * t60) - t68 * t68 + (t67 - t69 * t69);
         const gic_real t79 = turn[2] * t72 + (t37 * t64 + t35 * t65 - t63 * t40);
         const gic_real t80 = t63 * t43 - t25 * t64 - t37 * t65 - turn[1] * t72;
-        const gic_real t81 = t36 * t73 + (t58 + t38 * t66);
-        inertia[18] = t81;
-        const gic_real t82 = turn[0] * t76 + (t12 - turn[1] * t42 - t55 * t61);
-        const gic_real t83 = t55 * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
-        const gic_real t84 = t48 * t78;
-        motion[18] = t84;
-        const gic_real t85 = R(90.555) * (turn[1] * t77 - turn[2] * t76);
-        inertia[9] = t85;
-        const gic_real t86 = t56 * t66 + (t54 * t58 + t57 * t73);
-        inertia[22] = t86;
-        const gic_real t87 = R(4.8947505) * t84 + (turn[1] * t40 - turn[2] * t43);
-        const gic_real t88 = -t66;
-        inertia[16] = t88;
-        const gic_real t89 = t82 - t84 * t29;
-        const gic_real t90 = t83 - t84 * t30;
-        const gic_real t91 = R(90.555) * t89;
-        inertia[11] = t91;
-        const gic_real t92 = t38 * t85 + t79 - R(-149.724089775) * t89;
-        inertia[13] = t92;
-        const gic_real t93 = R(90.555) * t90;
-        inertia[10] = t93;
-        const gic_real t94 = R(-149.724089775) * t90 + (t80 - t36 * t85);
-        inertia[14] = t94;
-        const gic_real t95 = t87 + t36 * t91 - t38 * t93;
-        inertia[12] = t95;
-        const gic_real t96 = t54 * t87 + t91 * t57 - t93 * t56;
-        inertia[21] = t96;
+        const gic_real along_0_moment_x = t36 * along_0_force_z + (t58 + t38 * t66);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real t82 = turn[0] * t76 + (acceleration_z - turn[1] * t42 - omega_x * t61);
+        const gic_real t83 = omega_x * t62 + (turn[2] * t42 - t7) - turn[0] * t77;
+        const gic_real alpha_x = t48 * t78;
+        motion[HMMWV_VEHICLE_ALPHA_X] = alpha_x;
+        const gic_real inertia_force_x = R(90.555) * (turn[1] * t77 - turn[2] * t76);
+        inertia[HMMWV_VEHICLE_I_FORCE_X] = inertia_force_x;
+        const gic_real mass_0 = t56 * t66 + (s_0_0 * t58 + t57 * along_0_force_z);
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 7] = mass_0;
+        const gic_real t87 = R(4.8947505) * alpha_x + (turn[1] * t40 - turn[2] * t43);
+        const gic_real along_0_force_y = -t66;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t89 = t82 - alpha_x * t29;
+        const gic_real t90 = t83 - alpha_x * t30;
+        const gic_real inertia_force_z = R(90.555) * t89;
+        inertia[HMMWV_VEHICLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t38 * inertia_force_x + t79 - R(-149.724089775) * t89;
+        inertia[HMMWV_VEHICLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(90.555) * t90;
+        inertia[HMMWV_VEHICLE_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = R(-149.724089775) * t90 + (t80 - t36 * inertia_force_x);
+        inertia[HMMWV_VEHICLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = t87 + t36 * inertia_force_z - t38 * inertia_force_y;
+        inertia[HMMWV_VEHICLE_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t87 + inertia_force_z * t57 - inertia_force_y * t56;
+        inertia[HMMWV_VEHICLE_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1088,46 +1466,62 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k, const hmmwv_vehicle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k,
+    const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* lca_r_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m0[7];
-        const gic_real t2 = k[0] * m0[10];
-        const gic_real t3 = GIC_FABS((motion[1] - (t1 + k[1])) * R(2.928503331078754)) + GIC_FABS((motion[2] - t2) * R(2.928503331078754));
-        const gic_real t4 = R(0.3340099999999999) * motion[11] + k[3] * motion[10];
-        const gic_real t5 = motion[2] + t4 - R(0.22567900000000002);
-        const gic_real t6 = R(0.3340099999999999) * motion[8] + k[3] * motion[7];
-        const gic_real t7 = motion[1] + t6 - k[2];
+        const gic_real t1 = k[0] * m0[HMMWV_VEHICLE_A_YY];
+        const gic_real t2 = k[0] * m0[HMMWV_VEHICLE_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS((motion[HMMWV_VEHICLE_C_Y] - (t1 + k[1])) * R(2.928503331078754)) +
+            GIC_FABS((motion[HMMWV_VEHICLE_C_Z] - t2) * R(2.928503331078754));
+        const gic_real t4 = R(0.3340099999999999) * motion[HMMWV_VEHICLE_A_ZZ] + k[3] * motion[HMMWV_VEHICLE_A_ZY];
+        const gic_real t5 = motion[HMMWV_VEHICLE_C_Z] + t4 - R(0.22567900000000002);
+        const gic_real t6 = R(0.3340099999999999) * motion[HMMWV_VEHICLE_A_YZ] + k[3] * motion[HMMWV_VEHICLE_A_YY];
+        const gic_real t7 = motion[HMMWV_VEHICLE_C_Y] + t6 - k[2];
         const gic_real t8 = R(0.5) * (t5 * t5 + (R(0.031522582115999995) + t7 * t7) - R(0.095812034182));
-        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) + R(0.08651688980892147);
+        const gic_real t9 = (R(0.17754599999999998) + GIC_FABS(t7) + GIC_FABS(t5)) * R(0.34147135480007684) +
+            R(0.08651688980892147);
         const gic_real t10 = R(2.0) / t9;
-        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[24] * t2 + motion[28])) + GIC_FABS(R(2.928503331078754) * (motion[29] - m0[24] * t1));
-        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[24] + t7 * motion[28];
-        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[28]) + GIC_FABS(motion[29])) + GIC_FABS(motion[24]);
-        const gic_real t16 = t15 + GIC_FABS(m0[24]);
-        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[29]))) / (t16 + R(1e-30));
-        const gic_real t18 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(2.928503331078754) * (motion[16] - rate[0] * motion[28]));
-        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t20 = GIC_FABS(motion[12]);
+        const gic_real t11 = t3 + GIC_FABS(t8 * t10) + GIC_FABS(motion[HMMWV_VEHICLE_A_ZY] *
+            motion[HMMWV_VEHICLE_A_ZY] + motion[HMMWV_VEHICLE_A_YY] * motion[HMMWV_VEHICLE_A_YY] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[HMMWV_VEHICLE_A_YZ] + motion[HMMWV_VEHICLE_A_ZY])) +
+            GIC_FABS(motion[HMMWV_VEHICLE_A_YY] - motion[HMMWV_VEHICLE_A_ZZ]);
+        const gic_real t13 = GIC_FABS(R(2.928503331078754) * (m0[HMMWV_VEHICLE_S + 0] * t2 +
+            motion[HMMWV_VEHICLE_S + 4])) + GIC_FABS(R(2.928503331078754) * (motion[HMMWV_VEHICLE_S + 5] -
+            m0[HMMWV_VEHICLE_S + 0] * t1));
+        const gic_real t14 = (t6 * t5 - t4 * t7) * motion[HMMWV_VEHICLE_S + 0] + t7 * motion[HMMWV_VEHICLE_S + 4];
+        const gic_real t15 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_VEHICLE_S + 4]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_S + 5])) + GIC_FABS(motion[HMMWV_VEHICLE_S + 0]);
+        const gic_real t16 = t15 + GIC_FABS(m0[HMMWV_VEHICLE_S + 0]);
+        const gic_real t17 = (t13 + GIC_FABS(t10 * (t14 + t5 * motion[HMMWV_VEHICLE_S + 5]))) / (t16 + R(1e-30));
+        const gic_real t18 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X] - rate[0] * motion[HMMWV_VEHICLE_S + 0]) +
+            GIC_FABS(R(2.928503331078754) * (motion[HMMWV_VEHICLE_VELOCITY_Y] - rate[0] * motion[HMMWV_VEHICLE_S + 4]));
+        const gic_real t19 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Y]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_VELOCITY_Z]));
+        const gic_real t20 = GIC_FABS(motion[HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t21 = t16 * GIC_FABS(rate[0]);
-        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[17] - rate[0] * motion[29]))) / (R(1e-30) + (t19 + t20 + t21));
-        const gic_real t23 = R(2.928503331078754) * (m0[12] * (m0[12] * t1) + m0[18] * t2 + motion[22]);
-        const gic_real t24 = R(2.928503331078754) * (motion[23] - (m0[18] * t1 - m0[12] * (m0[12] * t2)));
-        const gic_real t25 = t6 * motion[12];
-        const gic_real t26 = motion[17] + t25;
-        const gic_real t27 = t4 * motion[12];
-        const gic_real t28 = motion[16] - t27;
-        const gic_real t29 = t5 * (motion[23] + (t6 * motion[18] - motion[12] * t27)) + t7 * (motion[22] - (motion[12] * t25 + t4 * motion[18]));
+        const gic_real t22 = (t18 + GIC_FABS(R(2.928503331078754) * (motion[HMMWV_VEHICLE_VELOCITY_Z] - rate[0] *
+            motion[HMMWV_VEHICLE_S + 5]))) / (R(1e-30) + (t19 + t20 + t21));
+        const gic_real t23 = R(2.928503331078754) * (m0[HMMWV_VEHICLE_OMEGA_X] * (m0[HMMWV_VEHICLE_OMEGA_X] * t1) +
+            m0[HMMWV_VEHICLE_ALPHA_X] * t2 + motion[HMMWV_VEHICLE_ACCELERATION_Y]);
+        const gic_real t24 = R(2.928503331078754) * (motion[HMMWV_VEHICLE_ACCELERATION_Z] - (m0[HMMWV_VEHICLE_ALPHA_X] *
+            t1 - m0[HMMWV_VEHICLE_OMEGA_X] * (m0[HMMWV_VEHICLE_OMEGA_X] * t2)));
+        const gic_real t25 = t6 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t26 = motion[HMMWV_VEHICLE_VELOCITY_Z] + t25;
+        const gic_real t27 = t4 * motion[HMMWV_VEHICLE_OMEGA_X];
+        const gic_real t28 = motion[HMMWV_VEHICLE_VELOCITY_Y] - t27;
+        const gic_real t29 = t5 * (motion[HMMWV_VEHICLE_ACCELERATION_Z] + (t6 * motion[HMMWV_VEHICLE_ALPHA_X] -
+            motion[HMMWV_VEHICLE_OMEGA_X] * t27)) + t7 * (motion[HMMWV_VEHICLE_ACCELERATION_Y] -
+            (motion[HMMWV_VEHICLE_OMEGA_X] * t25 + t4 * motion[HMMWV_VEHICLE_ALPHA_X]));
         const gic_real t30 = GIC_FABS((t26 * t26 + t28 * t28 + t29) * t10);
-        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + GIC_FABS(motion[18]);
-        const gic_real t32 = GIC_FABS(m0[12]);
-        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[18]));
+        const gic_real t31 = R(2.928503331078754) * (GIC_FABS(motion[HMMWV_VEHICLE_ACCELERATION_Y]) +
+            GIC_FABS(motion[HMMWV_VEHICLE_ACCELERATION_Z])) + GIC_FABS(motion[HMMWV_VEHICLE_ALPHA_X]);
+        const gic_real t32 = GIC_FABS(m0[HMMWV_VEHICLE_OMEGA_X]);
+        const gic_real t33 = t19 * t19 + t20 * t20 + t31 + (t32 * t32 + GIC_FABS(m0[HMMWV_VEHICLE_ALPHA_X]));
         const gic_real t34 = (GIC_FABS(t23) + GIC_FABS(t24) + t30) / (R(1e-30) + (t33 + t21 * t21));
         const gic_real t35 = t17 + t22 + t34;
         worst[0] = t12;
@@ -1147,7 +1541,8 @@ static const gic_real hmmwv_vehicle_piece[HMMWV_VEHICLE_COORDINATE_ROOM] = {
 };
 
 /* start[] from old[], both with the coordinates in front. */
-static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *old, gic_real *start)
+static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *old,
+    gic_real *start)
 {
     const gic_real *const xd = self->xd;
     int status = GIC_OK; /* stays so where no subset can fail */
@@ -1157,129 +1552,140 @@ static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links 
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = hmmwv_vehicle_solve_rack(self, hmmwv_vehicle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[HMMWV_VEHICLE_X_RACK];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_RACK];
+        status = hmmwv_vehicle_solve_rack(self, hmmwv_vehicle_k_rack[0], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_RACK, self->inertia + HMMWV_VEHICLE_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_F_L];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_F_L];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[0], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_LCA_F_L, self->inertia + HMMWV_VEHICLE_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_F_R];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_F_R];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[1], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_LCA_F_R, self->inertia + HMMWV_VEHICLE_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: lca_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[2], links, start + 5, self->motion + 90, self->inertia + 69);
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_R_L];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[2], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_LCA_R_L, self->inertia + HMMWV_VEHICLE_INERTIA_LCA_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 4;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_LCA_R_L;
             return status;
         }
     }
     /* stage 2: lca_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[3], links, start + 5, self->motion + 120, self->inertia + 92);
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_R_R];
+        status = hmmwv_vehicle_solve_lca_f_l(self, hmmwv_vehicle_k_lca_f_l[3], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_LCA_R_R, self->inertia + HMMWV_VEHICLE_INERTIA_LCA_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_LCA_R_R;
             return status;
         }
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_RACK] && links->same[HMMWV_VEHICLE_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + HMMWV_VEHICLE_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_VEHICLE_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[HMMWV_VEHICLE_X_RACK];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_RACK];
+        links->x[1] = start[HMMWV_VEHICLE_X_SPRING_F_L];
+        links->rate[1] = xd[HMMWV_VEHICLE_X_SPRING_F_L];
+        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[0], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_WHEEL_F_L, self->inertia + HMMWV_VEHICLE_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_RACK] && links->same[HMMWV_VEHICLE_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
+        links->known[0] = self->motion + HMMWV_VEHICLE_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + HMMWV_VEHICLE_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[HMMWV_VEHICLE_X_RACK];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_RACK];
+        links->x[1] = start[HMMWV_VEHICLE_X_SPRING_F_R];
+        links->rate[1] = xd[HMMWV_VEHICLE_X_SPRING_F_R];
+        status = hmmwv_vehicle_solve_wheel_f_l(self, hmmwv_vehicle_k_wheel_f_l[1], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_WHEEL_F_R, self->inertia + HMMWV_VEHICLE_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     /* stage 3: wheel_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 90; /* lca_r_l */
-        links->x[0] = start[2]; /* spring_r_l */
-        links->rate[0] = xd[2];
-        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[0], links, start + 5, self->motion + 222, self->inertia + 179);
+        links->known[0] = self->motion + HMMWV_VEHICLE_MOTION_LCA_R_L; /* lca_r_l */
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_R_L];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_R_L];
+        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[0], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_WHEEL_R_L, self->inertia + HMMWV_VEHICLE_INERTIA_WHEEL_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 8;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_WHEEL_R_L;
             return status;
         }
     }
     /* stage 3: wheel_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[HMMWV_VEHICLE_X_SPRING_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 120; /* lca_r_r */
-        links->x[0] = start[3]; /* spring_r_r */
-        links->rate[0] = xd[3];
-        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[1], links, start + 5, self->motion + 252, self->inertia + 202);
+        links->known[0] = self->motion + HMMWV_VEHICLE_MOTION_LCA_R_R; /* lca_r_r */
+        links->x[0] = start[HMMWV_VEHICLE_X_SPRING_R_R];
+        links->rate[0] = xd[HMMWV_VEHICLE_X_SPRING_R_R];
+        status = hmmwv_vehicle_solve_wheel_r_l(self, hmmwv_vehicle_k_wheel_r_l[1], links, start + 5, self->motion +
+            HMMWV_VEHICLE_MOTION_WHEEL_R_R, self->inertia + HMMWV_VEHICLE_INERTIA_WHEEL_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 9;
+            self->head.subset = HMMWV_VEHICLE_SUBSET_WHEEL_R_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
-static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *way, int far, int32_t *last)
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
+static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *way, int far,
+    int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
@@ -1301,13 +1707,11 @@ static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *l
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (HMMWV_VEHICLE_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1368,10 +1772,11 @@ static void hmmwv_vehicle_gather(hmmwv_vehicle *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 4 * sizeof *x); /* spring_f_l to spring_r_r */
-    memcpy(xd + 0, y + 17, 4 * sizeof *xd);
-    x[4] = u[0]; /* rack */
-    xd[4] = u[1];
+    memcpy(x + HMMWV_VEHICLE_X_SPRING_F_L, y + HMMWV_VEHICLE_STATE_SPRING_F_L, 4 * sizeof *x); /* spring_f_l to
+        spring_r_r */
+    memcpy(xd + HMMWV_VEHICLE_X_SPRING_F_L, y + HMMWV_VEHICLE_STATE_SPRING_F_L_RATE, 4 * sizeof *xd);
+    x[HMMWV_VEHICLE_X_RACK] = u[HMMWV_VEHICLE_INPUT_RACK]; /* rack */
+    xd[HMMWV_VEHICLE_X_RACK] = u[HMMWV_VEHICLE_INPUT_RACK_RATE];
 }
 
 /* ---- tables -------------------------------------------------------------------------------------------------- */
@@ -1389,10 +1794,10 @@ static const gic_real hmmwv_vehicle_full_torque_y[20] = {
     R(558.0), R(-400.0),
 };
 static const gic_real hmmwv_vehicle_full_torque_slope[20] = {
-    R(0.09111111111111111), R(0.21688163265306123), R(0.9758375634517766), R(0.789875), R(0.6261417322834646), R(0.4666666666666666),
-    R(0.32941176470588235), R(0.19534883720930232), R(0.06315789473684211), R(0.0), R(-0.07368421052631578), R(-0.16470588235294117),
-    R(-0.22608695652173913), R(-0.2828070175438597), R(-0.3196875), R(-0.3443478260869565), R(-0.3549295774647887), R(-0.35),
-    R(-0.595207100591716), R(-4.79),
+    R(0.09111111111111111), R(0.21688163265306123), R(0.9758375634517766), R(0.789875), R(0.6261417322834646),
+    R(0.4666666666666666), R(0.32941176470588235), R(0.19534883720930232), R(0.06315789473684211), R(0.0),
+    R(-0.07368421052631578), R(-0.16470588235294117), R(-0.22608695652173913), R(-0.2828070175438597), R(-0.3196875),
+    R(-0.3443478260869565), R(-0.3549295774647887), R(-0.35), R(-0.595207100591716), R(-4.79),
 };
 static const gic_real hmmwv_vehicle_engine_losses_x[6] = {
     R(-50.0), R(0.0), R(50.0), R(1000.0), R(2000.0), R(3000.0),
@@ -1424,15 +1829,16 @@ static const gic_real hmmwv_vehicle_converter_torque_slope[5] = {
 static const gic_table hmmwv_vehicle_table[4] = {
     {hmmwv_vehicle_full_torque_x, hmmwv_vehicle_full_torque_y, hmmwv_vehicle_full_torque_slope, 20, 0, 0},
     {hmmwv_vehicle_engine_losses_x, hmmwv_vehicle_engine_losses_y, hmmwv_vehicle_engine_losses_slope, 6, 0, 0},
-    {hmmwv_vehicle_converter_capacity_x, hmmwv_vehicle_converter_capacity_y, hmmwv_vehicle_converter_capacity_slope, 6, 0, 0},
+    {hmmwv_vehicle_converter_capacity_x, hmmwv_vehicle_converter_capacity_y, hmmwv_vehicle_converter_capacity_slope, 6,
+    0, 0},
     {hmmwv_vehicle_converter_torque_x, hmmwv_vehicle_converter_torque_y, hmmwv_vehicle_converter_torque_slope, 5, 0, 0},
 };
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int hmmwv_vehicle_orient(const hmmwv_vehicle *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -1468,6 +1874,9 @@ static gic_real hmmwv_vehicle_road_friction(const hmmwv_vehicle *self, gic_real 
     return road && road->friction ? road->friction(road, self->head.lane, time, x, y) : R(1.0);
 }
 
+/* Columns, with the names of tire_f_l:
+ *    0  tire_f_l.mirrored: -1, else 1
+ */
 static const gic_real hmmwv_vehicle_k_wheel_tire_f_l[4][1] = {
     { /* tire_f_l */
         R(1.0),
@@ -1491,64 +1900,68 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
 {
-    gic_real hub[20]; /* Fz, kappa, tan alpha, camber, friction, V_x, deflection, loaded radius,
-                        * axes of the contact 8 11 14, centre to contact point 17 */
-    gic_real force[5] = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}; /* Fx Fy Mx My Mz */
+    gic_real contact[20]; /* HMMWV_VEHICLE_CONTACT_* */
+    gic_real force[5] = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)}; /* HMMWV_VEHICLE_TIRE_* */
     (void)k, (void)torque;
     /* contact with the road, and slip */
     {
         gic_real road1[3];
-        if (!hmmwv_vehicle_road_height(self, time, link[0], link[1], road1))
+        if (!hmmwv_vehicle_road_height(self, time, link[HMMWV_VEHICLE_LINK_C_X], link[HMMWV_VEHICLE_LINK_C_Y], road1))
             return GIC_ERROR_ROAD;
         const gic_real t2 = road1[2] * road1[2] + road1[1] * road1[1];
         const gic_real t3 = R(1.0) / GIC_SQRT(R(1.0) + t2);
         const gic_real t4 = road1[1] * t3;
-        const gic_real t5 = link[6] * t3 + link[8] * t4;
+        const gic_real t5 = link[HMMWV_VEHICLE_LINK_S_X] * t3 + link[HMMWV_VEHICLE_LINK_S_Z] * t4;
         const gic_real t6 = road1[2] * t3;
-        const gic_real t7 = link[7] * t4 - link[6] * t6;
-        const gic_real t8 = link[8] * t6 + link[7] * t3;
+        const gic_real t7 = link[HMMWV_VEHICLE_LINK_S_Y] * t4 - link[HMMWV_VEHICLE_LINK_S_X] * t6;
+        const gic_real t8 = link[HMMWV_VEHICLE_LINK_S_Z] * t6 + link[HMMWV_VEHICLE_LINK_S_Y] * t3;
         const gic_real t9 = GIC_SQRT(t7 * t7 + (t5 * t5 + t8 * t8));
         const gic_real t10 = R(1.0) / GIC_MAX(t9, R(1e-06));
         const gic_real t11 = t7 * t10;
-        const gic_real t12 = link[0] + (link[8] * (t5 * t10) + link[7] * t11) * R(0.4699);
-        const gic_real t13 = link[1] + (link[8] * (t8 * t10) - link[6] * t11) * R(0.4699);
+        const gic_real t12 = link[HMMWV_VEHICLE_LINK_C_X] + (link[HMMWV_VEHICLE_LINK_S_Z] * (t5 * t10) +
+            link[HMMWV_VEHICLE_LINK_S_Y] * t11) * R(0.4699);
+        const gic_real t13 = link[HMMWV_VEHICLE_LINK_C_Y] + (link[HMMWV_VEHICLE_LINK_S_Z] * (t8 * t10) -
+            link[HMMWV_VEHICLE_LINK_S_X] * t11) * R(0.4699);
         gic_real road14[3];
         if (!hmmwv_vehicle_road_height(self, time, t12, t13, road14))
             return GIC_ERROR_ROAD;
         const gic_real t15 = road14[2] * road14[2] + road14[1] * road14[1];
         const gic_real t16 = R(1.0) / GIC_SQRT(R(1.0) + t15);
         const gic_real t17 = road14[1] * t16;
-        const gic_real t18 = link[6] * t16 + link[8] * t17;
+        const gic_real t18 = link[HMMWV_VEHICLE_LINK_S_X] * t16 + link[HMMWV_VEHICLE_LINK_S_Z] * t17;
         const gic_real t19 = road14[2] * t16;
-        const gic_real t20 = link[7] * t17 - link[6] * t19;
-        const gic_real t21 = link[8] * t19 + link[7] * t16;
+        const gic_real t20 = link[HMMWV_VEHICLE_LINK_S_Y] * t17 - link[HMMWV_VEHICLE_LINK_S_X] * t19;
+        const gic_real t21 = link[HMMWV_VEHICLE_LINK_S_Z] * t19 + link[HMMWV_VEHICLE_LINK_S_Y] * t16;
         const gic_real t22 = GIC_SQRT(t20 * t20 + (t18 * t18 + t21 * t21));
         const gic_real t23 = R(1.0) / GIC_MAX(t22, R(1e-06));
         const gic_real t24 = t18 * t23;
         const gic_real t25 = t20 * t23;
-        const gic_real t26 = link[8] * t24 + link[7] * t25;
+        const gic_real t26 = link[HMMWV_VEHICLE_LINK_S_Z] * t24 + link[HMMWV_VEHICLE_LINK_S_Y] * t25;
         const gic_real t27 = t21 * t23;
-        const gic_real t28 = link[7] * t27 + link[6] * t24;
-        const gic_real t29 = link[8] * t27 - link[6] * t25;
+        const gic_real t28 = link[HMMWV_VEHICLE_LINK_S_Y] * t27 + link[HMMWV_VEHICLE_LINK_S_X] * t24;
+        const gic_real t29 = link[HMMWV_VEHICLE_LINK_S_Z] * t27 - link[HMMWV_VEHICLE_LINK_S_X] * t25;
         const gic_real t30 = GIC_MAX(t16 * t28 + (t19 * t29 + t17 * t26), R(0.05));
         const gic_real t31 = R(1.0) / t30;
-        const gic_real t32 = t16 * (link[2] - road14[0]) - (t19 * (link[1] - t13) + t17 * (link[0] - t12));
+        const gic_real t32 = t16 * (link[HMMWV_VEHICLE_LINK_C_Z] - road14[0]) - (t19 * (link[HMMWV_VEHICLE_LINK_C_Y] -
+            t13) + t17 * (link[HMMWV_VEHICLE_LINK_C_X] - t12));
         const gic_real t33 = t31 * t32;
         const gic_real t34 = t26 * t33;
-        const gic_real t35 = link[0] + t34;
+        const gic_real t35 = link[HMMWV_VEHICLE_LINK_C_X] + t34;
         const gic_real t36 = t29 * t33;
-        const gic_real t37 = link[1] + t36;
+        const gic_real t37 = link[HMMWV_VEHICLE_LINK_C_Y] + t36;
         const gic_real t38 = hmmwv_vehicle_road_friction(self, time, t35, t37);
         if (!(t38 > R(0.0)))
             return GIC_ERROR_ROAD;
-        const gic_real t39 = link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]);
-        const gic_real t40 = link[9] - link[6] * t39;
-        const gic_real t41 = link[10] - link[7] * t39;
-        const gic_real t42 = link[5] + (t36 * t40 - t34 * t41);
-        const gic_real t43 = link[11] - link[8] * t39;
+        const gic_real t39 = link[HMMWV_VEHICLE_LINK_S_Z] * link[HMMWV_VEHICLE_LINK_OMEGA_Z] +
+            (link[HMMWV_VEHICLE_LINK_S_Y] * link[HMMWV_VEHICLE_LINK_OMEGA_Y] + link[HMMWV_VEHICLE_LINK_S_X] *
+            link[HMMWV_VEHICLE_LINK_OMEGA_X]);
+        const gic_real t40 = link[HMMWV_VEHICLE_LINK_OMEGA_X] - link[HMMWV_VEHICLE_LINK_S_X] * t39;
+        const gic_real t41 = link[HMMWV_VEHICLE_LINK_OMEGA_Y] - link[HMMWV_VEHICLE_LINK_S_Y] * t39;
+        const gic_real t42 = link[HMMWV_VEHICLE_LINK_V_Z] + (t36 * t40 - t34 * t41);
+        const gic_real t43 = link[HMMWV_VEHICLE_LINK_OMEGA_Z] - link[HMMWV_VEHICLE_LINK_S_Z] * t39;
         const gic_real t44 = t28 * t33;
-        const gic_real t45 = link[3] - (t36 * t43 + t44 * t41);
-        const gic_real t46 = link[4] + (t44 * t40 + t34 * t43);
+        const gic_real t45 = link[HMMWV_VEHICLE_LINK_V_X] - (t36 * t43 + t44 * t41);
+        const gic_real t46 = link[HMMWV_VEHICLE_LINK_V_Y] + (t44 * t40 + t34 * t43);
         const gic_real t47 = t25 * t42 + (t27 * t45 - t24 * t46);
         const gic_real t48 = GIC_FABS(t47);
         const gic_real t49 = GIC_MIN(GIC_MAX(t48, R(0.0)), R(1.0));
@@ -1556,24 +1969,27 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t51 = t50 * R(3.3333333333333335);
         const gic_real t52 = R(0.4699) - t33;
         const gic_real t53 = GIC_MAX(t52, R(0.0));
-        const gic_real t54 = (GIC_ATAN(t53 * R(76.07097841287417)) * R(0.5) + t53 * R(-0.10867282630410596)) * R(0.046009661937089844);
+        const gic_real t54 = (GIC_ATAN(t53 * R(76.07097841287417)) * R(0.5) + t53 * R(-0.10867282630410596)) *
+            R(0.046009661937089844);
         const gic_real t55 = R(0.4699) - t54;
-        const gic_real t56 = t47 - fast[0] * t55;
+        const gic_real t56 = t47 - fast[HMMWV_VEHICLE_FAST_SPIN] * t55;
         const gic_real t57 = GIC_MIN(GIC_MAX(t52 * R(100.0), R(0.0)), R(1.0));
         const gic_real t58 = (R(3.0) - (t57 + t57)) * (t57 * t57);
-        const gic_real t59 = fast[1] * (t48 + t51 * GIC_FABS(t56)) + t58 * t56;
+        const gic_real t59 = fast[HMMWV_VEHICLE_FAST_SLIP_X] * (t48 + t51 * GIC_FABS(t56)) + t58 * t56;
         const gic_real t60 = t31 * (t16 * t42 - (t19 * t46 + t17 * t45));
         const gic_real t61 = GIC_MAX(t53 * R(441900.0) - t60 * (t58 * R(500.0)), R(0.0));
         const gic_real t62 = GIC_MIN(GIC_MAX(t61, R(20.331669610000002)), R(78750.0));
         const gic_real t63 = t62 - R(20331.66961);
-        const gic_real t64 = GIC_EXP(-(t63 * R(4.918435225349897e-05))) * (t62 * (t63 * R(6.885809315489855e-05) + R(1.5)));
+        const gic_real t64 = GIC_EXP(-(t63 * R(4.918435225349897e-05))) * (t62 * (t63 * R(6.885809315489855e-05) +
+            R(1.5)));
         const gic_real t65 = t59 / GIC_MAX(t64 * R(1.3425714285714285e-05), R(0.09398000000000001));
         const gic_real t66 = t19 * t27 + t17 * t24;
         const gic_real t67 = t17 * t25 + t16 * t27;
         const gic_real t68 = t16 * t24 - t19 * t25;
         const gic_real t69 = t66 * t42 + (t67 * t46 + t68 * t45);
-        const gic_real t70 = t58 * t69 - fast[2] * (t48 + t51 * GIC_FABS(t69));
-        const gic_real t71 = GIC_MIN(link[8] * t16 - (link[7] * t19 + link[6] * t17), R(1.0));
+        const gic_real t70 = t58 * t69 - fast[HMMWV_VEHICLE_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t69));
+        const gic_real t71 = GIC_MIN(link[HMMWV_VEHICLE_LINK_S_Z] * t16 - (link[HMMWV_VEHICLE_LINK_S_Y] * t19 +
+            link[HMMWV_VEHICLE_LINK_S_X] * t17), R(1.0));
         const gic_real t72 = GIC_ASIN(GIC_MAX(t71, R(-1.0)));
         const gic_real t73 = R(1.0) - GIC_FABS(GIC_MIN(GIC_MAX(k[0] * t72, R(-0.26181)), R(0.26181))) * R(-0.25732);
         const gic_real t74 = t62 * R(1.9673740901399588e-05);
@@ -1581,70 +1997,73 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t76 = t70 / GIC_MAX(t75, R(0.09398000000000001));
         const gic_real t77 = R(0.01) * t50;
         const gic_real t78 = -t65;
-        const gic_real t79 = fast[1] - t77 * t65;
-        const gic_real t80 = fast[2] + t77 * t76;
+        const gic_real t79 = fast[HMMWV_VEHICLE_FAST_SLIP_X] - t77 * t65;
+        const gic_real t80 = fast[HMMWV_VEHICLE_FAST_SLIP_Y] + t77 * t76;
         const gic_real t81 = -t24;
         const gic_real t82 = -t17;
         const gic_real t83 = -t19;
         const gic_real t84 = -t44;
         const gic_real t85 = -t60;
         const gic_real t86 = road14[0];
-        const gic_real t87 = link[2] - t44;
-        rate[1] = t78;
-        rate[2] = t76;
-        hub[0] = t61;
-        hub[1] = t79;
-        hub[2] = t80;
-        hub[3] = t72;
-        hub[4] = t38;
-        hub[5] = t47;
-        hub[6] = t52;
-        hub[7] = t33;
-        hub[8] = t27;
-        hub[9] = t81;
-        hub[10] = t25;
-        hub[11] = t68;
-        hub[12] = t67;
-        hub[13] = t66;
-        hub[14] = t82;
-        hub[15] = t83;
-        hub[16] = t16;
-        hub[17] = t34;
-        hub[18] = t36;
-        hub[19] = t84;
-        grip[8] = t61;
-        grip[9] = t52;
-        grip[10] = t85;
-        grip[11] = t86;
-        grip[20] = t35;
-        grip[21] = t37;
-        grip[22] = t87;
-        grip[23] = t47;
-        grip[24] = t69;
-        grip[25] = t55;
+        const gic_real t87 = link[HMMWV_VEHICLE_LINK_C_Z] - t44;
+        rate[HMMWV_VEHICLE_FAST_SLIP_X] = t78;
+        rate[HMMWV_VEHICLE_FAST_SLIP_Y] = t76;
+        contact[HMMWV_VEHICLE_CONTACT_LOAD] = t61;
+        contact[HMMWV_VEHICLE_CONTACT_KAPPA] = t79;
+        contact[HMMWV_VEHICLE_CONTACT_TANGENT] = t80;
+        contact[HMMWV_VEHICLE_CONTACT_CAMBER] = t72;
+        contact[HMMWV_VEHICLE_CONTACT_FRICTION] = t38;
+        contact[HMMWV_VEHICLE_CONTACT_SPEED] = t47;
+        contact[HMMWV_VEHICLE_CONTACT_DEFLECTION] = t52;
+        contact[HMMWV_VEHICLE_CONTACT_RADIUS] = t33;
+        contact[HMMWV_VEHICLE_CONTACT_X_X] = t27;
+        contact[HMMWV_VEHICLE_CONTACT_X_Y] = t81;
+        contact[HMMWV_VEHICLE_CONTACT_X_Z] = t25;
+        contact[HMMWV_VEHICLE_CONTACT_Y_X] = t68;
+        contact[HMMWV_VEHICLE_CONTACT_Y_Y] = t67;
+        contact[HMMWV_VEHICLE_CONTACT_Y_Z] = t66;
+        contact[HMMWV_VEHICLE_CONTACT_N_X] = t82;
+        contact[HMMWV_VEHICLE_CONTACT_N_Y] = t83;
+        contact[HMMWV_VEHICLE_CONTACT_N_Z] = t16;
+        contact[HMMWV_VEHICLE_CONTACT_ARM_X] = t34;
+        contact[HMMWV_VEHICLE_CONTACT_ARM_Y] = t36;
+        contact[HMMWV_VEHICLE_CONTACT_ARM_Z] = t84;
+        grip[HMMWV_VEHICLE_GRIP_LOAD] = t61;
+        grip[HMMWV_VEHICLE_GRIP_DEFLECTION] = t52;
+        grip[HMMWV_VEHICLE_GRIP_DEFLECTION_RATE] = t85;
+        grip[HMMWV_VEHICLE_GRIP_HEIGHT] = t86;
+        grip[HMMWV_VEHICLE_GRIP_POINT_X] = t35;
+        grip[HMMWV_VEHICLE_GRIP_POINT_Y] = t37;
+        grip[HMMWV_VEHICLE_GRIP_POINT_Z] = t87;
+        grip[HMMWV_VEHICLE_GRIP_SPEED_X] = t47;
+        grip[HMMWV_VEHICLE_GRIP_SPEED_Y] = t69;
+        grip[HMMWV_VEHICLE_GRIP_RADIUS] = t55;
     }
     /* the tire; a wheel in the air has none */
-    if (hub[0] > R(0.0)) {
-        const gic_real t1 = GIC_MIN(GIC_MAX(hub[0], R(20.331669610000002)), R(78750.0));
-        const gic_real t2 = hub[0] / t1;
+    if (contact[0] > R(0.0)) {
+        const gic_real t1 = GIC_MIN(GIC_MAX(contact[HMMWV_VEHICLE_CONTACT_LOAD], R(20.331669610000002)), R(78750.0));
+        const gic_real t2 = contact[HMMWV_VEHICLE_CONTACT_LOAD] / t1;
         const gic_real t3 = t1 - R(20331.66961);
-        const gic_real t4 = GIC_MIN(GIC_MAX(k[0] * hub[3], R(-0.26181)), R(0.26181));
+        const gic_real t4 = GIC_MIN(GIC_MAX(k[0] * contact[HMMWV_VEHICLE_CONTACT_CAMBER], R(-0.26181)), R(0.26181));
         const gic_real t5 = t4 * t4;
-        const gic_real t6 = hub[4] * ((R(1.0) - t5 * R(-0.00015908)) * (t3 * R(-1.2016229099052332e-05) + R(0.77751)));
+        const gic_real t6 = contact[HMMWV_VEHICLE_CONTACT_FRICTION] * ((R(1.0) - t5 * R(-0.00015908)) * (t3 *
+            R(-1.2016229099052332e-05) + R(0.77751)));
         const gic_real t7 = t1 * t6;
-        const gic_real t8 = GIC_MIN(GIC_MAX(hub[1], R(-1.5)), R(1.5));
+        const gic_real t8 = GIC_MIN(GIC_MAX(contact[HMMWV_VEHICLE_CONTACT_KAPPA], R(-1.5)), R(1.5));
         const gic_real t9 = t8 + (t3 * R(-3.3355844011277934e-08) + R(-0.00088873));
-        const gic_real t10 = GIC_EXP(t3 * R(7.779980839458466e-06)) * (t1 * (t3 * R(-0.0004827985201555712) + R(14.848)));
+        const gic_real t10 = GIC_EXP(t3 * R(7.779980839458466e-06)) * (t1 * (t3 * R(-0.0004827985201555712) +
+            R(14.848)));
         const gic_real t11 = t9 * (t10 / (R(1.7204) * t7));
         const gic_real t12 = R(4.918435225349897e-05) * t3;
         const gic_real t13 = t12 * t12;
         const gic_real t14 = (t9 > GIC_R(0) ? R(1.0) : (-t9 > GIC_R(0) ? R(-1.0) : R(0.0))) * R(2.6509e-06);
         const gic_real t15 = (t13 * R(0.076024) + (t3 * R(1.9329450435625096e-05) + R(0.46659))) * (R(1.0) - t14);
         const gic_real t16 = GIC_ATAN(t11 - GIC_MIN(R(1.0), t15) * (t11 - GIC_ATAN(t11)));
-        const gic_real t17 = t1 * (hub[4] * (t3 * R(3.0972370301073367e-10) + R(-5.5714e-07))) + t7 * GIC_SIN(R(1.7204) * t16);
+        const gic_real t17 = t1 * (contact[HMMWV_VEHICLE_CONTACT_FRICTION] * (t3 * R(3.0972370301073367e-10) +
+            R(-5.5714e-07))) + t7 * GIC_SIN(R(1.7204) * t16);
         const gic_real t18 = t8 * R(-12.494);
         const gic_real t19 = R(11.13) / GIC_SQRT(R(1.0) + t18 * t18);
-        const gic_real t20 = k[0] * hub[2];
+        const gic_real t20 = k[0] * contact[HMMWV_VEHICLE_CONTACT_TANGENT];
         const gic_real t21 = GIC_ATAN(t20);
         const gic_real t22 = t19 * (t21 + R(0.0045181));
         const gic_real t23 = GIC_MIN(R(1.0), t3 * R(8.547748578135586e-08) + R(-0.37196));
@@ -1652,9 +2071,11 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t25 = R(0.0045181) * t19;
         const gic_real t26 = R(0.97505) * GIC_ATAN(t25 - t23 * (t25 - GIC_ATAN(t25)));
         const gic_real t27 = t17 * (GIC_COS(t24) / GIC_COS(t26));
-        const gic_real t28 = t3 * R(-5.097958111075168e-07) + R(0.015216) + t4 * (t3 * R(-2.7428145877686234e-06) + R(-0.31373));
-        const gic_real t29 = t1 * (hub[4] * t28);
-        const gic_real t30 = hub[4] * ((R(1.0) - t5 * R(-8.0362)) * (t3 * R(-3.6890231564214365e-06) + R(0.73957)));
+        const gic_real t28 = t3 * R(-5.097958111075168e-07) + R(0.015216) + t4 * (t3 * R(-2.7428145877686234e-06) +
+            R(-0.31373));
+        const gic_real t29 = t1 * (contact[HMMWV_VEHICLE_CONTACT_FRICTION] * t28);
+        const gic_real t30 = contact[HMMWV_VEHICLE_CONTACT_FRICTION] * ((R(1.0) - t5 * R(-8.0362)) * (t3 *
+            R(-3.6890231564214365e-06) + R(0.73957)));
         const gic_real t31 = t1 * t30;
         const gic_real t32 = t3 * R(-9.963274235991287e-08) + R(0.0056509) + t4 * R(-0.038716);
         const gic_real t33 = t21 + t32;
@@ -1662,8 +2083,10 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t35 = GIC_FABS(t4);
         const gic_real t36 = (t34 + t34) / (R(1.0) + t34 * t34) * R(-209192.54861729) * (R(1.0) - R(-0.25732) * t35);
         const gic_real t37 = t33 * (t36 / (t31 * R(1.5874)));
-        const gic_real t38 = (t33 > GIC_R(0) ? R(1.0) : (-t33 > GIC_R(0) ? R(-1.0) : R(0.0))) * (t4 * R(11.559) + R(0.29168));
-        const gic_real t39 = GIC_MIN(R(1.0), (R(1.0) - t38) * (t3 * R(-3.4097052199738157e-06) + R(0.37562))) * (t37 - GIC_ATAN(t37));
+        const gic_real t38 = (t33 > GIC_R(0) ? R(1.0) : (-t33 > GIC_R(0) ? R(-1.0) : R(0.0))) * (t4 * R(11.559) +
+            R(0.29168));
+        const gic_real t39 = GIC_MIN(R(1.0), (R(1.0) - t38) * (t3 * R(-3.4097052199738157e-06) + R(0.37562))) * (t37 -
+            GIC_ATAN(t37));
         const gic_real t40 = t29 + t31 * GIC_SIN(R(1.5874) * GIC_ATAN(t37 - t39));
         const gic_real t41 = (t21 - R(1.1547e-05)) * R(5.2405);
         const gic_real t42 = R(13.271) / GIC_SQRT(R(1.0) + t41 * t41);
@@ -1675,98 +2098,132 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t48 = R(1.01) * GIC_ATAN(t47 - t45 * (t47 - GIC_ATAN(t47)));
         const gic_real t49 = t40 * (GIC_COS(t46) / GIC_COS(t48));
         const gic_real t50 = t21 * R(-0.019796);
-        const gic_real t51 = t31 * (t4 * R(-0.16227) + (t3 * R(-2.105729673029051e-06) + R(0.0066878))) / GIC_SQRT(R(1.0) + t50 * t50);
+        const gic_real t51 = t31 * (t4 * R(-0.16227) + (t3 * R(-2.105729673029051e-06) + R(0.0066878))) /
+            GIC_SQRT(R(1.0) + t50 * t50);
         const gic_real t52 = t49 + t51 * GIC_SIN(GIC_ATAN(t8 * R(-7.8097)) * R(1.9));
-        const gic_real t53 = t3 * R(6.821377814037772e-08) + R(-0.0013373) + t4 * (t3 * R(1.269792422128583e-06) + R(-0.053513));
-        const gic_real t54 = R(1.0) / hub[4];
+        const gic_real t53 = t3 * R(6.821377814037772e-08) + R(-0.0013373) + t4 * (t3 * R(1.269792422128583e-06) +
+            R(-0.053513));
+        const gic_real t54 = R(1.0) / contact[HMMWV_VEHICLE_CONTACT_FRICTION];
         const gic_real t55 = t8 * (t10 / t36);
         const gic_real t56 = t55 * t55;
         const gic_real t57 = t21 + (t32 + t29 / t36);
         const gic_real t58 = GIC_TAN(t57);
-        const gic_real t59 = GIC_ATAN(GIC_SQRT(t56 + t58 * t58)) * (t57 > GIC_R(0) ? R(1.0) : (-t57 > GIC_R(0) ? R(-1.0) : R(0.0)));
+        const gic_real t59 = GIC_ATAN(GIC_SQRT(t56 + t58 * t58)) * (t57 > GIC_R(0) ? R(1.0) : (-t57 > GIC_R(0) ?
+            R(-1.0) : R(0.0)));
         const gic_real t60 = t54 * R(10.637) * t59;
-        const gic_real t61 = R(0.4699) * t1 * (hub[4] * t53) / GIC_SQRT(R(1.0) + t60 * t60);
-        const gic_real t62 = (t5 * R(-3.9098) + (R(1.0) + t4 * R(0.21486))) * (t3 * R(-1.244265743309017e-06) + R(0.085549));
-        const gic_real t63 = (t35 * R(-0.92709) + (R(1.0) + t4 * R(0.62731))) * (t13 * R(-2.0052) + (t3 * R(-7.549798070912091e-06) + R(5.8978)));
+        const gic_real t61 = R(0.4699) * t1 * (contact[HMMWV_VEHICLE_CONTACT_FRICTION] * t53) / GIC_SQRT(R(1.0) + t60 *
+            t60);
+        const gic_real t62 = (t5 * R(-3.9098) + (R(1.0) + t4 * R(0.21486))) * (t3 * R(-1.244265743309017e-06) +
+            R(0.085549));
+        const gic_real t63 = (t35 * R(-0.92709) + (R(1.0) + t4 * R(0.62731))) * (t13 * R(-2.0052) + (t3 *
+            R(-7.549798070912091e-06) + R(5.8978)));
         const gic_real t64 = t54 * t63;
-        const gic_real t65 = t3 * R(-2.111090767424683e-07) + R(0.0085657) + t4 * (t3 * R(-1.4754813832527154e-05) + R(0.14763));
+        const gic_real t65 = t3 * R(-2.111090767424683e-07) + R(0.0085657) + t4 * (t3 * R(-1.4754813832527154e-05) +
+            R(0.14763));
         const gic_real t66 = t21 + t65;
         const gic_real t67 = GIC_TAN(t66);
-        const gic_real t68 = GIC_ATAN(GIC_SQRT(t56 + t67 * t67)) * (t66 > GIC_R(0) ? R(1.0) : (-t66 > GIC_R(0) ? R(-1.0) : R(0.0)));
+        const gic_real t68 = GIC_ATAN(GIC_SQRT(t56 + t67 * t67)) * (t66 > GIC_R(0) ? R(1.0) : (-t66 > GIC_R(0) ?
+            R(-1.0) : R(0.0)));
         const gic_real t69 = t64 * t68;
         const gic_real t70 = R(0.6366197723675814) * (t4 * R(-645.04) + R(4.3583)) * GIC_ATAN(t66 * (t64 * R(1.4982)));
-        const gic_real t71 = GIC_MIN(R(1.0), (R(1.0) + t70) * (t3 * R(4.790014881616011e-07) + R(-0.0084519))) * (t69 - GIC_ATAN(t69));
+        const gic_real t71 = GIC_MIN(R(1.0), (R(1.0) + t70) * (t3 * R(4.790014881616011e-07) + R(-0.0084519))) * (t69 -
+            GIC_ATAN(t69));
         const gic_real t72 = R(1.3425714285714285e-05) * (t1 * t62) * GIC_COS(R(1.4982) * GIC_ATAN(t69 - t71));
         const gic_real t73 = (t61 - t49 * t72) / GIC_SQRT(R(1.0) + t20 * t20);
-        const gic_real t74 = t52 * R(7.367428571428571e-07) + R(-0.019408) + t4 * (t3 * R(-2.4968436421488753e-05) + R(0.31908));
+        const gic_real t74 = t52 * R(7.367428571428571e-07) + R(-0.019408) + t4 * (t3 * R(-2.4968436421488753e-05) +
+            R(0.31908));
         const gic_real t75 = t2 * t27;
         const gic_real t76 = k[0] * (t2 * t52);
-        const gic_real t77 = t2 * (t1 * R(-0.0037592) * GIC_TANH(fast[0]));
+        const gic_real t77 = t2 * (t1 * R(-0.0037592) * GIC_TANH(fast[HMMWV_VEHICLE_FAST_SPIN]));
         const gic_real t78 = k[0] * (t2 * (t73 + t27 * (R(0.4699) * t74)));
-        force[0] = t75;
-        force[1] = t76;
-        force[2] = R(0.0);
-        force[3] = t77;
-        force[4] = t78;
+        force[HMMWV_VEHICLE_TIRE_FX] = t75;
+        force[HMMWV_VEHICLE_TIRE_FY] = t76;
+        force[HMMWV_VEHICLE_TIRE_MX] = R(0.0);
+        force[HMMWV_VEHICLE_TIRE_MY] = t77;
+        force[HMMWV_VEHICLE_TIRE_MZ] = t78;
     } else
         ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
     {
-        const gic_real t1 = fast[0] - (link[8] * link[11] + (link[7] * link[10] + link[6] * link[9]));
+        const gic_real t1 = fast[HMMWV_VEHICLE_FAST_SPIN] - (link[HMMWV_VEHICLE_LINK_S_Z] *
+            link[HMMWV_VEHICLE_LINK_OMEGA_Z] + (link[HMMWV_VEHICLE_LINK_S_Y] * link[HMMWV_VEHICLE_LINK_OMEGA_Y] +
+            link[HMMWV_VEHICLE_LINK_S_X] * link[HMMWV_VEHICLE_LINK_OMEGA_X]));
         const gic_real t2 = t1 * R(0.1);
         const gic_real t3 = R(10.0) * (t1 / GIC_SQRT(R(1.0) + t2 * t2));
-        const gic_real t4 = GIC_MIN(GIC_MAX((GIC_FABS(fast[3]) - R(0.7)) * R(3.333333333333333), R(0.0)), R(1.0));
-        const gic_real t5 = (fast[3] * t1 > GIC_R(0) ? (R(3.0) - (t4 + t4)) * (t4 * t4) : R(0.0));
-        const gic_real t6 = t3 - GIC_FABS(t3) * (fast[3] * t5);
-        const gic_real t7 = hub[0] * hub[15] + (hub[12] * force[1] + hub[9] * force[0]);
-        const gic_real t8 = hub[0] * hub[14] + (hub[11] * force[1] + hub[8] * force[0]);
-        const gic_real t9 = hub[16] * force[4] + (hub[13] * force[3] + hub[10] * force[2]) + (hub[17] * t7 - hub[18] * t8);
-        const gic_real t10 = hub[0] * hub[16] + (hub[13] * force[1] + hub[10] * force[0]);
-        const gic_real t11 = hub[15] * force[4] + (hub[12] * force[3] + hub[9] * force[2]) + (hub[19] * t8 - hub[17] * t10);
-        const gic_real t12 = hub[14] * force[4] + (hub[11] * force[3] + hub[8] * force[2]) + (hub[18] * t10 - hub[19] * t7);
-        const gic_real t13 = link[8] * t9 + (link[7] * t11 + link[6] * t12);
-        const gic_real t14 = GIC_MIN(GIC_MAX(fast[3] + R(0.01) * t6, R(-1.0)), R(1.0)) * GIC_MAX(torque[1], R(0.0));
+        const gic_real t4 = GIC_MIN(GIC_MAX((GIC_FABS(fast[HMMWV_VEHICLE_FAST_BRAKE]) - R(0.7)) * R(3.333333333333333),
+            R(0.0)), R(1.0));
+        const gic_real t5 = (fast[HMMWV_VEHICLE_FAST_BRAKE] * t1 > GIC_R(0) ? (R(3.0) - (t4 + t4)) * (t4 * t4) :
+            R(0.0));
+        const gic_real t6 = t3 - GIC_FABS(t3) * (fast[HMMWV_VEHICLE_FAST_BRAKE] * t5);
+        const gic_real t7 = contact[HMMWV_VEHICLE_CONTACT_LOAD] * contact[HMMWV_VEHICLE_CONTACT_N_Y] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_Y] * force[HMMWV_VEHICLE_TIRE_FY] + contact[HMMWV_VEHICLE_CONTACT_X_Y] *
+            force[HMMWV_VEHICLE_TIRE_FX]);
+        const gic_real t8 = contact[HMMWV_VEHICLE_CONTACT_LOAD] * contact[HMMWV_VEHICLE_CONTACT_N_X] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_X] * force[HMMWV_VEHICLE_TIRE_FY] + contact[HMMWV_VEHICLE_CONTACT_X_X] *
+            force[HMMWV_VEHICLE_TIRE_FX]);
+        const gic_real t9 = contact[HMMWV_VEHICLE_CONTACT_N_Z] * force[HMMWV_VEHICLE_TIRE_MZ] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_Z] * force[HMMWV_VEHICLE_TIRE_MY] + contact[HMMWV_VEHICLE_CONTACT_X_Z] *
+            force[HMMWV_VEHICLE_TIRE_MX]) + (contact[HMMWV_VEHICLE_CONTACT_ARM_X] * t7 -
+            contact[HMMWV_VEHICLE_CONTACT_ARM_Y] * t8);
+        const gic_real t10 = contact[HMMWV_VEHICLE_CONTACT_LOAD] * contact[HMMWV_VEHICLE_CONTACT_N_Z] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_Z] * force[HMMWV_VEHICLE_TIRE_FY] + contact[HMMWV_VEHICLE_CONTACT_X_Z] *
+            force[HMMWV_VEHICLE_TIRE_FX]);
+        const gic_real t11 = contact[HMMWV_VEHICLE_CONTACT_N_Y] * force[HMMWV_VEHICLE_TIRE_MZ] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_Y] * force[HMMWV_VEHICLE_TIRE_MY] + contact[HMMWV_VEHICLE_CONTACT_X_Y] *
+            force[HMMWV_VEHICLE_TIRE_MX]) + (contact[HMMWV_VEHICLE_CONTACT_ARM_Z] * t8 -
+            contact[HMMWV_VEHICLE_CONTACT_ARM_X] * t10);
+        const gic_real t12 = contact[HMMWV_VEHICLE_CONTACT_N_X] * force[HMMWV_VEHICLE_TIRE_MZ] +
+            (contact[HMMWV_VEHICLE_CONTACT_Y_X] * force[HMMWV_VEHICLE_TIRE_MY] + contact[HMMWV_VEHICLE_CONTACT_X_X] *
+            force[HMMWV_VEHICLE_TIRE_MX]) + (contact[HMMWV_VEHICLE_CONTACT_ARM_Y] * t10 -
+            contact[HMMWV_VEHICLE_CONTACT_ARM_Z] * t7);
+        const gic_real t13 = link[HMMWV_VEHICLE_LINK_S_Z] * t9 + (link[HMMWV_VEHICLE_LINK_S_Y] * t11 +
+            link[HMMWV_VEHICLE_LINK_S_X] * t12);
+        const gic_real t14 = GIC_MIN(GIC_MAX(fast[HMMWV_VEHICLE_FAST_BRAKE] + R(0.01) * t6, R(-1.0)), R(1.0)) *
+            GIC_MAX(torque[HMMWV_VEHICLE_TORQUE_BRAKE], R(0.0));
         const gic_real t15 = t13 - t14;
         const gic_real t16 = t14 - t13;
-        const gic_real t17 = fast[0] * R(7.78782);
-        const gic_real t18 = t12 + link[6] * t16 - (link[8] * link[10] - link[7] * link[11]) * t17;
-        const gic_real t19 = t11 + link[7] * t16 - (link[6] * link[11] - link[8] * link[9]) * t17;
-        const gic_real t20 = t9 + link[8] * t16 - (link[7] * link[9] - link[6] * link[10]) * t17;
+        const gic_real t17 = fast[HMMWV_VEHICLE_FAST_SPIN] * R(7.78782);
+        const gic_real t18 = t12 + link[HMMWV_VEHICLE_LINK_S_X] * t16 - (link[HMMWV_VEHICLE_LINK_S_Z] *
+            link[HMMWV_VEHICLE_LINK_OMEGA_Y] - link[HMMWV_VEHICLE_LINK_S_Y] * link[HMMWV_VEHICLE_LINK_OMEGA_Z]) * t17;
+        const gic_real t19 = t11 + link[HMMWV_VEHICLE_LINK_S_Y] * t16 - (link[HMMWV_VEHICLE_LINK_S_X] *
+            link[HMMWV_VEHICLE_LINK_OMEGA_Z] - link[HMMWV_VEHICLE_LINK_S_Z] * link[HMMWV_VEHICLE_LINK_OMEGA_X]) * t17;
+        const gic_real t20 = t9 + link[HMMWV_VEHICLE_LINK_S_Z] * t16 - (link[HMMWV_VEHICLE_LINK_S_Y] *
+            link[HMMWV_VEHICLE_LINK_OMEGA_X] - link[HMMWV_VEHICLE_LINK_S_X] * link[HMMWV_VEHICLE_LINK_OMEGA_Y]) * t17;
         const gic_real t21 = t15 * R(0.12840563854839993);
-        const gic_real t22 = fast[0] * t15;
-        const gic_real t23 = force[0];
-        const gic_real t24 = force[1];
-        const gic_real t25 = force[2];
-        const gic_real t26 = force[3];
-        const gic_real t27 = force[4];
-        const gic_real t28 = hub[1];
-        const gic_real t29 = hub[2];
-        const gic_real t30 = hub[3];
-        rate[3] = t6;
-        rate[0] = t21;
-        grip[0] = t8;
-        grip[1] = t7;
-        grip[2] = t10;
-        grip[3] = t18;
-        grip[4] = t19;
-        grip[5] = t20;
-        grip[6] = R(0.0);
-        grip[7] = t14;
-        grip[26] = t22;
-        grip[12] = t23;
-        grip[13] = t24;
-        grip[14] = t25;
-        grip[15] = t26;
-        grip[16] = t27;
-        grip[17] = t28;
-        grip[18] = t29;
-        grip[19] = t30;
+        const gic_real t22 = fast[HMMWV_VEHICLE_FAST_SPIN] * t15;
+        const gic_real t23 = force[HMMWV_VEHICLE_TIRE_FX];
+        const gic_real t24 = force[HMMWV_VEHICLE_TIRE_FY];
+        const gic_real t25 = force[HMMWV_VEHICLE_TIRE_MX];
+        const gic_real t26 = force[HMMWV_VEHICLE_TIRE_MY];
+        const gic_real t27 = force[HMMWV_VEHICLE_TIRE_MZ];
+        const gic_real t28 = contact[HMMWV_VEHICLE_CONTACT_KAPPA];
+        const gic_real t29 = contact[HMMWV_VEHICLE_CONTACT_TANGENT];
+        const gic_real t30 = contact[HMMWV_VEHICLE_CONTACT_CAMBER];
+        rate[HMMWV_VEHICLE_FAST_BRAKE] = t6;
+        rate[HMMWV_VEHICLE_FAST_SPIN] = t21;
+        grip[HMMWV_VEHICLE_GRIP_FORCE_X] = t8;
+        grip[HMMWV_VEHICLE_GRIP_FORCE_Y] = t7;
+        grip[HMMWV_VEHICLE_GRIP_FORCE_Z] = t10;
+        grip[HMMWV_VEHICLE_GRIP_TORQUE_X] = t18;
+        grip[HMMWV_VEHICLE_GRIP_TORQUE_Y] = t19;
+        grip[HMMWV_VEHICLE_GRIP_TORQUE_Z] = t20;
+        grip[HMMWV_VEHICLE_GRIP_DRIVE] = R(0.0);
+        grip[HMMWV_VEHICLE_GRIP_BRAKE] = t14;
+        grip[HMMWV_VEHICLE_GRIP_POWER] = t22;
+        grip[HMMWV_VEHICLE_GRIP_FX] = t23;
+        grip[HMMWV_VEHICLE_GRIP_FY] = t24;
+        grip[HMMWV_VEHICLE_GRIP_MX] = t25;
+        grip[HMMWV_VEHICLE_GRIP_MY] = t26;
+        grip[HMMWV_VEHICLE_GRIP_MZ] = t27;
+        grip[HMMWV_VEHICLE_GRIP_KAPPA] = t28;
+        grip[HMMWV_VEHICLE_GRIP_TANGENT] = t29;
+        grip[HMMWV_VEHICLE_GRIP_CAMBER] = t30;
     }
     return GIC_OK;
 }
 
-/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity (world);
- * then coordinates that formulas of wheels read. */
+/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity
+ * (world); then coordinates that formulas of wheels read. */
 static void hmmwv_vehicle_link_wheels(const hmmwv_vehicle *self, const gic_real *y, const gic_real *e, gic_real *link)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const m = self->motion;
@@ -1777,169 +2234,227 @@ static void hmmwv_vehicle_link_wheels(const hmmwv_vehicle *self, const gic_real 
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[0] * t3;
         const gic_real t5 = t2 + t4;
-        const gic_real t6 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t7 = m[152] + t6;
+        const gic_real t6 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t7 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t6;
         const gic_real t8 = e[1] + e[1];
         const gic_real t9 = e[2] * t8;
         const gic_real t10 = e[0] * t1;
         const gic_real t11 = t9 - t10;
-        const gic_real t12 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t13 = m[151] + t12;
+        const gic_real t12 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t13 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t12;
         const gic_real t14 = e[2] * t3;
         const gic_real t15 = e[3] * t1;
         const gic_real t16 = R(1.0) - (t14 + t15);
-        const gic_real t17 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
+        const gic_real t17 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997));
         const gic_real t18 = R(1.653405) + t17;
-        const gic_real t19 = y[0] + (t5 * t7 + (t11 * t13 + t16 * t18));
+        const gic_real t19 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t7 + (t11 * t13 + t16 * t18));
         const gic_real t20 = e[3] * t3;
         const gic_real t21 = e[0] * t8;
         const gic_real t22 = t20 - t21;
         const gic_real t23 = e[1] * t8;
         const gic_real t24 = R(1.0) - (t23 + t15);
         const gic_real t25 = t9 + t10;
-        const gic_real t26 = y[1] + (t22 * t7 + (t24 * t13 + t25 * t18));
+        const gic_real t26 = y[HMMWV_VEHICLE_STATE_R_Y] + (t22 * t7 + (t24 * t13 + t25 * t18));
         const gic_real t27 = R(1.0) - (t23 + t14);
         const gic_real t28 = t20 + t21;
         const gic_real t29 = t2 - t4;
-        const gic_real t30 = y[2] + (t27 * t7 + (t28 * t13 + t29 * t18));
-        const gic_real t31 = m[167] + (m[162] * t12 - m[163] * t17) + (y[14] * t13 - y[15] * t18);
-        const gic_real t32 = m[166] + (m[164] * t17 - m[162] * t6) + (y[16] * t18 - y[14] * t7);
-        const gic_real t33 = m[163] * t6 - m[164] * t12 + (y[15] * t7 - y[16] * t13);
-        const gic_real t34 = y[11] + (t5 * t31 + (t11 * t32 + t16 * t33));
-        const gic_real t35 = y[12] + (t22 * t31 + (t24 * t32 + t25 * t33));
-        const gic_real t36 = y[13] + (t27 * t31 + (t28 * t32 + t29 * t33));
-        const gic_real t37 = m[164] + y[16];
-        const gic_real t38 = m[163] + y[15];
-        const gic_real t39 = m[162] + y[14];
-        const gic_real t40 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t41 = m[188] + t40;
-        const gic_real t42 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t43 = m[187] + t42;
-        const gic_real t44 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
+        const gic_real t30 = y[HMMWV_VEHICLE_STATE_R_Z] + (t27 * t7 + (t28 * t13 + t29 * t18));
+        const gic_real t31 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t12 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t17) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t13 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t18);
+        const gic_real t32 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t17 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t6) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t18 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t7);
+        const gic_real t33 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t6 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t12 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t7 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t13);
+        const gic_real t34 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t31 + (t11 * t32 + t16 * t33));
+        const gic_real t35 = y[HMMWV_VEHICLE_STATE_V_Y] + (t22 * t31 + (t24 * t32 + t25 * t33));
+        const gic_real t36 = y[HMMWV_VEHICLE_STATE_V_Z] + (t27 * t31 + (t28 * t32 + t29 * t33));
+        const gic_real t37 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] + y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t38 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t39 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t40 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t41 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t40;
+        const gic_real t42 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t42;
+        const gic_real t44 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997));
         const gic_real t45 = R(1.653405) + t44;
-        const gic_real t46 = y[0] + (t5 * t41 + (t11 * t43 + t16 * t45));
-        const gic_real t47 = y[1] + (t22 * t41 + (t24 * t43 + t25 * t45));
-        const gic_real t48 = y[2] + (t27 * t41 + (t28 * t43 + t29 * t45));
-        const gic_real t49 = m[203] + (m[198] * t42 - m[199] * t44) + (y[14] * t43 - y[15] * t45);
-        const gic_real t50 = m[202] + (m[200] * t44 - m[198] * t40) + (y[16] * t45 - y[14] * t41);
-        const gic_real t51 = m[199] * t40 - m[200] * t42 + (y[15] * t41 - y[16] * t43);
-        const gic_real t52 = y[11] + (t5 * t49 + (t11 * t50 + t16 * t51));
-        const gic_real t53 = y[12] + (t22 * t49 + (t24 * t50 + t25 * t51));
-        const gic_real t54 = y[13] + (t27 * t49 + (t28 * t50 + t29 * t51));
-        const gic_real t55 = m[200] + y[16];
-        const gic_real t56 = m[199] + y[15];
-        const gic_real t57 = m[198] + y[14];
-        const gic_real t58 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t59 = m[224] + t58;
-        const gic_real t60 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t61 = m[223] + t60;
+        const gic_real t46 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t41 + (t11 * t43 + t16 * t45));
+        const gic_real t47 = y[HMMWV_VEHICLE_STATE_R_Y] + (t22 * t41 + (t24 * t43 + t25 * t45));
+        const gic_real t48 = y[HMMWV_VEHICLE_STATE_R_Z] + (t27 * t41 + (t28 * t43 + t29 * t45));
+        const gic_real t49 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t42 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t44) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t43 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t45);
+        const gic_real t50 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t44 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t40) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t45 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t41);
+        const gic_real t51 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t40 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t42 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t41 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t43);
+        const gic_real t52 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t49 + (t11 * t50 + t16 * t51));
+        const gic_real t53 = y[HMMWV_VEHICLE_STATE_V_Y] + (t22 * t49 + (t24 * t50 + t25 * t51));
+        const gic_real t54 = y[HMMWV_VEHICLE_STATE_V_Z] + (t27 * t49 + (t28 * t50 + t29 * t51));
+        const gic_real t55 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] + y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t56 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t57 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t58 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t59 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t58;
+        const gic_real t60 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t61 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t60;
         const gic_real t62 = R(-1.653405) * t16;
         const gic_real t63 = R(-1.653405) * t25;
         const gic_real t64 = R(-1.653405) * t29;
-        const gic_real t65 = R(-1.653405) * y[15];
-        const gic_real t66 = m[239] + m[234] * t60 + (y[14] * t61 - t65);
-        const gic_real t67 = R(-1.653405) * y[16];
-        const gic_real t68 = m[238] - m[234] * t58 + (t67 - y[14] * t59);
-        const gic_real t69 = y[15] * t59 - y[16] * t61;
-        const gic_real t70 = y[11] + (t5 * t66 + (t11 * t68 + t16 * t69));
-        const gic_real t71 = y[12] + (t22 * t66 + (t24 * t68 + t25 * t69));
-        const gic_real t72 = y[13] + (t27 * t66 + (t28 * t68 + t29 * t69));
-        const gic_real t73 = y[16] * t5;
-        const gic_real t74 = y[15] * t11;
-        const gic_real t75 = m[234] + y[14];
-        const gic_real t76 = y[16] * t22;
-        const gic_real t77 = y[15] * t24;
-        const gic_real t78 = y[16] * t27;
-        const gic_real t79 = y[15] * t28;
-        const gic_real t80 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t81 = m[254] + t80;
-        const gic_real t82 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t83 = m[253] + t82;
-        const gic_real t84 = m[269] + m[264] * t82 + (y[14] * t83 - t65);
-        const gic_real t85 = m[268] - m[264] * t80 + (t67 - y[14] * t81);
-        const gic_real t86 = y[15] * t81 - y[16] * t83;
-        const gic_real t87 = y[11] + (t5 * t84 + (t11 * t85 + t16 * t86));
-        const gic_real t88 = y[12] + (t22 * t84 + (t24 * t85 + t25 * t86));
-        const gic_real t89 = y[13] + (t27 * t84 + (t28 * t85 + t29 * t86));
-        const gic_real t90 = m[264] + y[14];
-        const gic_real t91 = m[160] * t5 + (m[157] * t11 + m[154] * t16);
-        const gic_real t92 = m[160] * t22 + (m[157] * t24 + m[154] * t25);
-        const gic_real t93 = m[160] * t27 + (m[157] * t28 + m[154] * t29);
+        const gic_real t65 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t66 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t60 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t61 -
+            t65);
+        const gic_real t67 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t68 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t58 + (t67 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t59);
+        const gic_real t69 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t59 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t61;
+        const gic_real t70 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t66 + (t11 * t68 + t16 * t69));
+        const gic_real t71 = y[HMMWV_VEHICLE_STATE_V_Y] + (t22 * t66 + (t24 * t68 + t25 * t69));
+        const gic_real t72 = y[HMMWV_VEHICLE_STATE_V_Z] + (t27 * t66 + (t28 * t68 + t29 * t69));
+        const gic_real t73 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t5;
+        const gic_real t74 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t11;
+        const gic_real t75 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t76 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t22;
+        const gic_real t77 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t24;
+        const gic_real t78 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t27;
+        const gic_real t79 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t28;
+        const gic_real t80 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
+        const gic_real t81 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t80;
+        const gic_real t82 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
+        const gic_real t83 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t82;
+        const gic_real t84 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t82 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t83 -
+            t65);
+        const gic_real t85 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t80 + (t67 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t81);
+        const gic_real t86 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t81 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t83;
+        const gic_real t87 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t84 + (t11 * t85 + t16 * t86));
+        const gic_real t88 = y[HMMWV_VEHICLE_STATE_V_Y] + (t22 * t84 + (t24 * t85 + t25 * t86));
+        const gic_real t89 = y[HMMWV_VEHICLE_STATE_V_Z] + (t27 * t84 + (t28 * t85 + t29 * t86));
+        const gic_real t90 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t91 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t5 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t11 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t16);
+        const gic_real t92 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t22 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t24 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t25);
+        const gic_real t93 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t27 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t28 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t29);
         const gic_real t94 = t5 * t37 + (t11 * t38 + t16 * t39);
         const gic_real t95 = t22 * t37 + (t24 * t38 + t25 * t39);
         const gic_real t96 = t27 * t37 + (t28 * t38 + t29 * t39);
-        const gic_real t97 = m[196] * t5 + (m[193] * t11 + m[190] * t16);
-        const gic_real t98 = m[196] * t22 + (m[193] * t24 + m[190] * t25);
-        const gic_real t99 = m[196] * t27 + (m[193] * t28 + m[190] * t29);
+        const gic_real t97 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t5 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t11 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t16);
+        const gic_real t98 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t22 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t24 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t25);
+        const gic_real t99 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t27 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t28 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t29);
         const gic_real t100 = t5 * t55 + (t11 * t56 + t16 * t57);
         const gic_real t101 = t22 * t55 + (t24 * t56 + t25 * t57);
         const gic_real t102 = t27 * t55 + (t28 * t56 + t29 * t57);
-        const gic_real t103 = y[0] + (t5 * t59 + (t11 * t61 + t62));
-        const gic_real t104 = y[1] + (t22 * t59 + (t24 * t61 + t63));
-        const gic_real t105 = y[2] + (t27 * t59 + (t28 * t61 + t64));
-        const gic_real t106 = m[232] * t5 + m[229] * t11;
-        const gic_real t107 = m[232] * t22 + m[229] * t24;
-        const gic_real t108 = m[232] * t27 + m[229] * t28;
+        const gic_real t103 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t59 + (t11 * t61 + t62));
+        const gic_real t104 = y[HMMWV_VEHICLE_STATE_R_Y] + (t22 * t59 + (t24 * t61 + t63));
+        const gic_real t105 = y[HMMWV_VEHICLE_STATE_R_Z] + (t27 * t59 + (t28 * t61 + t64));
+        const gic_real t106 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t5 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t11;
+        const gic_real t107 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t22 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t24;
+        const gic_real t108 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t27 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t28;
         const gic_real t109 = t73 + (t74 + t16 * t75);
         const gic_real t110 = t76 + (t77 + t25 * t75);
         const gic_real t111 = t78 + (t79 + t29 * t75);
-        const gic_real t112 = y[0] + (t5 * t81 + (t62 + t11 * t83));
-        const gic_real t113 = y[1] + (t22 * t81 + (t63 + t24 * t83));
-        const gic_real t114 = y[2] + (t27 * t81 + (t64 + t28 * t83));
-        const gic_real t115 = m[262] * t5 + m[259] * t11;
-        const gic_real t116 = m[262] * t22 + m[259] * t24;
-        const gic_real t117 = m[262] * t27 + m[259] * t28;
+        const gic_real t112 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t81 + (t62 + t11 * t83));
+        const gic_real t113 = y[HMMWV_VEHICLE_STATE_R_Y] + (t22 * t81 + (t63 + t24 * t83));
+        const gic_real t114 = y[HMMWV_VEHICLE_STATE_R_Z] + (t27 * t81 + (t64 + t28 * t83));
+        const gic_real t115 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t5 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t11;
+        const gic_real t116 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t22 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t24;
+        const gic_real t117 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t27 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t28;
         const gic_real t118 = t73 + (t74 + t16 * t90);
         const gic_real t119 = t76 + (t77 + t25 * t90);
         const gic_real t120 = t78 + (t79 + t29 * t90);
-        link[0] = t19;
-        link[1] = t26;
-        link[2] = t30;
-        link[3] = t34;
-        link[4] = t35;
-        link[5] = t36;
-        link[6] = t91;
-        link[7] = t92;
-        link[8] = t93;
-        link[9] = t94;
-        link[10] = t95;
-        link[11] = t96;
-        link[12] = t46;
-        link[13] = t47;
-        link[14] = t48;
-        link[15] = t52;
-        link[16] = t53;
-        link[17] = t54;
-        link[18] = t97;
-        link[19] = t98;
-        link[20] = t99;
-        link[21] = t100;
-        link[22] = t101;
-        link[23] = t102;
-        link[24] = t103;
-        link[25] = t104;
-        link[26] = t105;
-        link[27] = t70;
-        link[28] = t71;
-        link[29] = t72;
-        link[30] = t106;
-        link[31] = t107;
-        link[32] = t108;
-        link[33] = t109;
-        link[34] = t110;
-        link[35] = t111;
-        link[36] = t112;
-        link[37] = t113;
-        link[38] = t114;
-        link[39] = t87;
-        link[40] = t88;
-        link[41] = t89;
-        link[42] = t115;
-        link[43] = t116;
-        link[44] = t117;
-        link[45] = t118;
-        link[46] = t119;
-        link[47] = t120;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_C_X] = t19;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_C_Y] = t26;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_C_Z] = t30;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_V_X] = t34;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_V_Y] = t35;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_V_Z] = t36;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_S_X] = t91;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_S_Y] = t92;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_S_Z] = t93;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_OMEGA_X] = t94;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_OMEGA_Y] = t95;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_L + HMMWV_VEHICLE_LINK_OMEGA_Z] = t96;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_C_X] = t46;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_C_Y] = t47;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_C_Z] = t48;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_V_X] = t52;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_V_Y] = t53;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_V_Z] = t54;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_S_X] = t97;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_S_Y] = t98;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_S_Z] = t99;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_OMEGA_X] = t100;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_OMEGA_Y] = t101;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_F_R + HMMWV_VEHICLE_LINK_OMEGA_Z] = t102;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_C_X] = t103;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_C_Y] = t104;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_C_Z] = t105;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_V_X] = t70;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_V_Y] = t71;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_V_Z] = t72;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_S_X] = t106;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_S_Y] = t107;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_S_Z] = t108;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_OMEGA_X] = t109;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_OMEGA_Y] = t110;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_L + HMMWV_VEHICLE_LINK_OMEGA_Z] = t111;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_C_X] = t112;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_C_Y] = t113;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_C_Z] = t114;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_V_X] = t87;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_V_Y] = t88;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_V_Z] = t89;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_S_X] = t115;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_S_Y] = t116;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_S_Z] = t117;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_OMEGA_X] = t118;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_OMEGA_Y] = t119;
+        link[HMMWV_VEHICLE_LINK_OF_TIRE_R_R + HMMWV_VEHICLE_LINK_OMEGA_Z] = t120;
     }
 }
 
@@ -1970,7 +2485,8 @@ static int hmmwv_vehicle_engage(const hmmwv_vehicle *self, gic_real gear[5])
 }
 
 /* What it makes of the wheels' own rates: rate[] of the fast states, self->grip and self->watch. */
-static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
+static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast,
+    gic_real *rate)
 {
     const gic_real *const u = self->input, *const p = self->parameter;
     gic_real *const grip = self->grip, *const watch = self->watch, gear[5];
@@ -1979,27 +2495,35 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
     if (status != GIC_OK)
         return status;
     {
-        const gic_real t1 = GIC_MIN(GIC_MAX(fast[17] * R(3.3333333333333335), R(0.0)), R(1.0));
+        const gic_real t1 = GIC_MIN(GIC_MAX(fast[(int)HMMWV_VEHICLE_STATE_TRANSMISSION_AGE - HMMWV_VEHICLE_SLOW] *
+            R(3.3333333333333335), R(0.0)), R(1.0));
         const gic_real t2 = (R(3.0) - (t1 + t1)) * (t1 * t1);
-        const gic_real t3 = gear[2] + t2 * (gear[1] - gear[2]);
-        const gic_real t4 = (fast[0] * R(2.5) + fast[4] * R(2.5)) * R(0.5) + (fast[8] * R(2.5) + fast[12] * R(2.5)) * R(0.5);
+        const gic_real t3 = gear[HMMWV_VEHICLE_GEAR_RATIO_BEFORE] + t2 * (gear[HMMWV_VEHICLE_GEAR_RATIO] -
+            gear[HMMWV_VEHICLE_GEAR_RATIO_BEFORE]);
+        const gic_real t4 = (fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5) +
+            fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5)) * R(0.5) +
+            (fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5) +
+            fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5)) * R(0.5);
         const gic_real t5 = t4 * t3;
-        const gic_real t6 = t5 - fast[16];
-        const gic_real t7 = (t6 > GIC_R(0) ? t5 : fast[16]);
-        const gic_real t8 = GIC_MAX((t6 > GIC_R(0) ? fast[16] : t5), R(0.0)) / GIC_MAX(t7, R(1.0));
+        const gic_real t6 = t5 - fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW];
+        const gic_real t7 = (t6 > GIC_R(0) ? t5 : fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW]);
+        const gic_real t8 = GIC_MAX((t6 > GIC_R(0) ? fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW] :
+            t5), R(0.0)) / GIC_MAX(t7, R(1.0));
         const gic_real t9 = t7 / gic_table_value(&hmmwv_vehicle_table[2], t8);
-        const gic_real t10 = (gear[4] + t2 * (gear[3] - gear[4])) * (t9 * t9) * GIC_MIN(R(1.0), (R(1.0) - t8) * R(20.0));
+        const gic_real t10 = (gear[HMMWV_VEHICLE_GEAR_ENGAGED_BEFORE] + t2 * (gear[HMMWV_VEHICLE_GEAR_ENGAGED] -
+            gear[HMMWV_VEHICLE_GEAR_ENGAGED_BEFORE])) * (t9 * t9) * GIC_MIN(R(1.0), (R(1.0) - t8) * R(20.0));
         const gic_real t11 = -t10;
         const gic_real t12 = (t6 > GIC_R(0) ? t11 : t10 * gic_table_value(&hmmwv_vehicle_table[3], t8));
         const gic_real t13 = t3 * t12 * R(1.25);
-        const gic_real t14 = t13 + R(7.78782) * rate[0];
+        const gic_real t14 = t13 + R(7.78782) * rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW];
         const gic_real t15 = t3 * t3 * R(0.46875);
         const gic_real t16 = t15 + R(11.69407);
         const gic_real t17 = R(1.0) / t16;
         const gic_real t18 = t15 + R(3.90625);
         const gic_real t19 = t18 * t17;
         const gic_real t20 = R(1.0) / (t16 - t18 * t19);
-        const gic_real t21 = t13 + R(7.78782) * rate[4] - t14 * t19;
+        const gic_real t21 = t13 + R(7.78782) * rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW] -
+            t14 * t19;
         const gic_real t22 = t15 + R(0.78125);
         const gic_real t23 = t22 - t22 * t19;
         const gic_real t24 = t23 * t20;
@@ -2010,92 +2534,114 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
         const gic_real t29 = R(1.0) / t28;
         const gic_real t30 = t14 * t25;
         const gic_real t31 = t24 * t21;
-        const gic_real t32 = t13 + R(7.78782) * rate[8] - t30 - t31;
+        const gic_real t32 = t13 + R(7.78782) * rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW] -
+            t30 - t31;
         const gic_real t33 = t18 - t26 - t27;
         const gic_real t34 = t33 * t29;
-        const gic_real t35 = t13 + R(7.78782) * rate[12] - t30 - t31 - t34 * t32;
+        const gic_real t35 = t13 + R(7.78782) * rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW] -
+            t30 - t31 - t34 * t32;
         const gic_real t36 = R(1.0) / (t28 - t33 * t34) * t35;
         const gic_real t37 = t29 * t32 - t34 * t36;
         const gic_real t38 = t20 * t21 - t24 * t37 - t24 * t36;
         const gic_real t39 = t14 * t17 - t19 * t38 - t25 * t37 - t25 * t36;
-        const gic_real t40 = GIC_MIN(GIC_MAX(fast[16], R(0.0)), R(1.0));
-        const gic_real t41 = GIC_MIN(GIC_MAX((R(282.7433388230814) - fast[16]) * R(0.07073553026306459), R(0.0)), R(1.0));
-        const gic_real t42 = GIC_MIN(GIC_MAX(GIC_MAX(u[4], (R(83.7758040957278) - fast[16]) * R(0.05968310365946076)), R(0.0)), R(1.0)) * ((R(3.0) - (t41 + t41)) * (t41 * t41));
-        const gic_real t43 = fast[16] * R(9.549296585513721);
-        const gic_real t44 = t42 * gic_table_value(&hmmwv_vehicle_table[0], t43) + gic_table_value(&hmmwv_vehicle_table[1], t43);
+        const gic_real t40 = GIC_MIN(GIC_MAX(fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW], R(0.0)),
+            R(1.0));
+        const gic_real t41 = GIC_MIN(GIC_MAX((R(282.7433388230814) -
+            fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW]) * R(0.07073553026306459), R(0.0)),
+            R(1.0));
+        const gic_real t42 = GIC_MIN(GIC_MAX(GIC_MAX(u[HMMWV_VEHICLE_INPUT_ACCELERATOR], (R(83.7758040957278) -
+            fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW]) * R(0.05968310365946076)), R(0.0)),
+            R(1.0)) * ((R(3.0) - (t41 + t41)) * (t41 * t41));
+        const gic_real t43 = fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW] * R(9.549296585513721);
+        const gic_real t44 = t42 * gic_table_value(&hmmwv_vehicle_table[0], t43) +
+            gic_table_value(&hmmwv_vehicle_table[1], t43);
         const gic_real t45 = (R(3.0) - (t40 + t40)) * (t40 * t40) * GIC_MIN(t44, R(0.0));
         const gic_real t46 = t45 + GIC_MAX(t44, R(0.0));
         const gic_real t47 = (t6 > GIC_R(0) ? t11 : t10);
-        const gic_real t48 = R(7.78782) * (t39 - rate[0]);
-        const gic_real t49 = fast[0] * (R(7.78782) * t39);
-        const gic_real t50 = R(7.78782) * (t38 - rate[4]);
-        const gic_real t51 = fast[4] * (R(7.78782) * t38);
-        const gic_real t52 = R(7.78782) * (t37 - rate[8]);
-        const gic_real t53 = fast[8] * (R(7.78782) * t37);
-        const gic_real t54 = R(7.78782) * (t36 - rate[12]);
-        const gic_real t55 = fast[12] * (R(7.78782) * t36);
+        const gic_real t48 = R(7.78782) * (t39 - rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW]);
+        const gic_real t49 = fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW] * (R(7.78782) * t39);
+        const gic_real t50 = R(7.78782) * (t38 - rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW]);
+        const gic_real t51 = fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW] * (R(7.78782) * t38);
+        const gic_real t52 = R(7.78782) * (t37 - rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW]);
+        const gic_real t53 = fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW] * (R(7.78782) * t37);
+        const gic_real t54 = R(7.78782) * (t36 - rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW]);
+        const gic_real t55 = fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW] * (R(7.78782) * t36);
         const gic_real t56 = (t46 - t47) * R(0.625);
-        const gic_real t57 = fast[16];
-        const gic_real t58 = gear[0];
-        rate[0] = t39;
-        grip[6] = t48;
-        grip[26] = t49;
-        rate[4] = t38;
-        grip[33] = t50;
-        grip[53] = t51;
-        rate[8] = t37;
-        grip[60] = t52;
-        grip[80] = t53;
-        rate[12] = t36;
-        grip[87] = t54;
-        grip[107] = t55;
-        rate[16] = t56;
-        rate[17] = R(1.0);
-        watch[0] = t57;
-        watch[1] = t46;
-        watch[2] = t42;
-        watch[3] = t58;
-        watch[4] = t3;
-        watch[5] = t5;
-        watch[6] = t12;
-        watch[7] = t47;
+        const gic_real t57 = fast[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW];
+        const gic_real t58 = gear[HMMWV_VEHICLE_GEAR_NUMBER];
+        rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW] = t39;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] = t48;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POWER] = t49;
+        rate[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW] = t38;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE] = t50;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POWER] = t51;
+        rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW] = t37;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE] = t52;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POWER] = t53;
+        rate[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW] = t36;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE] = t54;
+        grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POWER] = t55;
+        rate[(int)HMMWV_VEHICLE_STATE_ENGINE_SPEED - HMMWV_VEHICLE_SLOW] = t56;
+        rate[(int)HMMWV_VEHICLE_STATE_TRANSMISSION_AGE - HMMWV_VEHICLE_SLOW] = R(1.0);
+        watch[HMMWV_VEHICLE_WATCH_ENGINE_SPEED] = t57;
+        watch[HMMWV_VEHICLE_WATCH_ENGINE_TORQUE] = t46;
+        watch[HMMWV_VEHICLE_WATCH_THROTTLE] = t42;
+        watch[HMMWV_VEHICLE_WATCH_GEAR] = t58;
+        watch[HMMWV_VEHICLE_WATCH_RATIO] = t3;
+        watch[HMMWV_VEHICLE_WATCH_TURBINE_SPEED] = t5;
+        watch[HMMWV_VEHICLE_WATCH_TURBINE_TORQUE] = t12;
+        watch[HMMWV_VEHICLE_WATCH_PUMP_TORQUE] = t47;
     }
     return GIC_OK;
 }
 
 /* All wheels at their links: rate[] of the fast states, and self->grip. */
-static int hmmwv_vehicle_grip(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
+static int hmmwv_vehicle_grip(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast,
+    gic_real *rate)
 {
     const gic_real *const u = self->input, *const p = self->parameter;
     gic_real *const grip = self->grip, torque[2 * HMMWV_VEHICLE_ROLLING];
     int status = GIC_OK;
     (void)u, (void)p;
     {
-        const gic_real t1 = R(4000.0) * u[3];
-        torque[0] = R(0.0);
-        torque[1] = t1;
-        torque[2] = R(0.0);
-        torque[3] = t1;
-        torque[4] = R(0.0);
-        torque[5] = t1;
-        torque[6] = R(0.0);
-        torque[7] = t1;
+        const gic_real t1 = R(4000.0) * u[HMMWV_VEHICLE_INPUT_BRAKE];
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_F_L + HMMWV_VEHICLE_TORQUE_DRIVE] = R(0.0);
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_F_L + HMMWV_VEHICLE_TORQUE_BRAKE] = t1;
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_F_R + HMMWV_VEHICLE_TORQUE_DRIVE] = R(0.0);
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_F_R + HMMWV_VEHICLE_TORQUE_BRAKE] = t1;
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_R_L + HMMWV_VEHICLE_TORQUE_DRIVE] = R(0.0);
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_R_L + HMMWV_VEHICLE_TORQUE_BRAKE] = t1;
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_R_R + HMMWV_VEHICLE_TORQUE_DRIVE] = R(0.0);
+        torque[HMMWV_VEHICLE_TORQUE_OF_TIRE_R_R + HMMWV_VEHICLE_TORQUE_BRAKE] = t1;
     }
     if (status == GIC_OK) /* tire_f_l */
-        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[0], time, link + 0, fast + 0, torque + 0, rate + 0, grip + 0);
+        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[0], time, link +
+            HMMWV_VEHICLE_LINK_OF_TIRE_F_L, fast + HMMWV_VEHICLE_FAST_OF_TIRE_F_L, torque +
+            HMMWV_VEHICLE_TORQUE_OF_TIRE_F_L, rate + HMMWV_VEHICLE_FAST_OF_TIRE_F_L, grip +
+            HMMWV_VEHICLE_GRIP_OF_TIRE_F_L);
     if (status == GIC_OK) /* tire_f_r */
-        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[1], time, link + 12, fast + 4, torque + 2, rate + 4, grip + 27);
+        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[1], time, link +
+            HMMWV_VEHICLE_LINK_OF_TIRE_F_R, fast + HMMWV_VEHICLE_FAST_OF_TIRE_F_R, torque +
+            HMMWV_VEHICLE_TORQUE_OF_TIRE_F_R, rate + HMMWV_VEHICLE_FAST_OF_TIRE_F_R, grip +
+            HMMWV_VEHICLE_GRIP_OF_TIRE_F_R);
     if (status == GIC_OK) /* tire_r_l */
-        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[2], time, link + 24, fast + 8, torque + 4, rate + 8, grip + 54);
+        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[2], time, link +
+            HMMWV_VEHICLE_LINK_OF_TIRE_R_L, fast + HMMWV_VEHICLE_FAST_OF_TIRE_R_L, torque +
+            HMMWV_VEHICLE_TORQUE_OF_TIRE_R_L, rate + HMMWV_VEHICLE_FAST_OF_TIRE_R_L, grip +
+            HMMWV_VEHICLE_GRIP_OF_TIRE_R_L);
     if (status == GIC_OK) /* tire_r_r */
-        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[3], time, link + 36, fast + 12, torque + 6, rate + 12, grip + 81);
+        status = hmmwv_vehicle_wheel_tire_f_l(self, hmmwv_vehicle_k_wheel_tire_f_l[3], time, link +
+            HMMWV_VEHICLE_LINK_OF_TIRE_R_R, fast + HMMWV_VEHICLE_FAST_OF_TIRE_R_R, torque +
+            HMMWV_VEHICLE_TORQUE_OF_TIRE_R_R, rate + HMMWV_VEHICLE_FAST_OF_TIRE_R_R, grip +
+            HMMWV_VEHICLE_GRIP_OF_TIRE_R_R);
     if (status == GIC_OK)
         status = hmmwv_vehicle_drive(self, time, link, fast, rate);
     return status;
 }
 
 /* The wheels at a state of which the multibody system is recovered: rate[] of the fast states. */
-static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     gic_real link[HMMWV_VEHICLE_LINKS];
     if (!GIC_BOUNDED(y + HMMWV_VEHICLE_SLOW, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW))
@@ -2128,7 +2674,8 @@ static GIC_COLD int hmmwv_vehicle_about(hmmwv_vehicle *self, int status, int32_t
 
 /* Applied forces, composite inertia, and elimination of 10 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2138,54 +2685,116 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[91] + n[201];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 7] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 7];
         if (!(t1 > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, 4, 9);
-        const gic_real t2 = n[114] + n[224];
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, HMMWV_VEHICLE_SUBSET_LCA_R_L,
+                HMMWV_VEHICLE_STATE_SPRING_R_L);
+        const gic_real t2 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 7] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 7];
         if (!(t2 > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t3 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
-        const gic_real t4 = t3 + n[182] + n[205] + R(1173.18332588);
-        const gic_real t5 = n[87] + n[197];
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, HMMWV_VEHICLE_SUBSET_LCA_R_R,
+                HMMWV_VEHICLE_STATE_SPRING_R_R);
+        const gic_real t3 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_XX];
+        const gic_real t4 = t3 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_XX] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_XX] + R(1173.18332588);
+        const gic_real t5 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 3] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 3];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t6 = R(1.0) / t1;
         const gic_real t7 = t5 * t6;
-        const gic_real t8 = n[110] + n[220];
+        const gic_real t8 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 3] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 3];
         const gic_real t9 = R(1.0) / t2;
         const gic_real t10 = t8 * t9;
         const gic_real t11 = t4 - t5 * t7 - t8 * t10;
         if (!(t11 - t4 * R(1e-06) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 14);
-        const gic_real t12 = R(0.4919654879999992) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
-        const gic_real t13 = t12 + n[181] + n[204] + R(444.42876000000007);
-        const gic_real t14 = n[85] + n[195];
-        const gic_real t15 = n[108] + n[218];
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_OMEGA_X);
+        const gic_real t12 = R(0.4919654879999992) + n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FIRST_Z];
+        const gic_real t13 = t12 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_FIRST_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_FIRST_Z] + R(444.42876000000007);
+        const gic_real t14 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 1] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 1];
+        const gic_real t15 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 1] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 1];
         const gic_real t16 = t13 + t14 * t7 + t15 * t10;
-        const gic_real t17 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t18 = n[88] + n[198];
-        const gic_real t19 = n[111] + n[221];
-        const gic_real t20 = t17 + n[185] + n[208] - t18 * t7 - t19 * t10;
+        const gic_real t17 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_XY];
+        const gic_real t18 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 4] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 4];
+        const gic_real t19 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 4] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 4];
+        const gic_real t20 = t17 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_XY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_XY] - t18 * t7 - t19 * t10;
         const gic_real t21 = R(1.0) / t11;
         const gic_real t22 = t20 * t21;
         const gic_real t23 = t18 * t6;
         const gic_real t24 = t19 * t9;
         const gic_real t25 = t16 * t22 - (t14 * t23 + t15 * t24);
-        const gic_real t26 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t27 = n[1] + n[24] + n[47] + n[70] + n[93] + n[116] + n[148];
-        const gic_real t28 = t27 + n[180] + n[203];
+        const gic_real t26 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_YZ];
+        const gic_real t27 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FIRST_Y];
+        const gic_real t28 = t27 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_FIRST_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_FIRST_Y];
         const gic_real t29 = t13 * R(0.00039159296886992533);
-        const gic_real t30 = n[89] + n[199];
-        const gic_real t31 = t26 + n[187] + n[210] + t28 * t29 - t30 * t23;
-        const gic_real t32 = n[112] + n[222];
-        const gic_real t33 = R(-0.7077651653802228) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t34 = t33 + n[186] + n[209] + R(-24.88801056) - t30 * t7 - t32 * t10;
+        const gic_real t30 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 5] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 5];
+        const gic_real t31 = t26 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_YZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_YZ] + t28 * t29 - t30 * t23;
+        const gic_real t32 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 5] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 5];
+        const gic_real t33 = R(-0.7077651653802228) + n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_XZ];
+        const gic_real t34 = t33 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_XZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_XZ] + R(-24.88801056) - t30 * t7 - t32 * t10;
         const gic_real t35 = t31 - t32 * t24 - t34 * t22;
-        const gic_real t36 = R(-286.39676489400006) + n[115] + n[147] + R(116.84512);
+        const gic_real t36 = R(-286.39676489400006) + n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FIRST_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FIRST_X] + R(116.84512);
         const gic_real t37 = t30 * t6;
         const gic_real t38 = t32 * t9;
         const gic_real t39 = t34 * t21;
         const gic_real t40 = t36 - t14 * t37 - t15 * t38 + t16 * t39;
-        const gic_real t41 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
-        const gic_real t42 = t41 + n[184] + n[207] + R(3576.74332672);
+        const gic_real t41 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_ZZ];
+        const gic_real t42 = t41 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_ZZ] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_ZZ] + R(3576.74332672);
         const gic_real t43 = t28 * R(0.00039159296886992533);
         const gic_real t44 = t42 - t28 * t43 - t30 * t37 - t32 * t38;
         const gic_real t45 = t44 - t34 * t39;
@@ -2195,8 +2804,14 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         const gic_real t49 = t16 * t21;
         const gic_real t50 = R(2553.672) - t14 * t47 - t15 * t48 - t16 * t49;
         const gic_real t51 = t25 * t40 - t35 * t50;
-        const gic_real t52 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
-        const gic_real t53 = t52 + n[183] + n[206] + R(3056.8666525999997);
+        const gic_real t52 = R(19.803070388473838) + n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_SECOND_YY];
+        const gic_real t53 = t52 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_SECOND_YY] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_SECOND_YY] + R(3056.8666525999997);
         const gic_real t54 = t53 - t13 * t29 - t18 * t23 - t19 * t24;
         const gic_real t55 = t54 - t20 * t22;
         const gic_real t56 = t45 * t50 - t40 * t40;
@@ -2204,17 +2819,19 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         const gic_real t58 = t55 * t45;
         const gic_real t59 = t58 - t35 * t35;
         if (!(t57 - t59 * R(0.002553672) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 12);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_V_Y);
         const gic_real t60 = t55 * t50 - t25 * t25;
         if (!(t57 - R(1e-06) * (t42 * t60) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 16);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_OMEGA_Z);
         if (!(t57 - R(1e-06) * (t53 * t56) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 15);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_OMEGA_Y);
         if (!(t57 - R(1e-06) * (t50 * t58) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t61 = n[86] + n[196];
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_OMEGA_Y);
+        const gic_real t61 = n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 2] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 2];
         const gic_real t62 = t61 * t6;
-        const gic_real t63 = n[109] + n[219];
+        const gic_real t63 = n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 2] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 2];
         const gic_real t64 = t63 * t9;
         const gic_real t65 = t28 - t61 * t7 - t63 * t10;
         const gic_real t66 = t65 * t21;
@@ -2229,55 +2846,79 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         const gic_real t75 = t69 * t72 - (t70 * t51 + t71 * t60);
         const gic_real t76 = t68 * (t69 * t73 - (t70 * t74 + t71 * t75));
         const gic_real t77 = t67 - t76;
-        const gic_real t78 = n[45] + n[146];
-        const gic_real t79 = n[137] * R(0.00039159296886992533);
-        const gic_real t80 = n[41] + n[140];
+        const gic_real t78 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 7] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 16];
+        const gic_real t79 = n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 7] *
+            R(0.00039159296886992533);
+        const gic_real t80 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 3] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 10];
         const gic_real t81 = t80 * t21;
-        const gic_real t82 = n[42] + n[141] - n[137] * t29 - t80 * t22;
-        const gic_real t83 = n[43] + n[142] + n[137] * t43 - t80 * t39;
-        const gic_real t84 = n[39] + n[138] + t80 * t49;
+        const gic_real t82 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 4] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 11] -
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 7] * t29 - t80 * t22;
+        const gic_real t83 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 5] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 12] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 7] * t43 - t80 * t39;
+        const gic_real t84 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 1] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 8] + t80 * t49;
         const gic_real t85 = t82 * t56 + t83 * t51 + t84 * t46;
         const gic_real t86 = t82 * t51 + t83 * t60 + t84 * t72;
         const gic_real t87 = t82 * t46 + t83 * t72 + t84 * t59;
         const gic_real t88 = t68 * (t82 * t85 + t83 * t86 + t84 * t87);
-        const gic_real t89 = t78 - n[137] * t79 - t80 * t81 - t88;
-        const gic_real t90 = n[68] + n[178];
-        const gic_real t91 = n[169] * R(0.00039159296886992533);
-        const gic_real t92 = n[64] + n[172];
+        const gic_real t89 = t78 - n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 7] * t79 - t80 *
+            t81 - t88;
+        const gic_real t90 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 16];
+        const gic_real t91 = n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] *
+            R(0.00039159296886992533);
+        const gic_real t92 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 3] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 10];
         const gic_real t93 = t92 * t21;
-        const gic_real t94 = n[65] + n[173] - n[169] * t29 - t92 * t22;
-        const gic_real t95 = n[66] + n[174] + n[169] * t43 - t92 * t39;
-        const gic_real t96 = n[62] + n[170] + t92 * t49;
+        const gic_real t94 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 4] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 11] -
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] * t29 - t92 * t22;
+        const gic_real t95 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 5] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 12] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] * t43 - t92 * t39;
+        const gic_real t96 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 1] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 8] + t92 * t49;
         const gic_real t97 = t94 * t56 + t95 * t51 + t96 * t46;
         const gic_real t98 = t94 * t51 + t95 * t60 + t96 * t72;
         const gic_real t99 = t94 * t46 + t95 * t72 + t96 * t59;
         const gic_real t100 = t68 * (t94 * t97 + t95 * t98 + t96 * t99);
-        const gic_real t101 = t90 - n[169] * t91 - t92 * t93 - t100;
+        const gic_real t101 = t90 - n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] * t91 - t92 *
+            t93 - t100;
         const gic_real t102 = t68 * (t82 * t97 + t83 * t98 + t84 * t99);
-        const gic_real t103 = n[169] * t79 + t92 * t81 + t102;
+        const gic_real t103 = n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 7] * t79 + t92 * t81 +
+            t102;
         const gic_real t104 = t89 * t101 - t103 * t103;
         const gic_real t105 = t68 * (t69 * t87 - (t70 * t85 + t71 * t86));
-        const gic_real t106 = n[40] + n[139] - t80 * t66 - t105;
+        const gic_real t106 = n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 2] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 9] - t80 * t66 - t105;
         const gic_real t107 = t68 * (t69 * t99 - (t70 * t97 + t71 * t98));
-        const gic_real t108 = n[63] + n[171] - t92 * t66 - t107;
+        const gic_real t108 = n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 2] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 9] - t92 * t66 - t107;
         const gic_real t109 = t106 * t101 + t108 * t103;
         const gic_real t110 = t108 * t89 + t106 * t103;
         const gic_real t111 = t77 * t104 - t106 * t109 - t108 * t110;
         const gic_real t112 = t77 * t89;
         const gic_real t113 = t112 - t106 * t106;
         if (!(t111 - R(1e-06) * (t90 * t113) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, 3, 8);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, HMMWV_VEHICLE_SUBSET_LCA_F_R,
+                HMMWV_VEHICLE_STATE_SPRING_F_R);
         const gic_real t114 = t77 * t101 - t108 * t108;
         if (!(t111 - R(1e-06) * (t78 * t114) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, 2, 7);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, HMMWV_VEHICLE_SUBSET_LCA_F_L,
+                HMMWV_VEHICLE_STATE_SPRING_F_L);
         if (!(t111 - t104 * R(0.002553672) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 13);
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_V_Z);
         if (!(t111 - R(1e-06) * (t101 * t112) > R(0.0)))
-            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, 13);
-        const gic_real t115 = y[16] * R(0.5);
-        const gic_real t116 = y[15] * R(0.5);
-        const gic_real t117 = y[14] * R(0.5);
-        const gic_real t118 = -(e[3] * t115 + (e[2] * t116 + e[1] * t117));
+            return hmmwv_vehicle_about(self, GIC_ERROR_MASS, -1, HMMWV_VEHICLE_STATE_V_Z);
+        /* rates of the state */
+        const gic_real t115 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t116 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t117 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t115 + (e[2] * t116 + e[1] * t117));
         const gic_real t119 = e[3] + e[3];
         const gic_real t120 = e[1] * t119;
         const gic_real t121 = e[2] + e[2];
@@ -2291,185 +2932,387 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
         const gic_real t129 = e[3] * t121;
         const gic_real t130 = e[0] * t125;
         const gic_real t131 = t129 - t130;
-        const gic_real t132 = t128 * self->grip[83] + (t131 * self->grip[82] + t123 * self->grip[81]);
-        const gic_real t133 = t128 * self->grip[56] + (t131 * self->grip[55] + t123 * self->grip[54]);
-        const gic_real t134 = t128 * self->grip[2] + (t131 * self->grip[1] + t123 * self->grip[0]);
-        const gic_real t135 = t128 * self->grip[29] + (t131 * self->grip[28] + t123 * self->grip[27]);
-        const gic_real t136 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t137 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
-        const gic_real t138 = y[15] * R(0.21300000000000002);
-        const gic_real t139 = t136 + n[190] + n[213] + R(2086.52) * (y[14] * t137 - y[15] * t138);
-        const gic_real t140 = t132 + (t133 + (t134 + t135)) - t139 - (n[132] + n[164]) * u[2];
-        const gic_real t141 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        /* wheel tire_r_r */
+        const gic_real t132 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        /* wheel tire_r_l */
+        const gic_real t133 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        /* wheel tire_f_l */
+        const gic_real t134 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        /* wheel tire_f_r */
+        const gic_real t135 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t136 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FORCE_Z];
+        const gic_real t137 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(0.21300000000000002);
+        const gic_real t138 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002);
+        const gic_real t139 = t136 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_FORCE_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_FORCE_Z] + R(2086.52) *
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t137 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t138);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
+        const gic_real t140 = t132 + (t133 + (t134 + t135)) - t139 -
+            (n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 2] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 2]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        /* force stop_r_l */
+        const gic_real t141 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L], R(0.0));
         const gic_real t142 = GIC_MIN(R(100.0) * t141, R(1.0));
-        const gic_real t143 = xd[2] * (R(5000.0) * ((R(3.0) - (t142 + t142)) * (t142 * t142)));
-        const gic_real t144 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        const gic_real t143 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t142 + t142)) * (t142 * t142)));
+        const gic_real t144 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34), R(0.0));
         const gic_real t145 = GIC_MIN(R(100.0) * t144, R(1.0));
-        const gic_real t146 = xd[2] * (R(5000.0) * ((R(3.0) - (t145 + t145)) * (t145 * t145)));
-        const gic_real t147 = GIC_MAX(R(400000.0) * t141 - t143, R(0.0)) - GIC_MAX(R(400000.0) * t144 + t146, R(0.0));
+        const gic_real t146 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t145 + t145)) * (t145 * t145)));
+        const gic_real force_stop_r_l = GIC_MAX(R(400000.0) * t141 - t143, R(0.0)) - GIC_MAX(R(400000.0) * t144 + t146,
+            R(0.0));
         const gic_real t148 = t129 + t130;
         const gic_real t149 = e[3] * t119;
         const gic_real t150 = R(1.0) - (t126 + t149);
         const gic_real t151 = e[2] * t125;
         const gic_real t152 = e[0] * t119;
         const gic_real t153 = t151 - t152;
-        const gic_real t154 = t148 * self->grip[56] + (t150 * self->grip[55] + t153 * self->grip[54]);
+        const gic_real t154 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t155 = t120 - t122;
         const gic_real t156 = t151 + t152;
         const gic_real t157 = R(1.0) - (t127 + t149);
-        const gic_real t158 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t159 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t160 = t155 * self->grip[59] + (t156 * self->grip[58] + t157 * self->grip[57]) + (t158 * t133 - t159 * t154);
-        const gic_real t161 = t147 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)) + (m[251] * t133 + m[250] * t154 + m[246] * t160);
-        const gic_real t162 = t161 - (n[90] + n[200]);
-        const gic_real t163 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t158 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t159 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t160 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t158 * t133 - t159 * t154);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t161 = force_stop_r_l - ((x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.33727)) * R(369167.2) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * R(24780.4)) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] *
+            t133 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] * t154 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t160);
+        const gic_real t162 = t161 - (n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_COORDINATE + 6] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_COORDINATE + 6]);
+        /* force stop_r_r */
+        const gic_real t163 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R], R(0.0));
         const gic_real t164 = GIC_MIN(R(100.0) * t163, R(1.0));
-        const gic_real t165 = xd[3] * (R(5000.0) * ((R(3.0) - (t164 + t164)) * (t164 * t164)));
-        const gic_real t166 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        const gic_real t165 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t164 + t164)) * (t164 * t164)));
+        const gic_real t166 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34), R(0.0));
         const gic_real t167 = GIC_MIN(R(100.0) * t166, R(1.0));
-        const gic_real t168 = xd[3] * (R(5000.0) * ((R(3.0) - (t167 + t167)) * (t167 * t167)));
-        const gic_real t169 = GIC_MAX(R(400000.0) * t163 - t165, R(0.0)) - GIC_MAX(R(400000.0) * t166 + t168, R(0.0));
-        const gic_real t170 = t148 * self->grip[83] + (t150 * self->grip[82] + t153 * self->grip[81]);
-        const gic_real t171 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t172 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t173 = t155 * self->grip[86] + (t156 * self->grip[85] + t157 * self->grip[84]) + (t171 * t132 - t172 * t170);
-        const gic_real t174 = t169 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)) + (m[281] * t132 + m[280] * t170 + m[276] * t173);
-        const gic_real t175 = t174 - (n[113] + n[223]);
-        const gic_real t176 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t177 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t178 = t148 * self->grip[29] + (t150 * self->grip[28] + t153 * self->grip[27]);
-        const gic_real t179 = t155 * self->grip[32] + (t156 * self->grip[31] + t157 * self->grip[30]) + (t176 * t135 - t177 * t178);
-        const gic_real t180 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t181 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t182 = t148 * self->grip[2] + (t150 * self->grip[1] + t153 * self->grip[0]);
-        const gic_real t183 = t155 * self->grip[5] + (t156 * self->grip[4] + t157 * self->grip[3]) + (t180 * t134 - t181 * t182);
-        const gic_real t184 = m[151] * t134 - m[152] * t182 - (m[154] * self->grip[6] + m[190] * self->grip[33]);
-        const gic_real t185 = t179 + (t183 + t184 + (m[187] * t135 - m[188] * t178));
-        const gic_real t186 = t160 + (t185 + (m[223] * t133 - m[224] * t154)) + (m[253] * t132 - m[254] * t170);
-        const gic_real t187 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t188 = y[16] * R(3576.74332672) + y[14] * R(-24.88801056);
-        const gic_real t189 = y[15] * R(3056.8666525999997);
-        const gic_real t190 = t187 + n[191] + n[214] + (y[15] * t188 - y[16] * t189);
-        const gic_real t191 = t173 + t186 - t190 - (R(-0.4919654879999992) + n[133] + n[165]) * u[2];
+        const gic_real t168 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t167 + t167)) * (t167 * t167)));
+        const gic_real force_stop_r_r = GIC_MAX(R(400000.0) * t163 - t165, R(0.0)) - GIC_MAX(R(400000.0) * t166 + t168,
+            R(0.0));
+        const gic_real t170 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t171 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
+        const gic_real t172 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
+        const gic_real t173 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t171 * t132 - t172 * t170);
+        const gic_real t174 = force_stop_r_r - (R(369167.2) * (x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.33727)) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_R] * R(24780.4)) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] *
+            t132 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] * t170 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t173);
+        const gic_real t175 = t174 - (n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_COORDINATE + 6] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_COORDINATE + 6]);
+        const gic_real t176 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t177 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t178 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t179 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t176 * t135 - t177 * t178);
+        const gic_real t180 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t181 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t182 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t183 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t180 * t134 - t181 * t182);
+        const gic_real t184 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t134 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t182 -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]);
+        const gic_real t185 = t179 + (t183 + t184 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t135 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t178));
+        const gic_real t186 = t160 + (t185 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t133 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t154)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t132 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t170);
+        const gic_real t187 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_MOMENT_X];
+        const gic_real t188 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3576.74332672) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(-24.88801056);
+        const gic_real t189 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t190 = t187 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_MOMENT_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_MOMENT_X] + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t188 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t189);
+        const gic_real t191 = t173 + t186 - t190 - (R(-0.4919654879999992) +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 3] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 3]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        /* accelerations */
         const gic_real t192 = t191 - t162 * t7 - t175 * t10;
         const gic_real t193 = t140 - t162 * t62 - t175 * t64 - t66 * t192;
-        const gic_real t194 = t155 * self->grip[83] + (t156 * self->grip[82] + t157 * self->grip[81]);
-        const gic_real t195 = t148 * self->grip[86] + (t150 * self->grip[85] + t153 * self->grip[84]) + t172 * t194;
-        const gic_real t196 = t155 * self->grip[56] + (t156 * self->grip[55] + t157 * self->grip[54]);
-        const gic_real t197 = t148 * self->grip[59] + (t150 * self->grip[58] + t153 * self->grip[57]) + t159 * t196;
-        const gic_real t198 = t155 * self->grip[29] + (t156 * self->grip[28] + t157 * self->grip[27]);
-        const gic_real t199 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t200 = t148 * self->grip[32] + (t150 * self->grip[31] + t153 * self->grip[30]) + (t177 * t198 - t199 * t135);
-        const gic_real t201 = t155 * self->grip[2] + (t156 * self->grip[1] + t157 * self->grip[0]);
-        const gic_real t202 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t203 = t148 * self->grip[5] + (t150 * self->grip[4] + t153 * self->grip[3]) + (t181 * t201 - t202 * t134);
-        const gic_real t204 = m[157] * self->grip[6] + m[193] * self->grip[33] + m[229] * self->grip[60] + m[259] * self->grip[87];
-        const gic_real t205 = t203 + (m[152] * t201 - R(1.653405) * t134 - t204) + (m[188] * t198 - R(1.653405) * t135);
-        const gic_real t206 = t197 + (t200 + t205 + (m[224] * t196 - R(-1.653405) * t133));
-        const gic_real t207 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t208 = y[16] * R(-24.88801056) + y[14] * R(1173.18332588);
-        const gic_real t209 = t207 + n[192] + n[215] + (y[16] * t208 - y[14] * t188);
-        const gic_real t210 = t195 + (t206 + (m[254] * t194 - R(-1.653405) * t132)) - t209;
-        const gic_real t211 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t212 = y[15] * R(0.056);
-        const gic_real t213 = t211 + n[188] + n[211] - R(2086.52) * (y[16] * t137 + y[15] * t212);
-        const gic_real t214 = t194 + (t196 + (t201 + t198)) - t213 - (n[130] + n[162]) * u[2];
-        const gic_real t215 = t210 - (n[134] + n[166]) * u[2] - t214 * t29 - t162 * t23;
+        const gic_real t194 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t195 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + t172 * t194;
+        const gic_real t196 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t197 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + t159 * t196;
+        const gic_real t198 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t199 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t200 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t177 * t198 - t199 * t135);
+        const gic_real t201 = t155 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t156 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t157 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t202 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t203 = t148 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t150 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t153 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t181 * t201 - t202 * t134);
+        const gic_real t204 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t205 = t203 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t201 - R(1.653405) *
+            t134 - t204) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t198 - R(1.653405) * t135);
+        const gic_real t206 = t197 + (t200 + t205 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t196 -
+            R(-1.653405) * t133));
+        const gic_real t207 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_MOMENT_Y];
+        const gic_real t208 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(-24.88801056) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t209 = t207 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_MOMENT_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_MOMENT_Y] + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t208 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t188);
+        const gic_real t210 = t195 + (t206 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t194 -
+            R(-1.653405) * t132)) - t209;
+        const gic_real t211 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FORCE_X];
+        const gic_real t212 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t213 = t211 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_FORCE_X] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_FORCE_X] - R(2086.52) *
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t137 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t212);
+        const gic_real t214 = t194 + (t196 + (t201 + t198)) - t213 -
+            (n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 0] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 0]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t215 = t210 - (n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 4] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 4]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] - t214 * t29 - t162 * t23;
         const gic_real t216 = t215 - t175 * t24 - t22 * t192;
-        const gic_real t217 = t128 * self->grip[86] + (t131 * self->grip[85] + t123 * self->grip[84]) - t171 * t194;
-        const gic_real t218 = t128 * self->grip[59] + (t131 * self->grip[58] + t123 * self->grip[57]) - t158 * t196;
-        const gic_real t219 = t128 * self->grip[32] + (t131 * self->grip[31] + t123 * self->grip[30]) + (t199 * t178 - t176 * t198);
-        const gic_real t220 = t128 * self->grip[5] + (t131 * self->grip[4] + t123 * self->grip[3]) + (t202 * t182 - t180 * t201);
-        const gic_real t221 = m[160] * self->grip[6] + m[196] * self->grip[33] + m[232] * self->grip[60] + m[262] * self->grip[87];
-        const gic_real t222 = t220 + (R(1.653405) * t182 - m[151] * t201 - t221) + (R(1.653405) * t178 - m[187] * t198);
-        const gic_real t223 = t218 + (t219 + t222 + (R(-1.653405) * t154 - m[223] * t196));
-        const gic_real t224 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t225 = t224 + n[193] + n[216] + (y[14] * t189 - y[15] * t208);
-        const gic_real t226 = t217 + (t223 + (R(-1.653405) * t170 - m[253] * t194)) - t225;
-        const gic_real t227 = t226 - (R(13.051414655999999) + n[135] + n[167]) * u[2] + t214 * t43;
+        const gic_real t217 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) - t171 * t194;
+        const gic_real t218 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) - t158 * t196;
+        const gic_real t219 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t199 * t178 - t176 * t198);
+        const gic_real t220 = t128 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t131 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t123 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t202 * t182 - t180 * t201);
+        const gic_real t221 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t222 = t220 + (R(1.653405) * t182 - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] *
+            t201 - t221) + (R(1.653405) * t178 - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t198);
+        const gic_real t223 = t218 + (t219 + t222 + (R(-1.653405) * t154 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t196));
+        const gic_real t224 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_MOMENT_Z];
+        const gic_real t225 = t224 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_MOMENT_Z] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_MOMENT_Z] + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t189 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t208);
+        const gic_real t226 = t217 + (t223 + (R(-1.653405) * t170 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t194)) - t225;
+        const gic_real t227 = t226 - (R(13.051414655999999) +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 5] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 5]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] + t214 * t43;
         const gic_real t228 = t227 - t162 * t37 - t175 * t38 - t39 * t192;
-        const gic_real t229 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t230 = t229 + n[189] + n[212] + R(2086.52) * (y[14] * t212 + y[16] * t138);
-        const gic_real t231 = t170 + (t154 + (t182 + t178)) - t230 - (R(9.072) + n[131] + n[163]) * u[2];
+        const gic_real t229 = n[HMMWV_VEHICLE_INERTIA_RACK + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_L + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_LCA_R_R + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_FORCE_Y];
+        const gic_real t230 = t229 + n[HMMWV_VEHICLE_INERTIA_WHEEL_R_L + HMMWV_VEHICLE_I_FORCE_Y] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_R_R + HMMWV_VEHICLE_I_FORCE_Y] + R(2086.52) *
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t212 + y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t138);
+        const gic_real t231 = t170 + (t154 + (t182 + t178)) - t230 - (R(9.072) +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 1] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 1]) *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
         const gic_real t232 = t231 - t162 * t47 - t175 * t48 + t49 * t192;
         const gic_real t233 = t68 * (t74 * t216 + t75 * t228 + t73 * t232);
         const gic_real t234 = t193 - t233;
-        const gic_real t235 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        /* force stop_f_l */
+        const gic_real t235 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L], R(0.0));
         const gic_real t236 = GIC_MIN(R(100.0) * t235, R(1.0));
-        const gic_real t237 = xd[0] * (R(5000.0) * ((R(3.0) - (t236 + t236)) * (t236 * t236)));
-        const gic_real t238 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        const gic_real t237 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t236 + t236)) * (t236 * t236)));
+        const gic_real t238 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29), R(0.0));
         const gic_real t239 = GIC_MIN(t238 * R(100.0), R(1.0));
-        const gic_real t240 = xd[0] * ((R(3.0) - (t239 + t239)) * (t239 * t239) * R(5000.0));
-        const gic_real t241 = GIC_MAX(R(400000.0) * t235 - t237, R(0.0)) - GIC_MAX(t238 * R(400000.0) + t240, R(0.0));
-        const gic_real t242 = m[185] * t134 + m[184] * t182 + (m[182] * t220 + (m[181] * t203 + m[180] * t183));
-        const gic_real t243 = t241 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) + t242;
-        const gic_real t244 = t243 - (n[44] + n[143]) - n[145] * u[2] - t214 * t79;
+        const gic_real t240 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t239 + t239)) * (t239 * t239) * R(5000.0));
+        const gic_real force_stop_f_l = GIC_MAX(R(400000.0) * t235 - t237, R(0.0)) - GIC_MAX(t238 * R(400000.0) + t240,
+            R(0.0));
+        const gic_real t242 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] * t134 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] * t182 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t220 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t203 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t183));
+        const gic_real t243 = force_stop_f_l - ((x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.31903)) * R(167070.9) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_L] * R(17490.8)) + t242;
+        const gic_real t244 = t243 - (n[HMMWV_VEHICLE_INERTIA_LCA_F_L + HMMWV_VEHICLE_I_COORDINATE + 6] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 13]) -
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_L + HMMWV_VEHICLE_I_COORDINATE + 15] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] - t214 * t79;
         const gic_real t245 = t68 * (t85 * t216 + t86 * t228 + t87 * t232);
         const gic_real t246 = t244 - t81 * t192 - t245;
-        const gic_real t247 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        /* force stop_f_r */
+        const gic_real t247 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R], R(0.0));
         const gic_real t248 = GIC_MIN(R(100.0) * t247, R(1.0));
-        const gic_real t249 = xd[1] * (R(5000.0) * ((R(3.0) - (t248 + t248)) * (t248 * t248)));
-        const gic_real t250 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        const gic_real t249 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t248 + t248)) * (t248 * t248)));
+        const gic_real t250 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29), R(0.0));
         const gic_real t251 = GIC_MIN(R(100.0) * t250, R(1.0));
-        const gic_real t252 = xd[1] * (R(5000.0) * ((R(3.0) - (t251 + t251)) * (t251 * t251)));
-        const gic_real t253 = GIC_MAX(R(400000.0) * t247 - t249, R(0.0)) - GIC_MAX(R(400000.0) * t250 + t252, R(0.0));
-        const gic_real t254 = m[221] * t135 + m[220] * t178 + (m[218] * t219 + (m[217] * t200 + m[216] * t179));
-        const gic_real t255 = t253 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) + t254;
-        const gic_real t256 = t255 - (n[67] + n[175]) - n[177] * u[2] - t214 * t91;
+        const gic_real t252 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t251 + t251)) * (t251 * t251)));
+        const gic_real force_stop_f_r = GIC_MAX(R(400000.0) * t247 - t249, R(0.0)) - GIC_MAX(R(400000.0) * t250 + t252,
+            R(0.0));
+        const gic_real t254 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] * t135 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] * t178 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t219 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t200 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t179));
+        const gic_real t255 = force_stop_f_r - (R(167070.9) * (x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.31903)) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * R(17490.8)) + t254;
+        const gic_real t256 = t255 - (n[HMMWV_VEHICLE_INERTIA_LCA_F_R + HMMWV_VEHICLE_I_COORDINATE + 6] +
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 13]) -
+            n[HMMWV_VEHICLE_INERTIA_WHEEL_F_R + HMMWV_VEHICLE_I_COORDINATE + 15] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] - t214 * t91;
         const gic_real t257 = t68 * (t97 * t216 + t98 * t228 + t99 * t232);
         const gic_real t258 = t256 - t93 * t192 - t257;
         const gic_real t259 = t124 * (t104 * t234 - t109 * t246 - t110 * t258);
         const gic_real t260 = t46 * t216 + t72 * t228 + t59 * t232 - t73 * t259;
         const gic_real t261 = t77 * t103 + t106 * t108;
-        const gic_real t262 = t124 * (t114 * t246 - t109 * t234 + t261 * t258);
-        const gic_real t263 = t124 * (t261 * t246 - t110 * t234 + t113 * t258);
-        const gic_real t264 = t68 * (t260 - t87 * t262 - t99 * t263);
+        const gic_real rate_of_spring_f_l_rate = t124 * (t114 * t246 - t109 * t234 + t261 * t258);
+        const gic_real rate_of_spring_f_r_rate = t124 * (t261 * t246 - t110 * t234 + t113 * t258);
+        const gic_real t264 = t68 * (t260 - t87 * rate_of_spring_f_l_rate - t99 * rate_of_spring_f_r_rate);
         const gic_real t265 = t56 * t216 + t51 * t228 + t46 * t232 - t74 * t259;
-        const gic_real t266 = t68 * (t265 - t85 * t262 - t97 * t263);
+        const gic_real rate_of_omega_y = t68 * (t265 - t85 * rate_of_spring_f_l_rate - t97 * rate_of_spring_f_r_rate);
         const gic_real t267 = t51 * t216 + t60 * t228 + t72 * t232 - t75 * t259;
-        const gic_real t268 = t68 * (t267 - t86 * t262 - t98 * t263);
-        const gic_real t269 = t214 * R(0.00039159296886992533) - t29 * t266 + t43 * t268 - t79 * t262;
-        const gic_real t270 = t269 - t91 * t263;
-        const gic_real t271 = t21 * t192 - t22 * t266 - t39 * t268 + t49 * t264;
-        const gic_real t272 = t271 - t66 * t259 - t81 * t262 - t93 * t263;
-        const gic_real t273 = R(-9.81) + (t128 * t259 + (t148 * t264 + t155 * t270));
-        const gic_real t274 = t162 * t6 - t7 * t272 - t23 * t266 - t37 * t268;
-        const gic_real t275 = t175 * t9 - t10 * t272 - t24 * t266 - t38 * t268;
-        const gic_real t276 = y[11];
-        const gic_real t277 = y[12];
-        const gic_real t278 = y[13];
-        const gic_real t279 = e[2] * t115 - e[3] * t116 + e[0] * t117;
-        const gic_real t280 = e[3] * t117 - e[1] * t115 + e[0] * t116;
-        const gic_real t281 = e[1] * t116 - e[2] * t117 + e[0] * t115;
-        const gic_real t282 = t123 * t259 + (t153 * t264 + t157 * t270);
-        const gic_real t283 = t131 * t259 + (t150 * t264 + t156 * t270);
-        const gic_real t284 = xd[0];
-        const gic_real t285 = xd[1];
-        const gic_real t286 = xd[2];
-        const gic_real t287 = t274 - t47 * t264 - t62 * t259;
-        const gic_real t288 = xd[3];
-        const gic_real t289 = t275 - t48 * t264 - t64 * t259;
-        rate[0] = t276;
-        rate[1] = t277;
-        rate[2] = t278;
-        rate[3] = t118;
-        rate[4] = t279;
-        rate[5] = t280;
-        rate[6] = t281;
-        rate[11] = t282;
-        rate[14] = t272;
-        rate[12] = t283;
-        rate[15] = t266;
-        rate[13] = t273;
-        rate[16] = t268;
-        rate[7] = t284;
-        rate[17] = t262;
-        rate[8] = t285;
-        rate[18] = t263;
-        rate[9] = t286;
-        rate[19] = t287;
-        rate[10] = t288;
-        rate[20] = t289;
+        const gic_real rate_of_omega_z = t68 * (t267 - t86 * rate_of_spring_f_l_rate - t98 * rate_of_spring_f_r_rate);
+        const gic_real t269 = t214 * R(0.00039159296886992533) - t29 * rate_of_omega_y + t43 * rate_of_omega_z - t79 *
+            rate_of_spring_f_l_rate;
+        const gic_real t270 = t269 - t91 * rate_of_spring_f_r_rate;
+        const gic_real t271 = t21 * t192 - t22 * rate_of_omega_y - t39 * rate_of_omega_z + t49 * t264;
+        const gic_real rate_of_omega_x = t271 - t66 * t259 - t81 * rate_of_spring_f_l_rate - t93 *
+            rate_of_spring_f_r_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t128 * t259 + (t148 * t264 + t155 * t270));
+        const gic_real t274 = t162 * t6 - t7 * rate_of_omega_x - t23 * rate_of_omega_y - t37 * rate_of_omega_z;
+        const gic_real t275 = t175 * t9 - t10 * rate_of_omega_x - t24 * rate_of_omega_y - t38 * rate_of_omega_z;
+        const gic_real rate_of_r_x = y[HMMWV_VEHICLE_STATE_V_X];
+        const gic_real rate_of_r_y = y[HMMWV_VEHICLE_STATE_V_Y];
+        const gic_real rate_of_r_z = y[HMMWV_VEHICLE_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t115 - e[3] * t116 + e[0] * t117;
+        const gic_real rate_of_e2 = e[3] * t117 - e[1] * t115 + e[0] * t116;
+        const gic_real rate_of_e3 = e[1] * t116 - e[2] * t117 + e[0] * t115;
+        const gic_real rate_of_v_x = t123 * t259 + (t153 * t264 + t157 * t270);
+        const gic_real rate_of_v_y = t131 * t259 + (t150 * t264 + t156 * t270);
+        const gic_real rate_of_spring_f_l = xd[HMMWV_VEHICLE_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_r = xd[HMMWV_VEHICLE_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[HMMWV_VEHICLE_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_l_rate = t274 - t47 * t264 - t62 * t259;
+        const gic_real rate_of_spring_r_r = xd[HMMWV_VEHICLE_X_SPRING_R_R];
+        const gic_real rate_of_spring_r_r_rate = t275 - t48 * t264 - t64 * t259;
+        rate[HMMWV_VEHICLE_STATE_R_X] = rate_of_r_x;
+        rate[HMMWV_VEHICLE_STATE_R_Y] = rate_of_r_y;
+        rate[HMMWV_VEHICLE_STATE_R_Z] = rate_of_r_z;
+        rate[HMMWV_VEHICLE_STATE_E0] = rate_of_e0;
+        rate[HMMWV_VEHICLE_STATE_E1] = rate_of_e1;
+        rate[HMMWV_VEHICLE_STATE_E2] = rate_of_e2;
+        rate[HMMWV_VEHICLE_STATE_E3] = rate_of_e3;
+        rate[HMMWV_VEHICLE_STATE_V_X] = rate_of_v_x;
+        rate[HMMWV_VEHICLE_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[HMMWV_VEHICLE_STATE_V_Y] = rate_of_v_y;
+        rate[HMMWV_VEHICLE_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[HMMWV_VEHICLE_STATE_V_Z] = rate_of_v_z;
+        rate[HMMWV_VEHICLE_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[HMMWV_VEHICLE_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[HMMWV_VEHICLE_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[HMMWV_VEHICLE_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[HMMWV_VEHICLE_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -2481,8 +3324,8 @@ static GIC_APART int hmmwv_vehicle_dynamics(hmmwv_vehicle *self, gic_real time, 
     return GIC_OK;
 }
 
-static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2499,11 +3342,12 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[13] - R(-9.81);
+        const gic_real t10 = rate[HMMWV_VEHICLE_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = t9 * t10 + (t13 * rate[12] + t5 * rate[11]);
+        const gic_real t14 = t9 * t10 + (t13 * rate[HMMWV_VEHICLE_STATE_V_Y] + t5 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        /* output chassis_acceleration */
         const gic_real t15 = R(-9.81) * t9 + t14;
         const gic_real t16 = e[2] * t6;
         const gic_real t17 = e[0] * t1;
@@ -2511,699 +3355,1083 @@ static int hmmwv_vehicle_measure(const hmmwv_vehicle *self, gic_real time, const
         const gic_real t19 = t11 + t12;
         const gic_real t20 = e[3] * t1;
         const gic_real t21 = R(1.0) - (t7 + t20);
-        const gic_real t22 = t19 * t10 + (t21 * rate[12] + t18 * rate[11]);
+        const gic_real t22 = t19 * t10 + (t21 * rate[HMMWV_VEHICLE_STATE_V_Y] + t18 * rate[HMMWV_VEHICLE_STATE_V_X]);
         const gic_real t23 = R(-9.81) * t19 + t22;
         const gic_real t24 = R(1.0) - (t8 + t20);
         const gic_real t25 = t2 - t4;
         const gic_real t26 = t16 + t17;
-        const gic_real t27 = t25 * t10 + (t26 * rate[12] + t24 * rate[11]);
+        const gic_real t27 = t25 * t10 + (t26 * rate[HMMWV_VEHICLE_STATE_V_Y] + t24 * rate[HMMWV_VEHICLE_STATE_V_X]);
         const gic_real t28 = R(-9.81) * t25 + t27;
-        const gic_real t29 = m[159] * R(-0.004825999999999997);
-        const gic_real t30 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + t29);
-        const gic_real t31 = m[152] + t30;
-        const gic_real t32 = m[156] * R(-0.004825999999999997);
-        const gic_real t33 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + t32);
-        const gic_real t34 = m[151] + t33;
-        const gic_real t35 = m[153] * R(-0.004825999999999997);
-        const gic_real t36 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + t35);
+        /* wheel tire_f_l */
+        const gic_real t29 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t30 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) + t29);
+        const gic_real t31 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t30;
+        const gic_real t32 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t33 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) + t32);
+        const gic_real t34 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t33;
+        const gic_real t35 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) + t35);
         const gic_real t37 = R(1.653405) + t36;
-        const gic_real t38 = y[0] + (t5 * t31 + (t18 * t34 + t24 * t37));
-        const gic_real t39 = y[1] + (t13 * t31 + (t21 * t34 + t26 * t37));
-        const gic_real t40 = y[2] + (t9 * t31 + (t19 * t34 + t25 * t37));
-        const gic_real t41 = m[195] * R(-0.004825999999999997);
-        const gic_real t42 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + t41);
-        const gic_real t43 = m[188] + t42;
-        const gic_real t44 = m[192] * R(-0.004825999999999997);
-        const gic_real t45 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + t44);
-        const gic_real t46 = m[187] + t45;
-        const gic_real t47 = m[189] * R(-0.004825999999999997);
-        const gic_real t48 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + t47);
+        /* output wheel_f_l */
+        const gic_real output_wheel_f_l_x = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t31 + (t18 * t34 + t24 * t37));
+        const gic_real output_wheel_f_l_y = y[HMMWV_VEHICLE_STATE_R_Y] + (t13 * t31 + (t21 * t34 + t26 * t37));
+        const gic_real output_wheel_f_l_z = y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t31 + (t19 * t34 + t25 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t42 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) + t41);
+        const gic_real t43 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t42;
+        const gic_real t44 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t45 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) + t44);
+        const gic_real t46 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t45;
+        const gic_real t47 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t48 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) + t47);
         const gic_real t49 = R(1.653405) + t48;
-        const gic_real t50 = y[0] + (t5 * t43 + (t18 * t46 + t24 * t49));
-        const gic_real t51 = y[1] + (t13 * t43 + (t21 * t46 + t26 * t49));
-        const gic_real t52 = y[2] + (t9 * t43 + (t19 * t46 + t25 * t49));
-        const gic_real t53 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t54 = m[224] + t53;
-        const gic_real t55 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t56 = m[223] + t55;
+        /* output wheel_f_r */
+        const gic_real output_wheel_f_r_x = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t43 + (t18 * t46 + t24 * t49));
+        const gic_real output_wheel_f_r_y = y[HMMWV_VEHICLE_STATE_R_Y] + (t13 * t43 + (t21 * t46 + t26 * t49));
+        const gic_real output_wheel_f_r_z = y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t43 + (t19 * t46 + t25 * t49));
+        /* wheel tire_r_l */
+        const gic_real t53 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t54 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t53;
+        const gic_real t55 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t56 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t55;
+        /* output wheel_r_l */
         const gic_real t57 = R(-1.653405) * t24;
         const gic_real t58 = R(-1.653405) * t26;
         const gic_real t59 = R(-1.653405) * t25;
-        const gic_real t60 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t61 = m[254] + t60;
-        const gic_real t62 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t63 = m[253] + t62;
-        const gic_real t64 = x[0] - R(0.31903);
+        /* wheel tire_r_r */
+        const gic_real t60 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
+        const gic_real t61 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t60;
+        const gic_real t62 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
+        const gic_real t63 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t62;
+        /* force spring_f_l */
+        const gic_real t64 = x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.31903);
         const gic_real t65 = t64 * R(167070.9);
-        const gic_real t66 = xd[0] * R(17490.8);
-        const gic_real t67 = x[1] - R(0.31903);
+        const gic_real t66 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * R(17490.8);
+        /* force spring_f_r */
+        const gic_real t67 = x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.31903);
         const gic_real t68 = R(167070.9) * t67;
-        const gic_real t69 = xd[1] * R(17490.8);
-        const gic_real t70 = x[2] - R(0.33727);
+        const gic_real t69 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * R(17490.8);
+        /* force spring_r_l */
+        const gic_real t70 = x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.33727);
         const gic_real t71 = t70 * R(369167.2);
-        const gic_real t72 = xd[2] * R(24780.4);
-        const gic_real t73 = x[3] - R(0.33727);
+        const gic_real t72 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * R(24780.4);
+        /* force spring_r_r */
+        const gic_real t73 = x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.33727);
         const gic_real t74 = R(369167.2) * t73;
-        const gic_real t75 = xd[3] * R(24780.4);
-        const gic_real t76 = R(0.054228999999999916) * y[15] - m[1] * y[16];
-        const gic_real t77 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t78 = y[16] * t76 - y[14] * t77 + (R(1.438648) * rate[16] - R(0.054228999999999916) * rate[14]);
-        const gic_real t79 = m[162] + y[14];
-        const gic_real t80 = m[164] + y[16];
-        const gic_real t81 = m[158] * R(4.7728205);
-        const gic_real t82 = m[157] * R(0.19340000000000046);
-        const gic_real t83 = m[156] * R(4.8947505);
-        const gic_real t84 = m[161] * t81 + (m[160] * t82 + m[159] * t83);
-        const gic_real t85 = m[163] + y[15];
-        const gic_real t86 = m[158] * t81 + (m[157] * t82 + m[156] * t83);
-        const gic_real t87 = m[155] * R(4.7728205);
-        const gic_real t88 = m[154] * R(0.19340000000000046);
-        const gic_real t89 = m[153] * R(4.8947505);
-        const gic_real t90 = m[158] * t87 + (m[157] * t88 + m[156] * t89);
+        const gic_real t75 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * R(24780.4);
+        /* inertia of rack */
+        const gic_real t76 = R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t77 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t78 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t76 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t77 +
+            (R(1.438648) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z] - R(0.054228999999999916) *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t79 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t80 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] + y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t81 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t82 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t83 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t84 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t81 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t82 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t83);
+        const gic_real t85 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t86 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t81 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t82 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t83);
+        const gic_real t87 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t88 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t89 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t90 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t87 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t88 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t89);
         const gic_real t91 = t80 * t84 + (t85 * t86 + t79 * t90);
-        const gic_real t92 = m[161] * t87 + (m[160] * t88 + m[159] * t89);
-        const gic_real t93 = m[155] * t87 + (m[154] * t88 + m[153] * t89);
+        const gic_real t92 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t87 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t88 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t89);
+        const gic_real t93 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * t87 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t88 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * t89);
         const gic_real t94 = t80 * t92 + (t85 * t90 + t79 * t93);
-        const gic_real t95 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t96 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t97 = t96 + m[182] * rate[17];
-        const gic_real t98 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t99 = t98 + m[181] * rate[17];
-        const gic_real t100 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t101 = t100 + m[180] * rate[17];
+        const gic_real t95 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t96 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t97 = t96 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t98 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t99 = t98 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t100 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t101 = t100 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
         const gic_real t102 = t79 * t91 - t85 * t94 + (t95 * t97 + (t84 * t99 + t92 * t101));
-        const gic_real t103 = m[155] * R(0.09182099999999999) + (t35 + m[154] * R(0.08910630000000008));
-        const gic_real t104 = m[161] * R(0.09182099999999999) + (t29 + m[160] * R(0.08910630000000008));
-        const gic_real t105 = m[158] * R(0.09182099999999999) + (t32 + m[157] * R(0.08910630000000008));
-        const gic_real t106 = m[163] * t104 - m[164] * t105;
-        const gic_real t107 = m[162] * t105 - m[163] * t103;
-        const gic_real t108 = m[164] * t106 - m[162] * t107 + (m[170] * t103 - m[168] * t104);
-        const gic_real t109 = m[152] + t104;
-        const gic_real t110 = m[151] + t105;
-        const gic_real t111 = t106 + (y[15] * t109 - y[16] * t110);
+        const gic_real t103 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t35 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.08910630000000008));
+        const gic_real t104 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t29 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t105 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t32 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008));
+        const gic_real t106 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t104 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t105;
+        const gic_real t107 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t105 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t103;
+        const gic_real t108 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t106 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t107 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t103 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t104);
+        const gic_real t109 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t104;
+        const gic_real t110 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t105;
+        const gic_real t111 = t106 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t109 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t110);
         const gic_real t112 = t106 + t111;
-        const gic_real t113 = m[167] + t107;
+        const gic_real t113 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] + t107;
         const gic_real t114 = R(1.653405) + t103;
-        const gic_real t115 = t113 + (y[14] * t110 - y[15] * t114);
+        const gic_real t115 = t113 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t110 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t114);
         const gic_real t116 = t113 + t115;
-        const gic_real t117 = y[16] * t112 - y[14] * t116 + (rate[16] * t114 - rate[14] * t109);
-        const gic_real t118 = m[172] + t108 + (t22 + t117) + u[2] * (m[176] * t103 - m[174] * t104);
-        const gic_real t119 = t118 + rate[17] * (m[184] + (m[182] * t103 - m[180] * t104));
+        const gic_real t117 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t112 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t116 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t114 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t109);
+        const gic_real t118 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Y] + t108 + (t22 + t117) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t103 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t104);
+        const gic_real t119 = t118 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t103 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t104));
         const gic_real t120 = t119 * R(90.555);
-        const gic_real t121 = m[164] * t103 - m[162] * t104;
-        const gic_real t122 = m[163] * t107 - m[164] * t121 + (m[169] * t104 - m[170] * t105);
-        const gic_real t123 = m[166] + t121;
-        const gic_real t124 = t123 + (y[16] * t114 - y[14] * t109);
+        const gic_real t121 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t103 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t104;
+        const gic_real t122 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t107 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t121 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t104 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t105);
+        const gic_real t123 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] + t121;
+        const gic_real t124 = t123 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t114 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t109);
         const gic_real t125 = t123 + t124;
-        const gic_real t126 = y[15] * t116 - y[16] * t125 + (rate[15] * t109 - rate[16] * t110);
-        const gic_real t127 = t122 + (t27 + t126) + u[2] * (m[175] * t104 - m[176] * t105);
-        const gic_real t128 = (t127 + rate[17] * (m[181] * t104 - m[182] * t105)) * R(90.555);
+        const gic_real t126 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t116 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t125 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t109 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t110);
+        const gic_real t127 = t122 + (t27 + t126) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t104 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t105);
+        const gic_real t128 = (t127 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t104 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t105)) * R(90.555);
         const gic_real t129 = t80 * t95 + (t85 * t84 + t79 * t92);
         const gic_real t130 = t80 * t94 - t79 * t129 + (t84 * t97 + (t86 * t99 + t90 * t101));
-        const gic_real t131 = m[162] * t121 - m[163] * t106 + (m[168] * t105 - m[169] * t103);
-        const gic_real t132 = y[14] * t125 - y[15] * t112 + (rate[14] * t110 - rate[15] * t114);
-        const gic_real t133 = m[173] + t131 + (t14 + t132) + u[2] * (m[174] * t105 - m[175] * t103);
-        const gic_real t134 = t133 + rate[17] * (m[185] + (m[180] * t105 - m[181] * t103));
+        const gic_real t131 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t121 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t106 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t105 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t103);
+        const gic_real t132 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t125 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t112 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t110 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t114);
+        const gic_real t133 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Z] + t131 + (t14 + t132) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t105 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t103);
+        const gic_real t134 = t133 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t105 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t103));
         const gic_real t135 = t134 * R(90.555);
         const gic_real t136 = t85 * t129 - t80 * t91 + (t92 * t97 + (t90 * t99 + t93 * t101));
-        const gic_real t137 = m[175] * (t130 + (t104 * t128 - t103 * t135)) + m[174] * (t136 + (t105 * t135 - t104 * t120));
-        const gic_real t138 = m[176] * (t102 + (t103 * t120 - t105 * t128)) + t137;
-        const gic_real t139 = m[198] + y[14];
-        const gic_real t140 = m[200] + y[16];
-        const gic_real t141 = m[194] * R(4.7728205);
-        const gic_real t142 = m[193] * R(0.19340000000000046);
-        const gic_real t143 = m[192] * R(4.8947505);
-        const gic_real t144 = m[197] * t141 + (m[196] * t142 + m[195] * t143);
-        const gic_real t145 = m[199] + y[15];
-        const gic_real t146 = m[194] * t141 + (m[193] * t142 + m[192] * t143);
-        const gic_real t147 = m[191] * R(4.7728205);
-        const gic_real t148 = m[190] * R(0.19340000000000046);
-        const gic_real t149 = m[189] * R(4.8947505);
-        const gic_real t150 = m[194] * t147 + (m[193] * t148 + m[192] * t149);
+        const gic_real t137 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * (t130 + (t104 * t128 - t103 *
+            t135)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * (t136 + (t105 * t135 - t104 * t120));
+        const gic_real t138 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * (t102 + (t103 * t120 - t105 *
+            t128)) + t137;
+        const gic_real t139 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t140 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t141 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t142 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t143 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t144 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t141 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t142 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t143);
+        const gic_real t145 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t146 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t141 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t142 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t143);
+        const gic_real t147 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t148 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t149 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t150 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t147 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t148 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t149);
         const gic_real t151 = t140 * t144 + (t145 * t146 + t139 * t150);
-        const gic_real t152 = m[197] * t147 + (m[196] * t148 + m[195] * t149);
-        const gic_real t153 = m[191] * t147 + (m[190] * t148 + m[189] * t149);
+        const gic_real t152 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t147 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t148 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t149);
+        const gic_real t153 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * t147 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t148 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * t149);
         const gic_real t154 = t140 * t152 + (t145 * t150 + t139 * t153);
-        const gic_real t155 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t156 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t157 = t156 + m[218] * rate[18];
-        const gic_real t158 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t159 = t158 + m[217] * rate[18];
-        const gic_real t160 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t161 = t160 + m[216] * rate[18];
+        const gic_real t155 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t156 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t157 = t156 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t158 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t159 = t158 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t160 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t161 = t160 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
         const gic_real t162 = t139 * t151 - t145 * t154 + (t155 * t157 + (t144 * t159 + t152 * t161));
-        const gic_real t163 = m[191] * R(0.09182099999999999) + (t47 + m[190] * R(-0.08910630000000008));
-        const gic_real t164 = m[197] * R(0.09182099999999999) + (t41 + m[196] * R(-0.08910630000000008));
-        const gic_real t165 = m[194] * R(0.09182099999999999) + (t44 + m[193] * R(-0.08910630000000008));
-        const gic_real t166 = m[199] * t164 - m[200] * t165;
-        const gic_real t167 = m[198] * t165 - m[199] * t163;
-        const gic_real t168 = m[200] * t166 - m[198] * t167 + (m[206] * t163 - m[204] * t164);
-        const gic_real t169 = m[188] + t164;
-        const gic_real t170 = m[187] + t165;
-        const gic_real t171 = t166 + (y[15] * t169 - y[16] * t170);
+        const gic_real t163 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t47 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.08910630000000008));
+        const gic_real t164 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t41 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t165 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t44 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t166 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t164 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t165;
+        const gic_real t167 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t165 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t163;
+        const gic_real t168 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t166 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t167 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t163 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t164);
+        const gic_real t169 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t164;
+        const gic_real t170 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t165;
+        const gic_real t171 = t166 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t169 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t170);
         const gic_real t172 = t166 + t171;
-        const gic_real t173 = m[203] + t167;
+        const gic_real t173 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] + t167;
         const gic_real t174 = R(1.653405) + t163;
-        const gic_real t175 = t173 + (y[14] * t170 - y[15] * t174);
+        const gic_real t175 = t173 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t170 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t174);
         const gic_real t176 = t173 + t175;
-        const gic_real t177 = y[16] * t172 - y[14] * t176 + (rate[16] * t174 - rate[14] * t169);
-        const gic_real t178 = m[208] + t168 + (t22 + t177) + u[2] * (m[212] * t163 - m[210] * t164);
-        const gic_real t179 = t178 + rate[18] * (m[220] + (m[218] * t163 - m[216] * t164));
+        const gic_real t177 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t172 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t176 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t174 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t169);
+        const gic_real t178 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Y] + t168 + (t22 + t177) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t163 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t164);
+        const gic_real t179 = t178 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t163 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t164));
         const gic_real t180 = R(90.555) * t179;
-        const gic_real t181 = m[200] * t163 - m[198] * t164;
-        const gic_real t182 = m[199] * t167 - m[200] * t181 + (m[205] * t164 - m[206] * t165);
-        const gic_real t183 = m[202] + t181;
-        const gic_real t184 = t183 + (y[16] * t174 - y[14] * t169);
+        const gic_real t181 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t163 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t164;
+        const gic_real t182 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t167 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t181 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t164 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t165);
+        const gic_real t183 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] + t181;
+        const gic_real t184 = t183 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t174 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t169);
         const gic_real t185 = t183 + t184;
-        const gic_real t186 = y[15] * t176 - y[16] * t185 + (rate[15] * t169 - rate[16] * t170);
-        const gic_real t187 = t182 + (t27 + t186) + u[2] * (m[211] * t164 - m[212] * t165);
-        const gic_real t188 = R(90.555) * (t187 + rate[18] * (m[217] * t164 - m[218] * t165));
+        const gic_real t186 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t176 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t185 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t169 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t170);
+        const gic_real t187 = t182 + (t27 + t186) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t164 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t165);
+        const gic_real t188 = R(90.555) * (t187 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t164 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t165));
         const gic_real t189 = t140 * t155 + (t145 * t144 + t139 * t152);
         const gic_real t190 = t140 * t154 - t139 * t189 + (t144 * t157 + (t146 * t159 + t150 * t161));
-        const gic_real t191 = m[198] * t181 - m[199] * t166 + (m[204] * t165 - m[205] * t163);
-        const gic_real t192 = y[14] * t185 - y[15] * t172 + (rate[14] * t170 - rate[15] * t174);
-        const gic_real t193 = m[209] + t191 + (t14 + t192) + u[2] * (m[210] * t165 - m[211] * t163);
-        const gic_real t194 = t193 + rate[18] * (m[221] + (m[216] * t165 - m[217] * t163));
+        const gic_real t191 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t181 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t166 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t165 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t163);
+        const gic_real t192 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t185 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t172 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t170 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t174);
+        const gic_real t193 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Z] + t191 + (t14 + t192) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t165 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t163);
+        const gic_real t194 = t193 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t165 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t163));
         const gic_real t195 = R(90.555) * t194;
         const gic_real t196 = t145 * t189 - t140 * t151 + (t152 * t157 + (t150 * t159 + t153 * t161));
-        const gic_real t197 = m[211] * (t190 + (t164 * t188 - t163 * t195)) + m[210] * (t196 + (t165 * t195 - t164 * t180));
-        const gic_real t198 = m[212] * (t162 + (t163 * t180 - t165 * t188)) + t197;
-        const gic_real t199 = t9 * self->grip[5] + (t13 * self->grip[4] + t5 * self->grip[3]);
-        const gic_real t200 = t19 * self->grip[2] + (t21 * self->grip[1] + t18 * self->grip[0]);
-        const gic_real t201 = t25 * self->grip[2] + (t26 * self->grip[1] + t24 * self->grip[0]);
-        const gic_real t202 = t19 * self->grip[5] + (t21 * self->grip[4] + t18 * self->grip[3]);
-        const gic_real t203 = t9 * self->grip[2] + (t13 * self->grip[1] + t5 * self->grip[0]);
-        const gic_real t204 = t25 * self->grip[5] + (t26 * self->grip[4] + t24 * self->grip[3]);
-        const gic_real t205 = m[175] * (t202 + (t30 * t201 - t36 * t203)) + m[174] * (t204 + (t33 * t203 - t30 * t200));
-        const gic_real t206 = m[176] * (t199 + (t36 * t200 - t33 * t201)) + t205;
-        const gic_real t207 = t9 * self->grip[32] + (t13 * self->grip[31] + t5 * self->grip[30]);
-        const gic_real t208 = t19 * self->grip[29] + (t21 * self->grip[28] + t18 * self->grip[27]);
-        const gic_real t209 = t25 * self->grip[29] + (t26 * self->grip[28] + t24 * self->grip[27]);
-        const gic_real t210 = t19 * self->grip[32] + (t21 * self->grip[31] + t18 * self->grip[30]);
-        const gic_real t211 = t9 * self->grip[29] + (t13 * self->grip[28] + t5 * self->grip[27]);
-        const gic_real t212 = t25 * self->grip[32] + (t26 * self->grip[31] + t24 * self->grip[30]);
-        const gic_real t213 = m[211] * (t210 + (t42 * t209 - t48 * t211)) + m[210] * (t212 + (t45 * t211 - t42 * t208));
-        const gic_real t214 = m[212] * (t207 + (t48 * t208 - t45 * t209)) + t213;
-        const gic_real t215 = (u[2] + (t22 + t78)) * R(9.072) + t138 + t198 - (t206 + t214);
-        const gic_real t216 = y[21] * y[21] * R(3.89391) + R(3.89391) * (y[25] * y[25]) + R(3.89391) * (y[29] * y[29]);
-        const gic_real t217 = y[16] * (y[16] * R(3570.2)) + (y[15] * (y[15] * R(2955.66)) + y[14] * (y[14] * R(1078.52)));
-        const gic_real t218 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
-        const gic_real t219 = y[15] * R(0.21300000000000002);
-        const gic_real t220 = y[15] * R(0.056);
-        const gic_real t221 = y[13] + (t19 * t218 + t25 * t219 - t9 * t220);
-        const gic_real t222 = y[12] + (t21 * t218 + t26 * t219 - t13 * t220);
-        const gic_real t223 = y[11] + (t18 * t218 + t24 * t219 - t5 * t220);
+        const gic_real t197 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * (t190 + (t164 * t188 - t163 *
+            t195)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * (t196 + (t165 * t195 - t164 * t180));
+        const gic_real t198 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * (t162 + (t163 * t180 - t165 *
+            t188)) + t197;
+        const gic_real t199 = t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t200 = t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t201 = t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t202 = t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t203 = t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t204 = t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t205 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * (t202 + (t30 * t201 - t36 *
+            t203)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * (t204 + (t33 * t203 - t30 * t200));
+        const gic_real t206 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * (t199 + (t36 * t200 - t33 *
+            t201)) + t205;
+        const gic_real t207 = t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t208 = t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t209 = t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t210 = t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t211 = t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t212 = t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t213 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * (t210 + (t42 * t209 - t48 *
+            t211)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * (t212 + (t45 * t211 - t42 * t208));
+        const gic_real t214 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * (t207 + (t48 * t208 - t45 *
+            t209)) + t213;
+        /* inertia of wheel_r_r */
+        const gic_real output_force_rack = (u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] + (t22 + t78)) * R(9.072) + t138 +
+            t198 - (t206 + t214);
+        const gic_real t216 = y[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN] * y[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN] * R(3.89391) +
+            R(3.89391) * (y[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN] * y[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN]) + R(3.89391) *
+            (y[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN] * y[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN]);
+        const gic_real t217 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(2955.66)) +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * (y[HMMWV_VEHICLE_STATE_OMEGA_X] * R(1078.52)));
+        /* inertia of chassis */
+        const gic_real t218 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(0.21300000000000002);
+        const gic_real t219 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002);
+        const gic_real t220 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t221 = y[HMMWV_VEHICLE_STATE_V_Z] + (t19 * t218 + t25 * t219 - t9 * t220);
+        const gic_real t222 = y[HMMWV_VEHICLE_STATE_V_Y] + (t21 * t218 + t26 * t219 - t13 * t220);
+        const gic_real t223 = y[HMMWV_VEHICLE_STATE_V_X] + (t18 * t218 + t24 * t219 - t5 * t220);
         const gic_real t224 = R(2086.52) * (t221 * t221 + (t222 * t222 + t223 * t223));
-        const gic_real t225 = t216 + R(3.89391) * (y[33] * y[33]) + R(0.5) * (t217 + t224);
-        const gic_real t226 = m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]);
-        const gic_real t227 = y[13] + (t9 * t77 + (t19 * t226 + t25 * t76));
-        const gic_real t228 = y[12] + (t13 * t77 + (t21 * t226 + t26 * t76));
-        const gic_real t229 = y[11] + (t5 * t77 + (t18 * t226 + t24 * t76));
+        const gic_real t225 = t216 + R(3.89391) * (y[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN] *
+            y[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN]) + R(0.5) * (t217 + t224);
+        const gic_real t226 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] + (R(1.438648) *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t227 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t77 + (t19 * t226 + t25 * t76));
+        const gic_real t228 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t77 + (t21 * t226 + t26 * t76));
+        const gic_real t229 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t77 + (t18 * t226 + t24 * t76));
         const gic_real t230 = R(9.072) * (t227 * t227 + (t228 * t228 + t229 * t229));
-        const gic_real t231 = y[16] * y[16] + (y[15] * y[15] + y[14] * y[14]) + t230;
-        const gic_real t232 = y[16] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t233 = m[38] * R(0.8938);
-        const gic_real t234 = m[37] * R(0.4469);
-        const gic_real t235 = m[41] * t233 + m[40] * t234;
-        const gic_real t236 = y[16] * t235 + y[15] * (m[38] * t233 + m[37] * t234);
-        const gic_real t237 = m[42] + y[14];
-        const gic_real t238 = y[16] * (t232 + y[15] * t235) + (y[15] * t236 + t237 * (R(0.4469) * t237));
-        const gic_real t239 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t231 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * y[HMMWV_VEHICLE_STATE_OMEGA_Z] +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X]) + t230;
+        /* inertia of lca_f_l */
+        const gic_real t232 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.4469)));
+        const gic_real t233 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t234 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t235 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * t233 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * t234;
+        const gic_real t236 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t235 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * t233 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * t234);
+        const gic_real t237 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t238 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t232 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t235) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t236 + t237 * (R(0.4469) * t237));
+        const gic_real t239 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.24689200985615367);
         const gic_real t240 = R(0.307086) + t239;
-        const gic_real t241 = R(1.688965) * y[15];
-        const gic_real t242 = m[42] * t239 + (y[14] * t240 - t241);
-        const gic_real t243 = R(1.688965) * y[16];
-        const gic_real t244 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t245 = t243 - y[14] * t244 - m[42] * t244;
-        const gic_real t246 = y[15] * t244 - y[16] * t240;
-        const gic_real t247 = y[13] + (t9 * t242 + (t19 * t245 + t25 * t246));
-        const gic_real t248 = y[12] + (t13 * t242 + (t21 * t245 + t26 * t246));
-        const gic_real t249 = y[11] + (t5 * t242 + (t18 * t245 + t24 * t246));
+        const gic_real t241 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t242 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t239 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t240 - t241);
+        const gic_real t243 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t244 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t245 = t243 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t244 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t244;
+        const gic_real t246 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t244 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t240;
+        const gic_real t247 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t242 + (t19 * t245 + t25 * t246));
+        const gic_real t248 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t242 + (t21 * t245 + t26 * t246));
+        const gic_real t249 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t242 + (t18 * t245 + t24 * t246));
         const gic_real t250 = R(23.965) * (t247 * t247 + (t248 * t248 + t249 * t249));
-        const gic_real t251 = y[16] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t252 = m[68] * R(0.8938);
-        const gic_real t253 = m[67] * R(0.4469);
-        const gic_real t254 = m[71] * t252 + m[70] * t253;
-        const gic_real t255 = y[16] * t254 + y[15] * (m[68] * t252 + m[67] * t253);
-        const gic_real t256 = m[72] + y[14];
-        const gic_real t257 = y[16] * (t251 + y[15] * t254) + (y[15] * t255 + t256 * (R(0.4469) * t256));
-        const gic_real t258 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        /* inertia of lca_f_r */
+        const gic_real t251 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(0.4469)));
+        const gic_real t252 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t253 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t254 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * t252 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * t253;
+        const gic_real t255 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t254 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * t252 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * t253);
+        const gic_real t256 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t257 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t251 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t254) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t255 + t256 * (R(0.4469) * t256));
+        const gic_real t258 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(-0.24689200985615367);
         const gic_real t259 = R(-0.307086) + t258;
-        const gic_real t260 = m[72] * t258 + (y[14] * t259 - t241);
-        const gic_real t261 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t262 = t243 - y[14] * t261 - m[72] * t261;
-        const gic_real t263 = y[15] * t261 - y[16] * t259;
-        const gic_real t264 = y[13] + (t9 * t260 + (t19 * t262 + t25 * t263));
-        const gic_real t265 = y[12] + (t13 * t260 + (t21 * t262 + t26 * t263));
-        const gic_real t266 = y[11] + (t5 * t260 + (t18 * t262 + t24 * t263));
+        const gic_real t260 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t258 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t259 - t241);
+        const gic_real t261 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t262 = t243 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t261 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t261;
+        const gic_real t263 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t261 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t259;
+        const gic_real t264 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t260 + (t19 * t262 + t25 * t263));
+        const gic_real t265 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t260 + (t21 * t262 + t26 * t263));
+        const gic_real t266 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t260 + (t18 * t262 + t24 * t263));
         const gic_real t267 = R(23.965) * (t264 * t264 + (t265 * t265 + t266 * t266));
         const gic_real t268 = t225 + R(0.5) * t231 + R(0.5) * (t238 + t250) + R(0.5) * (t257 + t267);
-        const gic_real t269 = y[13] + (t9 * t115 + (t19 * t124 + t25 * t111));
-        const gic_real t270 = y[12] + (t13 * t115 + (t21 * t124 + t26 * t111));
-        const gic_real t271 = y[11] + (t5 * t115 + (t18 * t124 + t24 * t111));
+        const gic_real t269 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t115 + (t19 * t124 + t25 * t111));
+        const gic_real t270 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t115 + (t21 * t124 + t26 * t111));
+        const gic_real t271 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t115 + (t18 * t124 + t24 * t111));
         const gic_real t272 = R(90.555) * (t269 * t269 + (t270 * t270 + t271 * t271));
         const gic_real t273 = t80 * t129 + (t85 * t91 + t79 * t94) + t272;
-        const gic_real t274 = y[13] + (t9 * t175 + (t19 * t184 + t25 * t171));
-        const gic_real t275 = y[12] + (t13 * t175 + (t21 * t184 + t26 * t171));
-        const gic_real t276 = y[11] + (t5 * t175 + (t18 * t184 + t24 * t171));
+        const gic_real t274 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t175 + (t19 * t184 + t25 * t171));
+        const gic_real t275 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t175 + (t21 * t184 + t26 * t171));
+        const gic_real t276 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t175 + (t18 * t184 + t24 * t171));
         const gic_real t277 = R(90.555) * (t274 * t274 + (t275 * t275 + t276 * t276));
         const gic_real t278 = t140 * t189 + (t145 * t151 + t139 * t154) + t277;
-        const gic_real t279 = y[16] * (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469)));
-        const gic_real t280 = m[98] * R(0.8938);
-        const gic_real t281 = m[97] * R(0.4469);
-        const gic_real t282 = m[101] * t280 + m[100] * t281;
-        const gic_real t283 = y[16] * t282 + y[15] * (m[98] * t280 + m[97] * t281);
-        const gic_real t284 = m[102] + y[14];
-        const gic_real t285 = y[16] * (t279 + y[15] * t282) + (y[15] * t283 + t284 * (R(0.4469) * t284));
-        const gic_real t286 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
+        /* inertia of lca_r_l */
+        const gic_real t279 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.4469)));
+        const gic_real t280 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t281 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t282 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * t280 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * t281;
+        const gic_real t283 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t282 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * t280 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * t281);
+        const gic_real t284 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t285 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t279 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t282) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t283 + t284 * (R(0.4469) * t284));
+        const gic_real t286 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.246867347245056);
         const gic_real t287 = R(0.307086) + t286;
-        const gic_real t288 = R(-1.688965) * y[15];
-        const gic_real t289 = m[102] * t286 + (y[14] * t287 - t288);
-        const gic_real t290 = R(-1.688965) * y[16];
-        const gic_real t291 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t292 = t290 - y[14] * t291 - m[102] * t291;
-        const gic_real t293 = y[15] * t291 - y[16] * t287;
-        const gic_real t294 = y[13] + (t9 * t289 + (t19 * t292 + t25 * t293));
-        const gic_real t295 = y[12] + (t13 * t289 + (t21 * t292 + t26 * t293));
-        const gic_real t296 = y[11] + (t5 * t289 + (t18 * t292 + t24 * t293));
+        const gic_real t288 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t289 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t286 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t287 - t288);
+        const gic_real t290 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t291 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.246867347245056);
+        const gic_real t292 = t290 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t291 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t291;
+        const gic_real t293 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t291 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t287;
+        const gic_real t294 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t289 + (t19 * t292 + t25 * t293));
+        const gic_real t295 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t289 + (t21 * t292 + t26 * t293));
+        const gic_real t296 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t289 + (t18 * t292 + t24 * t293));
         const gic_real t297 = R(23.965) * (t294 * t294 + (t295 * t295 + t296 * t296));
         const gic_real t298 = t268 + R(0.5) * t273 + R(0.5) * t278 + R(0.5) * (t285 + t297);
-        const gic_real t299 = y[16] * (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469)));
-        const gic_real t300 = m[128] * R(0.8938);
-        const gic_real t301 = m[127] * R(0.4469);
-        const gic_real t302 = m[131] * t300 + m[130] * t301;
-        const gic_real t303 = y[16] * t302 + y[15] * (m[128] * t300 + m[127] * t301);
-        const gic_real t304 = m[132] + y[14];
-        const gic_real t305 = y[16] * (t299 + y[15] * t302) + (y[15] * t303 + t304 * (R(0.4469) * t304));
-        const gic_real t306 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
+        /* inertia of lca_r_r */
+        const gic_real t299 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(0.4469)));
+        const gic_real t300 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t301 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t302 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * t300 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * t301;
+        const gic_real t303 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t302 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * t300 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * t301);
+        const gic_real t304 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t305 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t299 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t302) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t303 + t304 * (R(0.4469) * t304));
+        const gic_real t306 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(-0.246867347245056);
         const gic_real t307 = R(-0.307086) + t306;
-        const gic_real t308 = m[132] * t306 + (y[14] * t307 - t288);
-        const gic_real t309 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t310 = t290 - y[14] * t309 - m[132] * t309;
-        const gic_real t311 = y[15] * t309 - y[16] * t307;
-        const gic_real t312 = y[13] + (t9 * t308 + (t19 * t310 + t25 * t311));
-        const gic_real t313 = y[12] + (t13 * t308 + (t21 * t310 + t26 * t311));
-        const gic_real t314 = y[11] + (t5 * t308 + (t18 * t310 + t24 * t311));
+        const gic_real t308 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t306 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t307 - t288);
+        const gic_real t309 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.246867347245056);
+        const gic_real t310 = t290 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t309 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t309;
+        const gic_real t311 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t309 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t307;
+        const gic_real t312 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t308 + (t19 * t310 + t25 * t311));
+        const gic_real t313 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t308 + (t21 * t310 + t26 * t311));
+        const gic_real t314 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t308 + (t18 * t310 + t24 * t311));
         const gic_real t315 = R(23.965) * (t312 * t312 + (t313 * t313 + t314 * t314));
-        const gic_real t316 = y[16] * (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046)));
-        const gic_real t317 = m[230] * R(4.7728205);
-        const gic_real t318 = m[229] * R(0.19340000000000046);
-        const gic_real t319 = m[233] * t317 + m[232] * t318;
-        const gic_real t320 = y[16] * t319 + y[15] * (m[230] * t317 + m[229] * t318);
-        const gic_real t321 = m[234] + y[14];
-        const gic_real t322 = y[16] * (t316 + y[15] * t319) + (y[15] * t320 + t321 * (t321 * R(4.8947505)));
-        const gic_real t323 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
-        const gic_real t324 = m[223] + t323;
-        const gic_real t325 = R(-1.653405) * y[15];
-        const gic_real t326 = m[239] + m[234] * t323 + (y[14] * t324 - t325);
-        const gic_real t327 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
-        const gic_real t328 = R(-1.653405) * y[16];
-        const gic_real t329 = m[224] + t327;
-        const gic_real t330 = m[238] - m[234] * t327 + (t328 - y[14] * t329);
-        const gic_real t331 = y[15] * t329 - y[16] * t324;
-        const gic_real t332 = y[13] + (t9 * t326 + (t19 * t330 + t25 * t331));
-        const gic_real t333 = y[12] + (t13 * t326 + (t21 * t330 + t26 * t331));
-        const gic_real t334 = y[11] + (t5 * t326 + (t18 * t330 + t24 * t331));
+        /* inertia of wheel_r_l */
+        const gic_real t316 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)));
+        const gic_real t317 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t318 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t319 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * t317 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t318;
+        const gic_real t320 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t319 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * t317 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t318);
+        const gic_real t321 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t322 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t316 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t319) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t320 + t321 * (t321 * R(4.8947505)));
+        const gic_real t323 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008);
+        const gic_real t324 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t323;
+        const gic_real t325 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t326 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t323 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t324 -
+            t325);
+        const gic_real t327 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008);
+        const gic_real t328 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t329 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t327;
+        const gic_real t330 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t327 + (t328 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t329);
+        const gic_real t331 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t329 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t324;
+        const gic_real t332 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t326 + (t19 * t330 + t25 * t331));
+        const gic_real t333 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t326 + (t21 * t330 + t26 * t331));
+        const gic_real t334 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t326 + (t18 * t330 + t24 * t331));
         const gic_real t335 = R(90.555) * (t332 * t332 + (t333 * t333 + t334 * t334));
         const gic_real t336 = t298 + R(0.5) * (t305 + t315) + R(0.5) * (t322 + t335);
-        const gic_real t337 = y[16] * (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046)));
-        const gic_real t338 = m[260] * R(4.7728205);
-        const gic_real t339 = m[259] * R(0.19340000000000046);
-        const gic_real t340 = m[263] * t338 + m[262] * t339;
-        const gic_real t341 = y[16] * t340 + y[15] * (m[260] * t338 + m[259] * t339);
-        const gic_real t342 = m[264] + y[14];
-        const gic_real t343 = y[16] * (t337 + y[15] * t340) + (y[15] * t341 + t342 * (t342 * R(4.8947505)));
-        const gic_real t344 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
-        const gic_real t345 = m[253] + t344;
-        const gic_real t346 = m[269] + m[264] * t344 + (y[14] * t345 - t325);
-        const gic_real t347 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
-        const gic_real t348 = m[254] + t347;
-        const gic_real t349 = m[268] - m[264] * t347 + (t328 - y[14] * t348);
-        const gic_real t350 = y[15] * t348 - y[16] * t345;
-        const gic_real t351 = y[13] + (t9 * t346 + (t19 * t349 + t25 * t350));
-        const gic_real t352 = y[12] + (t13 * t346 + (t21 * t349 + t26 * t350));
-        const gic_real t353 = y[11] + (t5 * t346 + (t18 * t349 + t24 * t350));
+        const gic_real t337 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)));
+        const gic_real t338 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t339 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t340 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * t338 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t339;
+        const gic_real t341 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t340 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * t338 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t339);
+        const gic_real t342 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t343 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t337 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t340) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t341 + t342 * (t342 * R(4.8947505)));
+        const gic_real t344 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008);
+        const gic_real t345 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t344;
+        const gic_real t346 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t344 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t345 -
+            t325);
+        const gic_real t347 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008);
+        const gic_real t348 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t347;
+        const gic_real t349 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t347 + (t328 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t348);
+        const gic_real t350 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t348 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t345;
+        const gic_real t351 = y[HMMWV_VEHICLE_STATE_V_Z] + (t9 * t346 + (t19 * t349 + t25 * t350));
+        const gic_real t352 = y[HMMWV_VEHICLE_STATE_V_Y] + (t13 * t346 + (t21 * t349 + t26 * t350));
+        const gic_real t353 = y[HMMWV_VEHICLE_STATE_V_X] + (t5 * t346 + (t18 * t349 + t24 * t350));
         const gic_real t354 = R(90.555) * (t351 * t351 + (t352 * t352 + t353 * t353));
         const gic_real t355 = t64 * t65 * R(0.5) + R(0.5) * (t67 * t68) + R(0.5) * (t70 * t71);
-        const gic_real t356 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        /* force stop_f_l */
+        const gic_real t356 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29), R(0.0));
         const gic_real t357 = t356 * R(400000.0);
         const gic_real t358 = t355 + R(0.5) * (t73 * t74) + R(0.5) * (t356 * t357);
-        const gic_real t359 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        const gic_real t359 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L], R(0.0));
         const gic_real t360 = R(400000.0) * t359;
-        const gic_real t361 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        /* force stop_f_r */
+        const gic_real t361 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29), R(0.0));
         const gic_real t362 = R(400000.0) * t361;
         const gic_real t363 = t358 + R(0.5) * (t359 * t360) + R(0.5) * (t361 * t362);
-        const gic_real t364 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        const gic_real t364 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R], R(0.0));
         const gic_real t365 = R(400000.0) * t364;
-        const gic_real t366 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        /* force stop_r_l */
+        const gic_real t366 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34), R(0.0));
         const gic_real t367 = R(400000.0) * t366;
         const gic_real t368 = t363 + R(0.5) * (t364 * t365) + R(0.5) * (t366 * t367);
-        const gic_real t369 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        const gic_real t369 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L], R(0.0));
         const gic_real t370 = R(400000.0) * t369;
-        const gic_real t371 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        /* force stop_r_r */
+        const gic_real t371 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34), R(0.0));
         const gic_real t372 = R(400000.0) * t371;
         const gic_real t373 = t368 + R(0.5) * (t369 * t370) + R(0.5) * (t371 * t372);
-        const gic_real t374 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t374 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R], R(0.0));
         const gic_real t375 = R(400000.0) * t374;
-        const gic_real t376 = t373 + R(0.5) * (t374 * t375) - (y[2] + (t9 * R(0.21300000000000002) + t25 * R(0.056))) * R(-20468.7612);
-        const gic_real t377 = y[2] + (R(0.054228999999999916) * t9 + (m[1] * t19 + R(1.438648) * t25));
+        const gic_real t376 = t373 + R(0.5) * (t374 * t375) - (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 *
+            R(0.21300000000000002) + t25 * R(0.056))) * R(-20468.7612);
+        const gic_real t377 = y[HMMWV_VEHICLE_STATE_R_Z] + (R(0.054228999999999916) * t9 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t19 + R(1.438648) * t25));
         const gic_real t378 = R(1.688965) * t25;
-        const gic_real t379 = (y[2] + (t9 * t244 + (t19 * t240 + t378))) * R(-235.09665);
-        const gic_real t380 = R(-235.09665) * (y[2] + (t9 * t261 + (t378 + t19 * t259)));
-        const gic_real t381 = y[2] + (t9 * t109 + (t19 * t110 + t25 * t114));
+        const gic_real t379 = (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t244 + (t19 * t240 + t378))) * R(-235.09665);
+        const gic_real t380 = R(-235.09665) * (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t261 + (t378 + t19 * t259)));
+        const gic_real t381 = y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t109 + (t19 * t110 + t25 * t114));
         const gic_real t382 = t376 - t377 * R(-88.99632) - t379 - t380 - t381 * R(-888.3445500000001);
-        const gic_real t383 = y[2] + (t9 * t169 + (t19 * t170 + t25 * t174));
+        const gic_real t383 = y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t169 + (t19 * t170 + t25 * t174));
         const gic_real t384 = R(-1.688965) * t25;
-        const gic_real t385 = R(-235.09665) * (y[2] + (t9 * t291 + (t19 * t287 + t384)));
-        const gic_real t386 = R(-235.09665) * (y[2] + (t9 * t309 + (t384 + t19 * t307)));
-        const gic_real t387 = R(-888.3445500000001) * (y[2] + (t9 * t329 + (t59 + t19 * t324)));
-        const gic_real t388 = R(-888.3445500000001) * (y[2] + (t9 * t348 + (t59 + t19 * t345)));
-        const gic_real t389 = t382 - R(-888.3445500000001) * t383 - t385 - t386 - t387 - t388;
+        const gic_real t385 = R(-235.09665) * (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t291 + (t19 * t287 + t384)));
+        const gic_real t386 = R(-235.09665) * (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t309 + (t384 + t19 * t307)));
+        const gic_real t387 = R(-888.3445500000001) * (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t329 + (t59 + t19 * t324)));
+        const gic_real t388 = R(-888.3445500000001) * (y[HMMWV_VEHICLE_STATE_R_Z] + (t9 * t348 + (t59 + t19 * t345)));
+        const gic_real output_energy_potential = t382 - R(-888.3445500000001) * t383 - t385 - t386 - t387 - t388;
         const gic_real t390 = GIC_MIN(R(100.0) * t359, R(1.0));
-        const gic_real t391 = xd[0] * (R(5000.0) * ((R(3.0) - (t390 + t390)) * (t390 * t390)));
-        const gic_real t392 = xd[0] * t66 + xd[1] * t69 + xd[2] * t72 + xd[3] * t75;
+        const gic_real t391 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t390 + t390)) * (t390 * t390)));
+        const gic_real t392 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * t66 + xd[HMMWV_VEHICLE_X_SPRING_F_R] * t69 +
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * t72 + xd[HMMWV_VEHICLE_X_SPRING_R_R] * t75;
         const gic_real t393 = GIC_MIN(t356 * R(100.0), R(1.0));
-        const gic_real t394 = xd[0] * ((R(3.0) - (t393 + t393)) * (t393 * t393) * R(5000.0));
-        const gic_real t395 = xd[0] * (GIC_MAX(t360 - t391, R(0.0)) - t360) - (t392 + xd[0] * (GIC_MAX(t357 + t394, R(0.0)) - t357));
+        const gic_real t394 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t393 + t393)) * (t393 * t393) * R(5000.0));
+        const gic_real t395 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (GIC_MAX(t360 - t391, R(0.0)) - t360) - (t392 +
+            xd[HMMWV_VEHICLE_X_SPRING_F_L] * (GIC_MAX(t357 + t394, R(0.0)) - t357));
         const gic_real t396 = GIC_MIN(R(100.0) * t361, R(1.0));
-        const gic_real t397 = xd[1] * (R(5000.0) * ((R(3.0) - (t396 + t396)) * (t396 * t396)));
+        const gic_real t397 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t396 + t396)) * (t396 * t396)));
         const gic_real t398 = GIC_MIN(R(100.0) * t364, R(1.0));
-        const gic_real t399 = xd[1] * (R(5000.0) * ((R(3.0) - (t398 + t398)) * (t398 * t398)));
-        const gic_real t400 = t395 - xd[1] * (GIC_MAX(t362 + t397, R(0.0)) - t362) + xd[1] * (GIC_MAX(t365 - t399, R(0.0)) - t365);
+        const gic_real t399 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t398 + t398)) * (t398 * t398)));
+        const gic_real t400 = t395 - xd[HMMWV_VEHICLE_X_SPRING_F_R] * (GIC_MAX(t362 + t397, R(0.0)) - t362) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * (GIC_MAX(t365 - t399, R(0.0)) - t365);
         const gic_real t401 = GIC_MIN(R(100.0) * t366, R(1.0));
-        const gic_real t402 = xd[2] * (R(5000.0) * ((R(3.0) - (t401 + t401)) * (t401 * t401)));
+        const gic_real t402 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t401 + t401)) * (t401 * t401)));
         const gic_real t403 = GIC_MIN(R(100.0) * t369, R(1.0));
-        const gic_real t404 = xd[2] * (R(5000.0) * ((R(3.0) - (t403 + t403)) * (t403 * t403)));
-        const gic_real t405 = t400 - xd[2] * (GIC_MAX(t367 + t402, R(0.0)) - t367) + xd[2] * (GIC_MAX(t370 - t404, R(0.0)) - t370);
+        const gic_real t404 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t403 + t403)) * (t403 * t403)));
+        const gic_real t405 = t400 - xd[HMMWV_VEHICLE_X_SPRING_R_L] * (GIC_MAX(t367 + t402, R(0.0)) - t367) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * (GIC_MAX(t370 - t404, R(0.0)) - t370);
         const gic_real t406 = GIC_MIN(R(100.0) * t371, R(1.0));
-        const gic_real t407 = xd[3] * (R(5000.0) * ((R(3.0) - (t406 + t406)) * (t406 * t406)));
+        const gic_real t407 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t406 + t406)) * (t406 * t406)));
         const gic_real t408 = GIC_MIN(R(100.0) * t374, R(1.0));
-        const gic_real t409 = xd[3] * (R(5000.0) * ((R(3.0) - (t408 + t408)) * (t408 * t408)));
-        const gic_real t410 = t405 - xd[3] * (GIC_MAX(t372 + t407, R(0.0)) - t372) + xd[3] * (GIC_MAX(t375 - t409, R(0.0)) - t375);
-        const gic_real t411 = y[13] * t9 + (y[12] * t13 + y[11] * t5);
-        const gic_real t412 = m[167] + (m[162] * t33 - m[163] * t36) + (y[14] * t34 - y[15] * t37);
-        const gic_real t413 = y[13] * t19 + (y[12] * t21 + y[11] * t18);
-        const gic_real t414 = m[166] + (m[164] * t36 - m[162] * t30) + (y[16] * t37 - y[14] * t31);
-        const gic_real t415 = y[13] * t25 + (y[12] * t26 + y[11] * t24);
-        const gic_real t416 = m[163] * t30 - m[164] * t33 + (y[15] * t31 - y[16] * t34);
+        const gic_real t409 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t408 + t408)) * (t408 * t408)));
+        const gic_real t410 = t405 - xd[HMMWV_VEHICLE_X_SPRING_R_R] * (GIC_MAX(t372 + t407, R(0.0)) - t372) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_R] * (GIC_MAX(t375 - t409, R(0.0)) - t375);
+        const gic_real t411 = y[HMMWV_VEHICLE_STATE_V_Z] * t9 + (y[HMMWV_VEHICLE_STATE_V_Y] * t13 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t5);
+        const gic_real t412 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t33 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t36) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t34 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t37);
+        const gic_real t413 = y[HMMWV_VEHICLE_STATE_V_Z] * t19 + (y[HMMWV_VEHICLE_STATE_V_Y] * t21 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t18);
+        const gic_real t414 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t36 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t30) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t37 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t31);
+        const gic_real t415 = y[HMMWV_VEHICLE_STATE_V_Z] * t25 + (y[HMMWV_VEHICLE_STATE_V_Y] * t26 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t24);
+        const gic_real t416 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t30 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t33 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t31 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t34);
         const gic_real t417 = t203 * (t411 + t412) + (t200 * (t413 + t414) + t201 * (t415 + t416));
         const gic_real t418 = t199 * t80 + (t202 * t85 + t204 * t79) + t417;
-        const gic_real t419 = y[16] * (m[160] * self->grip[6]) + (y[15] * (m[157] * self->grip[6]) + y[14] * (m[154] * self->grip[6]));
-        const gic_real t420 = m[203] + (m[198] * t45 - m[199] * t48) + (y[14] * t46 - y[15] * t49);
-        const gic_real t421 = m[202] + (m[200] * t48 - m[198] * t42) + (y[16] * t49 - y[14] * t43);
-        const gic_real t422 = m[199] * t42 - m[200] * t45 + (y[15] * t43 - y[16] * t46);
+        const gic_real t419 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t420 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t45 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t48) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t46 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t49);
+        const gic_real t421 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t48 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t42) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t49 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t43);
+        const gic_real t422 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t42 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t45 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t43 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t46);
         const gic_real t423 = t211 * (t411 + t420) + (t208 * (t413 + t421) + t209 * (t415 + t422));
         const gic_real t424 = t207 * t140 + (t210 * t145 + t212 * t139) + t423;
-        const gic_real t425 = y[16] * (m[196] * self->grip[33]) + (y[15] * (m[193] * self->grip[33]) + y[14] * (m[190] * self->grip[33]));
-        const gic_real t426 = self->grip[53] + (self->grip[26] + (t410 + t418) - t419 + t424) - t425;
-        const gic_real t427 = y[16] * (t9 * self->grip[59] + (t13 * self->grip[58] + t5 * self->grip[57]));
-        const gic_real t428 = y[15] * (t19 * self->grip[59] + (t21 * self->grip[58] + t18 * self->grip[57]));
-        const gic_real t429 = (t25 * self->grip[59] + (t26 * self->grip[58] + t24 * self->grip[57])) * t321;
-        const gic_real t430 = t411 + (m[239] + m[234] * t55 + (y[14] * t56 - t325));
-        const gic_real t431 = (t9 * self->grip[56] + (t13 * self->grip[55] + t5 * self->grip[54])) * t430;
-        const gic_real t432 = t413 + (m[238] - m[234] * t53 + (t328 - y[14] * t54));
-        const gic_real t433 = (t19 * self->grip[56] + (t21 * self->grip[55] + t18 * self->grip[54])) * t432;
-        const gic_real t434 = (t25 * self->grip[56] + (t26 * self->grip[55] + t24 * self->grip[54])) * (t415 + (y[15] * t54 - y[16] * t56));
+        const gic_real t425 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t426 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POWER] +
+            (self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POWER] + (t410 + t418) - t419 + t424) -
+            t425;
+        const gic_real t427 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t9 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t428 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (t19 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t429 = (t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X])) * t321;
+        const gic_real t430 = t411 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t55 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t56 -
+            t325));
+        const gic_real t431 = (t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * t430;
+        const gic_real t432 = t413 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t53 + (t328 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t54));
+        const gic_real t433 = (t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * t432;
+        const gic_real t434 = (t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * (t415 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t54 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t56));
         const gic_real t435 = t426 + (t427 + (t428 + t429) + (t431 + (t433 + t434)));
-        const gic_real t436 = self->grip[80] + t435 - (y[16] * (m[232] * self->grip[60]) + y[15] * (m[229] * self->grip[60]));
-        const gic_real t437 = y[16] * (t9 * self->grip[86] + (t13 * self->grip[85] + t5 * self->grip[84]));
-        const gic_real t438 = y[15] * (t19 * self->grip[86] + (t21 * self->grip[85] + t18 * self->grip[84]));
-        const gic_real t439 = (t25 * self->grip[86] + (t26 * self->grip[85] + t24 * self->grip[84])) * t342;
-        const gic_real t440 = t411 + (m[269] + m[264] * t62 + (y[14] * t63 - t325));
-        const gic_real t441 = (t9 * self->grip[83] + (t13 * self->grip[82] + t5 * self->grip[81])) * t440;
-        const gic_real t442 = t413 + (m[268] - m[264] * t60 + (t328 - y[14] * t61));
-        const gic_real t443 = (t19 * self->grip[83] + (t21 * self->grip[82] + t18 * self->grip[81])) * t442;
-        const gic_real t444 = (t25 * self->grip[83] + (t26 * self->grip[82] + t24 * self->grip[81])) * (t415 + (y[15] * t61 - y[16] * t63));
+        const gic_real t436 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POWER] + t435 -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t437 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t9 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t438 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (t19 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t439 = (t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X])) * t342;
+        const gic_real t440 = t411 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t62 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t63 -
+            t325));
+        const gic_real t441 = (t9 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t13 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t5 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * t440;
+        const gic_real t442 = t413 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t60 + (t328 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t61));
+        const gic_real t443 = (t19 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t21 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t18 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * t442;
+        const gic_real t444 = (t25 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * (t415 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t61 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t63));
         const gic_real t445 = t436 + (t437 + (t438 + t439) + (t441 + (t443 + t444)));
-        const gic_real t446 = self->grip[107] + t445 - (y[16] * (m[262] * self->grip[87]) + y[15] * (m[259] * self->grip[87]));
-        const gic_real t447 = y[0];
-        const gic_real t448 = y[1];
-        const gic_real t449 = y[2];
-        const gic_real t450 = y[11];
-        const gic_real t451 = y[12];
-        const gic_real t452 = y[13];
-        const gic_real t453 = t5 * t15 + (t18 * t23 + t24 * t28);
-        const gic_real t454 = t13 * t15 + (t21 * t23 + t26 * t28);
-        const gic_real t455 = t9 * t15 + (t19 * t23 + t25 * t28);
-        const gic_real t456 = e[0];
-        const gic_real t457 = e[1];
-        const gic_real t458 = e[2];
-        const gic_real t459 = e[3];
-        const gic_real t460 = GIC_ATAN2(t19, t9);
-        const gic_real t461 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t462 = GIC_ATAN2(t26, t24);
-        const gic_real t463 = y[14];
-        const gic_real t464 = y[15];
-        const gic_real t465 = y[16];
-        const gic_real t466 = t447 + (t5 * t54 + (t18 * t56 + t57));
-        const gic_real t467 = t448 + (t13 * t54 + (t21 * t56 + t58));
-        const gic_real t468 = t449 + (t9 * t54 + (t19 * t56 + t59));
-        const gic_real t469 = t447 + (t5 * t61 + (t57 + t18 * t63));
-        const gic_real t470 = t448 + (t13 * t61 + (t58 + t21 * t63));
-        const gic_real t471 = t449 + (t9 * t61 + (t59 + t19 * t63));
-        const gic_real t472 = x[0];
-        const gic_real t473 = xd[0];
-        const gic_real t474 = rate[17];
-        const gic_real t475 = x[1];
-        const gic_real t476 = xd[1];
-        const gic_real t477 = rate[18];
-        const gic_real t478 = x[2];
-        const gic_real t479 = xd[2];
-        const gic_real t480 = rate[19];
-        const gic_real t481 = x[3];
-        const gic_real t482 = xd[3];
-        const gic_real t483 = rate[20];
-        const gic_real t484 = x[4];
-        const gic_real t485 = xd[4];
-        const gic_real t486 = u[2];
-        const gic_real t487 = -(t65 + t66);
-        const gic_real t488 = -(t68 + t69);
-        const gic_real t489 = -(t71 + t72);
-        const gic_real t490 = -(t74 + t75);
-        const gic_real t491 = self->grip[8];
-        const gic_real t492 = self->grip[9];
-        const gic_real t493 = self->grip[10];
-        const gic_real t494 = self->grip[11];
-        const gic_real t495 = self->grip[35];
-        const gic_real t496 = self->grip[36];
-        const gic_real t497 = self->grip[37];
-        const gic_real t498 = self->grip[38];
-        const gic_real t499 = self->grip[62];
-        const gic_real t500 = self->grip[63];
-        const gic_real t501 = self->grip[64];
-        const gic_real t502 = self->grip[65];
-        const gic_real t503 = self->grip[89];
-        const gic_real t504 = self->grip[90];
-        const gic_real t505 = self->grip[91];
-        const gic_real t506 = self->grip[92];
-        const gic_real t507 = t336 + R(0.5) * (t343 + t354);
-        const gic_real t508 = t446 + t485 * t215;
-        const gic_real t509 = self->grip[12];
-        const gic_real t510 = self->grip[13];
-        const gic_real t511 = self->grip[14];
-        const gic_real t512 = self->grip[15];
-        const gic_real t513 = self->grip[16];
-        const gic_real t514 = self->grip[17];
-        const gic_real t515 = GIC_ATAN(self->grip[18]);
-        const gic_real t516 = self->grip[19];
-        const gic_real t517 = y[21];
-        const gic_real t518 = rate[21];
-        const gic_real t519 = self->grip[6];
-        const gic_real t520 = self->grip[7];
-        const gic_real t521 = self->grip[39];
-        const gic_real t522 = self->grip[40];
-        const gic_real t523 = self->grip[41];
-        const gic_real t524 = self->grip[42];
-        const gic_real t525 = self->grip[43];
-        const gic_real t526 = self->grip[44];
-        const gic_real t527 = GIC_ATAN(self->grip[45]);
-        const gic_real t528 = self->grip[46];
-        const gic_real t529 = y[25];
-        const gic_real t530 = rate[25];
-        const gic_real t531 = self->grip[33];
-        const gic_real t532 = self->grip[34];
-        const gic_real t533 = self->grip[66];
-        const gic_real t534 = self->grip[67];
-        const gic_real t535 = self->grip[68];
-        const gic_real t536 = self->grip[69];
-        const gic_real t537 = self->grip[70];
-        const gic_real t538 = self->grip[71];
-        const gic_real t539 = GIC_ATAN(self->grip[72]);
-        const gic_real t540 = self->grip[73];
-        const gic_real t541 = y[29];
-        const gic_real t542 = rate[29];
-        const gic_real t543 = self->grip[60];
-        const gic_real t544 = self->grip[61];
-        const gic_real t545 = self->grip[93];
-        const gic_real t546 = self->grip[94];
-        const gic_real t547 = self->grip[95];
-        const gic_real t548 = self->grip[96];
-        const gic_real t549 = self->grip[97];
-        const gic_real t550 = self->grip[98];
-        const gic_real t551 = GIC_ATAN(self->grip[99]);
-        const gic_real t552 = self->grip[100];
-        const gic_real t553 = y[33];
-        const gic_real t554 = rate[33];
-        const gic_real t555 = self->grip[87];
-        const gic_real t556 = self->grip[88];
-        const gic_real t557 = self->grip[20];
-        const gic_real t558 = self->grip[21];
-        const gic_real t559 = self->grip[22];
-        const gic_real t560 = self->grip[47];
-        const gic_real t561 = self->grip[48];
-        const gic_real t562 = self->grip[49];
-        const gic_real t563 = self->grip[74];
-        const gic_real t564 = self->grip[75];
-        const gic_real t565 = self->grip[76];
-        const gic_real t566 = self->grip[101];
-        const gic_real t567 = self->grip[102];
-        const gic_real t568 = self->grip[103];
-        const gic_real t569 = self->watch[0];
-        const gic_real t570 = self->watch[1];
-        const gic_real t571 = self->watch[2];
-        const gic_real t572 = self->watch[3];
-        const gic_real t573 = self->watch[4];
-        const gic_real t574 = self->watch[5];
-        const gic_real t575 = self->watch[6];
-        const gic_real t576 = self->watch[7];
-        out[0] = t447;
-        out[1] = t448;
-        out[2] = t449;
-        out[3] = t450;
-        out[4] = t451;
-        out[5] = t452;
-        out[6] = t453;
-        out[7] = t454;
-        out[8] = t455;
-        out[9] = t456;
-        out[10] = t457;
-        out[11] = t458;
-        out[12] = t459;
-        out[13] = t460;
-        out[14] = t461;
-        out[15] = t462;
-        out[16] = t463;
-        out[17] = t464;
-        out[18] = t465;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t50;
-        out[23] = t51;
-        out[24] = t52;
-        out[25] = t466;
-        out[26] = t467;
-        out[27] = t468;
-        out[28] = t469;
-        out[29] = t470;
-        out[30] = t471;
-        out[31] = t472;
-        out[32] = t473;
-        out[33] = t474;
-        out[34] = t475;
-        out[35] = t476;
-        out[36] = t477;
-        out[37] = t478;
-        out[38] = t479;
-        out[39] = t480;
-        out[40] = t481;
-        out[41] = t482;
-        out[42] = t483;
-        out[43] = t484;
-        out[44] = t485;
-        out[45] = t486;
-        out[46] = t487;
-        out[47] = t488;
-        out[48] = t489;
-        out[49] = t490;
-        out[50] = t215;
-        out[51] = t491;
-        out[52] = t492;
-        out[53] = t493;
-        out[54] = t494;
-        out[55] = t495;
-        out[56] = t496;
-        out[57] = t497;
-        out[58] = t498;
-        out[59] = t499;
-        out[60] = t500;
-        out[61] = t501;
-        out[62] = t502;
-        out[63] = t503;
-        out[64] = t504;
-        out[65] = t505;
-        out[66] = t506;
-        out[67] = t507;
-        out[68] = t389;
-        out[69] = t508;
-        out[70] = t509;
-        out[71] = t510;
-        out[72] = t511;
-        out[73] = t512;
-        out[74] = t513;
-        out[75] = t514;
-        out[76] = t515;
-        out[77] = t516;
-        out[78] = t517;
-        out[79] = t518;
-        out[80] = t519;
-        out[81] = t520;
-        out[82] = t521;
-        out[83] = t522;
-        out[84] = t523;
-        out[85] = t524;
-        out[86] = t525;
-        out[87] = t526;
-        out[88] = t527;
-        out[89] = t528;
-        out[90] = t529;
-        out[91] = t530;
-        out[92] = t531;
-        out[93] = t532;
-        out[94] = t533;
-        out[95] = t534;
-        out[96] = t535;
-        out[97] = t536;
-        out[98] = t537;
-        out[99] = t538;
-        out[100] = t539;
-        out[101] = t540;
-        out[102] = t541;
-        out[103] = t542;
-        out[104] = t543;
-        out[105] = t544;
-        out[106] = t545;
-        out[107] = t546;
-        out[108] = t547;
-        out[109] = t548;
-        out[110] = t549;
-        out[111] = t550;
-        out[112] = t551;
-        out[113] = t552;
-        out[114] = t553;
-        out[115] = t554;
-        out[116] = t555;
-        out[117] = t556;
-        out[118] = t557;
-        out[119] = t558;
-        out[120] = t559;
-        out[121] = t560;
-        out[122] = t561;
-        out[123] = t562;
-        out[124] = t563;
-        out[125] = t564;
-        out[126] = t565;
-        out[127] = t566;
-        out[128] = t567;
-        out[129] = t568;
-        out[130] = t569;
-        out[131] = t570;
-        out[132] = t571;
-        out[133] = t572;
-        out[134] = t573;
-        out[135] = t574;
-        out[136] = t575;
-        out[137] = t576;
+        const gic_real t446 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POWER] + t445 -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real output_chassis_x = y[HMMWV_VEHICLE_STATE_R_X];
+        const gic_real output_chassis_y = y[HMMWV_VEHICLE_STATE_R_Y];
+        const gic_real output_chassis_z = y[HMMWV_VEHICLE_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[HMMWV_VEHICLE_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[HMMWV_VEHICLE_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[HMMWV_VEHICLE_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t15 + (t18 * t23 + t24 * t28);
+        const gic_real output_chassis_acceleration_y = t13 * t15 + (t21 * t23 + t26 * t28);
+        const gic_real output_chassis_acceleration_z = t9 * t15 + (t19 * t23 + t25 * t28);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t19, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t26, t24);
+        const gic_real output_chassis_angular_velocity_x = y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real output_wheel_r_l_x = output_chassis_x + (t5 * t54 + (t18 * t56 + t57));
+        const gic_real output_wheel_r_l_y = output_chassis_y + (t13 * t54 + (t21 * t56 + t58));
+        const gic_real output_wheel_r_l_z = output_chassis_z + (t9 * t54 + (t19 * t56 + t59));
+        /* output wheel_r_r */
+        const gic_real output_wheel_r_r_x = output_chassis_x + (t5 * t61 + (t57 + t18 * t63));
+        const gic_real output_wheel_r_r_y = output_chassis_y + (t13 * t61 + (t58 + t21 * t63));
+        const gic_real output_wheel_r_r_z = output_chassis_z + (t9 * t61 + (t59 + t19 * t63));
+        const gic_real output_spring_f_l_value = x[HMMWV_VEHICLE_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[HMMWV_VEHICLE_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[HMMWV_VEHICLE_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[HMMWV_VEHICLE_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[HMMWV_VEHICLE_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[HMMWV_VEHICLE_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[HMMWV_VEHICLE_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[HMMWV_VEHICLE_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[HMMWV_VEHICLE_X_RACK];
+        const gic_real output_rack_rate = xd[HMMWV_VEHICLE_X_RACK];
+        const gic_real output_rack_acceleration = u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real force_spring_f_l = -(t65 + t66);
+        const gic_real force_spring_f_r = -(t68 + t69);
+        const gic_real force_spring_r_l = -(t71 + t72);
+        const gic_real force_spring_r_r = -(t74 + t75);
+        const gic_real output_tire_f_l_fz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_LOAD];
+        const gic_real output_tire_f_l_deflection =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DEFLECTION];
+        const gic_real output_tire_f_l_deflection_rate =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_f_l_height = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_HEIGHT];
+        const gic_real output_tire_f_r_fz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_LOAD];
+        const gic_real output_tire_f_r_deflection =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DEFLECTION];
+        const gic_real output_tire_f_r_deflection_rate =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_f_r_height = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_HEIGHT];
+        const gic_real output_tire_r_l_fz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_LOAD];
+        const gic_real output_tire_r_l_deflection =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DEFLECTION];
+        const gic_real output_tire_r_l_deflection_rate =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_r_l_height = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_HEIGHT];
+        const gic_real output_tire_r_r_fz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_LOAD];
+        const gic_real output_tire_r_r_deflection =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DEFLECTION];
+        const gic_real output_tire_r_r_deflection_rate =
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DEFLECTION_RATE];
+        const gic_real output_tire_r_r_height = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_HEIGHT];
+        const gic_real output_energy_kinetic = t336 + R(0.5) * (t343 + t354);
+        const gic_real output_energy_power = t446 + output_rack_rate * output_force_rack;
+        const gic_real output_slip_f_l_fx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FX];
+        const gic_real output_slip_f_l_fy = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FY];
+        const gic_real output_slip_f_l_mx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_MX];
+        const gic_real output_slip_f_l_my = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_MY];
+        const gic_real output_slip_f_l_mz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_MZ];
+        const gic_real output_slip_f_l_kappa = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_KAPPA];
+        /* output slip_f_l */
+        const gic_real output_slip_f_l_alpha =
+            GIC_ATAN(self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TANGENT]);
+        const gic_real output_slip_f_l_camber = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_CAMBER];
+        const gic_real output_slip_f_l_spin = y[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN];
+        const gic_real output_slip_f_l_spin_rate = rate[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN];
+        const gic_real output_slip_f_l_drive = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real output_slip_f_l_brake = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_BRAKE];
+        const gic_real output_slip_f_r_fx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FX];
+        const gic_real output_slip_f_r_fy = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FY];
+        const gic_real output_slip_f_r_mx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_MX];
+        const gic_real output_slip_f_r_my = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_MY];
+        const gic_real output_slip_f_r_mz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_MZ];
+        const gic_real output_slip_f_r_kappa = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_KAPPA];
+        /* output slip_f_r */
+        const gic_real output_slip_f_r_alpha =
+            GIC_ATAN(self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TANGENT]);
+        const gic_real output_slip_f_r_camber = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_CAMBER];
+        const gic_real output_slip_f_r_spin = y[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN];
+        const gic_real output_slip_f_r_spin_rate = rate[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN];
+        const gic_real output_slip_f_r_drive = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real output_slip_f_r_brake = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_BRAKE];
+        const gic_real output_slip_r_l_fx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FX];
+        const gic_real output_slip_r_l_fy = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FY];
+        const gic_real output_slip_r_l_mx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_MX];
+        const gic_real output_slip_r_l_my = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_MY];
+        const gic_real output_slip_r_l_mz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_MZ];
+        const gic_real output_slip_r_l_kappa = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_KAPPA];
+        /* output slip_r_l */
+        const gic_real output_slip_r_l_alpha =
+            GIC_ATAN(self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TANGENT]);
+        const gic_real output_slip_r_l_camber = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_CAMBER];
+        const gic_real output_slip_r_l_spin = y[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN];
+        const gic_real output_slip_r_l_spin_rate = rate[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN];
+        const gic_real output_slip_r_l_drive = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real output_slip_r_l_brake = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_BRAKE];
+        const gic_real output_slip_r_r_fx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FX];
+        const gic_real output_slip_r_r_fy = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FY];
+        const gic_real output_slip_r_r_mx = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_MX];
+        const gic_real output_slip_r_r_my = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_MY];
+        const gic_real output_slip_r_r_mz = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_MZ];
+        const gic_real output_slip_r_r_kappa = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_KAPPA];
+        /* output slip_r_r */
+        const gic_real output_slip_r_r_alpha =
+            GIC_ATAN(self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TANGENT]);
+        const gic_real output_slip_r_r_camber = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_CAMBER];
+        const gic_real output_slip_r_r_spin = y[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN];
+        const gic_real output_slip_r_r_spin_rate = rate[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN];
+        const gic_real output_slip_r_r_drive = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real output_slip_r_r_brake = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_BRAKE];
+        const gic_real output_contact_f_l_x = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POINT_X];
+        const gic_real output_contact_f_l_y = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POINT_Y];
+        const gic_real output_contact_f_l_z = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POINT_Z];
+        const gic_real output_contact_f_r_x = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POINT_X];
+        const gic_real output_contact_f_r_y = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POINT_Y];
+        const gic_real output_contact_f_r_z = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POINT_Z];
+        const gic_real output_contact_r_l_x = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POINT_X];
+        const gic_real output_contact_r_l_y = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POINT_Y];
+        const gic_real output_contact_r_l_z = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POINT_Z];
+        const gic_real output_contact_r_r_x = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POINT_X];
+        const gic_real output_contact_r_r_y = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POINT_Y];
+        const gic_real output_contact_r_r_z = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POINT_Z];
+        /* output drive */
+        const gic_real output_drive_engine_speed = self->watch[HMMWV_VEHICLE_WATCH_ENGINE_SPEED];
+        const gic_real output_drive_engine_torque = self->watch[HMMWV_VEHICLE_WATCH_ENGINE_TORQUE];
+        const gic_real output_drive_throttle = self->watch[HMMWV_VEHICLE_WATCH_THROTTLE];
+        const gic_real output_drive_gear = self->watch[HMMWV_VEHICLE_WATCH_GEAR];
+        const gic_real output_drive_ratio = self->watch[HMMWV_VEHICLE_WATCH_RATIO];
+        const gic_real output_drive_turbine_speed = self->watch[HMMWV_VEHICLE_WATCH_TURBINE_SPEED];
+        const gic_real output_drive_turbine_torque = self->watch[HMMWV_VEHICLE_WATCH_TURBINE_TORQUE];
+        const gic_real output_drive_pump_torque = self->watch[HMMWV_VEHICLE_WATCH_PUMP_TORQUE];
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[HMMWV_VEHICLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[HMMWV_VEHICLE_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[HMMWV_VEHICLE_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[HMMWV_VEHICLE_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[HMMWV_VEHICLE_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[HMMWV_VEHICLE_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[HMMWV_VEHICLE_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[HMMWV_VEHICLE_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[HMMWV_VEHICLE_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[HMMWV_VEHICLE_OUTPUT_FORCE_RACK] = output_force_rack;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[HMMWV_VEHICLE_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[HMMWV_VEHICLE_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[HMMWV_VEHICLE_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[HMMWV_VEHICLE_OUTPUT_ENERGY_POWER] = output_energy_power;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_FX] = output_slip_f_l_fx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_FY] = output_slip_f_l_fy;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_MX] = output_slip_f_l_mx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_MY] = output_slip_f_l_my;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_MZ] = output_slip_f_l_mz;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_KAPPA] = output_slip_f_l_kappa;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_ALPHA] = output_slip_f_l_alpha;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_CAMBER] = output_slip_f_l_camber;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_SPIN] = output_slip_f_l_spin;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_SPIN_RATE] = output_slip_f_l_spin_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_DRIVE] = output_slip_f_l_drive;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_L_BRAKE] = output_slip_f_l_brake;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_FX] = output_slip_f_r_fx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_FY] = output_slip_f_r_fy;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_MX] = output_slip_f_r_mx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_MY] = output_slip_f_r_my;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_MZ] = output_slip_f_r_mz;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_KAPPA] = output_slip_f_r_kappa;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_ALPHA] = output_slip_f_r_alpha;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_CAMBER] = output_slip_f_r_camber;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_SPIN] = output_slip_f_r_spin;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_SPIN_RATE] = output_slip_f_r_spin_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_DRIVE] = output_slip_f_r_drive;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_F_R_BRAKE] = output_slip_f_r_brake;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_FX] = output_slip_r_l_fx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_FY] = output_slip_r_l_fy;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_MX] = output_slip_r_l_mx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_MY] = output_slip_r_l_my;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_MZ] = output_slip_r_l_mz;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_KAPPA] = output_slip_r_l_kappa;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_ALPHA] = output_slip_r_l_alpha;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_CAMBER] = output_slip_r_l_camber;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_SPIN] = output_slip_r_l_spin;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_SPIN_RATE] = output_slip_r_l_spin_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_DRIVE] = output_slip_r_l_drive;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_L_BRAKE] = output_slip_r_l_brake;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_FX] = output_slip_r_r_fx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_FY] = output_slip_r_r_fy;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_MX] = output_slip_r_r_mx;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_MY] = output_slip_r_r_my;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_MZ] = output_slip_r_r_mz;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_KAPPA] = output_slip_r_r_kappa;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_ALPHA] = output_slip_r_r_alpha;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_CAMBER] = output_slip_r_r_camber;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_SPIN] = output_slip_r_r_spin;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_SPIN_RATE] = output_slip_r_r_spin_rate;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_DRIVE] = output_slip_r_r_drive;
+        out[HMMWV_VEHICLE_OUTPUT_SLIP_R_R_BRAKE] = output_slip_r_r_brake;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_L_X] = output_contact_f_l_x;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_L_Y] = output_contact_f_l_y;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_L_Z] = output_contact_f_l_z;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_R_X] = output_contact_f_r_x;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_R_Y] = output_contact_f_r_y;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_F_R_Z] = output_contact_f_r_z;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_L_X] = output_contact_r_l_x;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_L_Y] = output_contact_r_l_y;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_L_Z] = output_contact_r_l_z;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_R_X] = output_contact_r_r_x;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_R_Y] = output_contact_r_r_y;
+        out[HMMWV_VEHICLE_OUTPUT_CONTACT_R_R_Z] = output_contact_r_r_z;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_ENGINE_SPEED] = output_drive_engine_speed;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_ENGINE_TORQUE] = output_drive_engine_torque;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_THROTTLE] = output_drive_throttle;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_GEAR] = output_drive_gear;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_RATIO] = output_drive_ratio;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_TURBINE_SPEED] = output_drive_turbine_speed;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_TURBINE_TORQUE] = output_drive_turbine_torque;
+        out[HMMWV_VEHICLE_OUTPUT_DRIVE_PUMP_TORQUE] = output_drive_pump_torque;
     }
     return GIC_OK;
 }
@@ -3225,26 +4453,36 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.054228999999999916) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[HMMWV_VEHICLE_STATE_R_X] + (R(0.054228999999999916) * t5 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.054228999999999916) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[HMMWV_VEHICLE_STATE_R_Y] + (R(0.054228999999999916) * t16 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.054228999999999916) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[HMMWV_VEHICLE_STATE_R_Z] + (R(0.054228999999999916) * t21 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] *
+            R(3.0379110359107786e-06) + m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY]));
+        const gic_real t31 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t32 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -3252,12 +4490,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -3268,11 +4508,17 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] *
+            R(3.0379110359107786e-06) + m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY]));
+        const gic_real t59 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t60 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -3280,12 +4526,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -3296,34 +4544,54 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[152] + (m[161] * R(0.09182099999999999) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t85 = m[151] + (m[158] * R(0.09182099999999999) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[155] * R(0.09182099999999999) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[161] - (m[153] + m[157]));
-        const gic_real t91 = R(1.0) + (m[157] - (m[153] + m[161]));
-        const gic_real t92 = m[157] + m[161];
-        const gic_real t93 = R(1.0) + (m[153] - t92);
-        const gic_real t94 = R(1.0) + (m[153] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] *
+            R(0.09182099999999999) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[HMMWV_VEHICLE_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[HMMWV_VEHICLE_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY]));
+        const gic_real t91 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t92 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[156] - m[154];
+        const gic_real t98 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[155] - m[159];
+        const gic_real t100 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[160] - m[158];
+        const gic_real t102 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[158] + m[160];
-        const gic_real t108 = m[155] + m[159];
+        const gic_real t107 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY];
+        const gic_real t108 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[154] + m[156];
+        const gic_real t111 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -3333,34 +4601,54 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[188] + (m[197] * R(0.09182099999999999) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t122 = m[187] + (m[194] * R(0.09182099999999999) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[191] * R(0.09182099999999999) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t128 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t129 = m[193] + m[197];
-        const gic_real t130 = R(1.0) + (m[189] - t129);
-        const gic_real t131 = R(1.0) + (m[189] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] *
+            R(0.09182099999999999) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.08910630000000008) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[HMMWV_VEHICLE_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[HMMWV_VEHICLE_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[HMMWV_VEHICLE_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY]));
+        const gic_real t128 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t129 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[192] - m[190];
+        const gic_real t135 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[191] - m[195];
+        const gic_real t137 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[196] - m[194];
+        const gic_real t139 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[194] + m[196];
-        const gic_real t145 = m[191] + m[195];
+        const gic_real t144 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY];
+        const gic_real t145 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[190] + m[192];
+        const gic_real t148 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -3370,14 +4658,20 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t159 = R(0.307086) + (m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056));
+        /* pose of lca_r_l */
+        const gic_real t158 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.246867347245056);
+        const gic_real t159 = R(0.307086) + (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] *
+            R(-3.0379110358344508e-06) + m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.246867347245056));
         const gic_real t160 = R(-1.688965) * t12;
         const gic_real t161 = R(-1.688965) * t19;
         const gic_real t162 = R(-1.688965) * t23;
-        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[97]));
-        const gic_real t164 = R(1.0) + (m[97] - (R(1.0) + m[101]));
-        const gic_real t165 = m[97] + m[101];
+        const gic_real t163 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY]));
+        const gic_real t164 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t165 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ];
         const gic_real t166 = R(1.0) + (R(1.0) - t165);
         const gic_real t167 = R(1.0) + (R(1.0) + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
@@ -3385,12 +4679,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t170 = t163 - t169;
         const gic_real t171 = t164 - t168;
         const gic_real t172 = t166 - t167;
-        const gic_real t173 = m[100] - m[98];
+        const gic_real t173 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ];
         const gic_real t174 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? R(0.0) : (t172 > GIC_R(0) ? t173 : t167)));
         const gic_real t175 = R(0.5) / GIC_SQRT(GIC_MAX(t163, t169));
         const gic_real t176 = t174 * t175;
         const gic_real t177 = e[0] * t176;
-        const gic_real t178 = m[98] + m[100];
+        const gic_real t178 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY];
         const gic_real t179 = (t172 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t180 = (t170 > GIC_R(0) ? t163 : (t171 > GIC_R(0) ? t178 : t179)) * t175;
         const gic_real t181 = (t170 > GIC_R(0) ? t178 : (t171 > GIC_R(0) ? t164 : t179)) * t175;
@@ -3401,11 +4697,17 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t186 = e[2] * t180 - e[3] * t181 + (e[1] * t176 + e[0] * t183);
         const gic_real t187 = e[3] * t183 - e[1] * t180 + (e[2] * t176 + e[0] * t181);
         const gic_real t188 = e[1] * t181 - e[2] * t183 + (e[3] * t176 + e[0] * t180);
-        const gic_real t189 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t190 = R(-0.307086) + (m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056));
-        const gic_real t191 = R(1.0) + (m[131] - (R(1.0) + m[127]));
-        const gic_real t192 = R(1.0) + (m[127] - (R(1.0) + m[131]));
-        const gic_real t193 = m[127] + m[131];
+        /* pose of lca_r_r */
+        const gic_real t189 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.246867347245056);
+        const gic_real t190 = R(-0.307086) + (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] *
+            R(-3.0379110358344508e-06) + m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(-0.246867347245056));
+        const gic_real t191 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY]));
+        const gic_real t192 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t193 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ];
         const gic_real t194 = R(1.0) + (R(1.0) - t193);
         const gic_real t195 = R(1.0) + (R(1.0) + t193);
         const gic_real t196 = GIC_MAX(t194, t195);
@@ -3413,12 +4715,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t198 = t191 - t197;
         const gic_real t199 = t192 - t196;
         const gic_real t200 = t194 - t195;
-        const gic_real t201 = m[130] - m[128];
+        const gic_real t201 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ];
         const gic_real t202 = (t198 > GIC_R(0) ? R(0.0) : (t199 > GIC_R(0) ? R(0.0) : (t200 > GIC_R(0) ? t201 : t195)));
         const gic_real t203 = R(0.5) / GIC_SQRT(GIC_MAX(t191, t197));
         const gic_real t204 = t202 * t203;
         const gic_real t205 = e[0] * t204;
-        const gic_real t206 = m[128] + m[130];
+        const gic_real t206 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY];
         const gic_real t207 = (t200 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t208 = (t198 > GIC_R(0) ? t191 : (t199 > GIC_R(0) ? t206 : t207)) * t203;
         const gic_real t209 = (t198 > GIC_R(0) ? t206 : (t199 > GIC_R(0) ? t192 : t207)) * t203;
@@ -3429,14 +4733,22 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t214 = e[2] * t208 - e[3] * t209 + (e[1] * t204 + e[0] * t211);
         const gic_real t215 = e[3] * t211 - e[1] * t208 + (e[2] * t204 + e[0] * t209);
         const gic_real t216 = e[1] * t209 - e[2] * t211 + (e[3] * t204 + e[0] * t208);
-        const gic_real t217 = m[224] + (m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008));
-        const gic_real t218 = m[223] + (m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008));
+        /* pose of wheel_r_l */
+        const gic_real t217 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t218 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008));
         const gic_real t219 = R(-1.653405) * t12;
         const gic_real t220 = R(-1.653405) * t19;
         const gic_real t221 = R(-1.653405) * t23;
-        const gic_real t222 = R(1.0) + (m[233] - (R(1.0) + m[229]));
-        const gic_real t223 = R(1.0) + (m[229] - (R(1.0) + m[233]));
-        const gic_real t224 = m[229] + m[233];
+        const gic_real t222 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY]));
+        const gic_real t223 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t224 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ];
         const gic_real t225 = R(1.0) + (R(1.0) - t224);
         const gic_real t226 = R(1.0) + (R(1.0) + t224);
         const gic_real t227 = GIC_MAX(t225, t226);
@@ -3444,12 +4756,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t229 = t222 - t228;
         const gic_real t230 = t223 - t227;
         const gic_real t231 = t225 - t226;
-        const gic_real t232 = m[232] - m[230];
+        const gic_real t232 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ];
         const gic_real t233 = (t229 > GIC_R(0) ? R(0.0) : (t230 > GIC_R(0) ? R(0.0) : (t231 > GIC_R(0) ? t232 : t226)));
         const gic_real t234 = R(0.5) / GIC_SQRT(GIC_MAX(t222, t228));
         const gic_real t235 = t233 * t234;
         const gic_real t236 = e[0] * t235;
-        const gic_real t237 = m[230] + m[232];
+        const gic_real t237 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY];
         const gic_real t238 = (t231 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t239 = (t229 > GIC_R(0) ? t222 : (t230 > GIC_R(0) ? t237 : t238)) * t234;
         const gic_real t240 = (t229 > GIC_R(0) ? t237 : (t230 > GIC_R(0) ? t223 : t238)) * t234;
@@ -3460,11 +4774,19 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t245 = e[2] * t239 - e[3] * t240 + (e[1] * t235 + e[0] * t242);
         const gic_real t246 = e[3] * t242 - e[1] * t239 + (e[2] * t235 + e[0] * t240);
         const gic_real t247 = e[1] * t240 - e[2] * t242 + (e[3] * t235 + e[0] * t239);
-        const gic_real t248 = m[254] + (m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008));
-        const gic_real t249 = m[253] + (m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008));
-        const gic_real t250 = R(1.0) + (m[263] - (R(1.0) + m[259]));
-        const gic_real t251 = R(1.0) + (m[259] - (R(1.0) + m[263]));
-        const gic_real t252 = m[259] + m[263];
+        /* pose of wheel_r_r */
+        const gic_real t248 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t249 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t250 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY]));
+        const gic_real t251 = R(1.0) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] - (R(1.0) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ]));
+        const gic_real t252 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ];
         const gic_real t253 = R(1.0) + (R(1.0) - t252);
         const gic_real t254 = R(1.0) + (R(1.0) + t252);
         const gic_real t255 = GIC_MAX(t253, t254);
@@ -3472,12 +4794,14 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t257 = t250 - t256;
         const gic_real t258 = t251 - t255;
         const gic_real t259 = t253 - t254;
-        const gic_real t260 = m[262] - m[260];
+        const gic_real t260 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ];
         const gic_real t261 = (t257 > GIC_R(0) ? R(0.0) : (t258 > GIC_R(0) ? R(0.0) : (t259 > GIC_R(0) ? t260 : t254)));
         const gic_real t262 = R(0.5) / GIC_SQRT(GIC_MAX(t250, t256));
         const gic_real t263 = t261 * t262;
         const gic_real t264 = e[0] * t263;
-        const gic_real t265 = m[260] + m[262];
+        const gic_real t265 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY];
         const gic_real t266 = (t259 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t267 = (t257 > GIC_R(0) ? t250 : (t258 > GIC_R(0) ? t265 : t266)) * t262;
         const gic_real t268 = (t257 > GIC_R(0) ? t265 : (t258 > GIC_R(0) ? t251 : t266)) * t262;
@@ -3488,9 +4812,9 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t273 = e[2] * t267 - e[3] * t268 + (e[1] * t263 + e[0] * t270);
         const gic_real t274 = e[3] * t270 - e[1] * t267 + (e[2] * t263 + e[0] * t268);
         const gic_real t275 = e[1] * t268 - e[2] * t270 + (e[3] * t263 + e[0] * t267);
-        const gic_real t276 = y[0];
-        const gic_real t277 = y[1];
-        const gic_real t278 = y[2];
+        const gic_real t276 = y[HMMWV_VEHICLE_STATE_R_X];
+        const gic_real t277 = y[HMMWV_VEHICLE_STATE_R_Y];
+        const gic_real t278 = y[HMMWV_VEHICLE_STATE_R_Z];
         const gic_real t279 = e[0];
         const gic_real t280 = e[1];
         const gic_real t281 = e[2];
@@ -3549,83 +4873,83 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
         const gic_real t334 = (t272 > GIC_R(0) ? t273 : -t273);
         const gic_real t335 = (t272 > GIC_R(0) ? t274 : -t274);
         const gic_real t336 = (t272 > GIC_R(0) ? t275 : -t275);
-        pose[0] = t276;
-        pose[1] = t277;
-        pose[2] = t278;
-        pose[3] = t279;
-        pose[4] = t280;
-        pose[5] = t281;
-        pose[6] = t282;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t283;
-        pose[11] = t284;
-        pose[12] = t285;
-        pose[13] = t286;
-        pose[14] = t287;
-        pose[15] = t288;
-        pose[16] = t289;
-        pose[17] = t290;
-        pose[18] = t291;
-        pose[19] = t292;
-        pose[20] = t293;
-        pose[21] = t294;
-        pose[22] = t295;
-        pose[23] = t296;
-        pose[24] = t297;
-        pose[25] = t298;
-        pose[26] = t299;
-        pose[27] = t300;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t301;
-        pose[32] = t302;
-        pose[33] = t303;
-        pose[34] = t304;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t305;
-        pose[39] = t306;
-        pose[40] = t307;
-        pose[41] = t308;
-        pose[42] = t309;
-        pose[43] = t310;
-        pose[44] = t311;
-        pose[45] = t312;
-        pose[46] = t313;
-        pose[47] = t314;
-        pose[48] = t315;
-        pose[49] = t316;
-        pose[50] = t317;
-        pose[51] = t318;
-        pose[52] = t319;
-        pose[53] = t320;
-        pose[54] = t321;
-        pose[55] = t322;
-        pose[56] = t323;
-        pose[57] = t324;
-        pose[58] = t325;
-        pose[59] = t326;
-        pose[60] = t327;
-        pose[61] = t328;
-        pose[62] = t329;
-        pose[63] = t330;
-        pose[64] = t331;
-        pose[65] = t332;
-        pose[66] = t333;
-        pose[67] = t334;
-        pose[68] = t335;
-        pose[69] = t336;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_X] = t276;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_Y] = t277;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_Z] = t278;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_P0] = t279;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_P1] = t280;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_P2] = t281;
+        pose[HMMWV_VEHICLE_POSE_CHASSIS + HMMWV_VEHICLE_Q_P3] = t282;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_X] = t13;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_Y] = t20;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_Z] = t24;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_P0] = t283;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_P1] = t284;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_P2] = t285;
+        pose[HMMWV_VEHICLE_POSE_RACK + HMMWV_VEHICLE_Q_P3] = t286;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_X] = t287;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_Y] = t288;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_Z] = t289;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_P0] = t290;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_P1] = t291;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_P2] = t292;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_L + HMMWV_VEHICLE_Q_P3] = t293;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_X] = t294;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_Y] = t295;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_Z] = t296;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_P0] = t297;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_P1] = t298;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_P2] = t299;
+        pose[HMMWV_VEHICLE_POSE_LCA_F_R + HMMWV_VEHICLE_Q_P3] = t300;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_X] = t87;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_Y] = t88;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_Z] = t89;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_P0] = t301;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_P1] = t302;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_P2] = t303;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_L + HMMWV_VEHICLE_Q_P3] = t304;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_X] = t124;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_Y] = t125;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_Z] = t126;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_P0] = t305;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_P1] = t306;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_P2] = t307;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_F_R + HMMWV_VEHICLE_Q_P3] = t308;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_X] = t309;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_Y] = t310;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_Z] = t311;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_P0] = t312;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_P1] = t313;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_P2] = t314;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_L + HMMWV_VEHICLE_Q_P3] = t315;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_X] = t316;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_Y] = t317;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_Z] = t318;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_P0] = t319;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_P1] = t320;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_P2] = t321;
+        pose[HMMWV_VEHICLE_POSE_LCA_R_R + HMMWV_VEHICLE_Q_P3] = t322;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_X] = t323;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_Y] = t324;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_Z] = t325;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_P0] = t326;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_P1] = t327;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_P2] = t328;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_L + HMMWV_VEHICLE_Q_P3] = t329;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_X] = t330;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_Y] = t331;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_Z] = t332;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_P0] = t333;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_P1] = t334;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_P2] = t335;
+        pose[HMMWV_VEHICLE_POSE_WHEEL_R_R + HMMWV_VEHICLE_Q_P3] = t336;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, gic_real largest[2])
 {
     hmmwv_vehicle_links links;
@@ -3634,99 +4958,109 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[HMMWV_VEHICLE_X_RACK];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_RACK];
+    hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + HMMWV_VEHICLE_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = HMMWV_VEHICLE_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_F_L];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_F_L];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[0], &links, self->motion + HMMWV_VEHICLE_MOTION_LCA_F_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = HMMWV_VEHICLE_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_F_R];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_F_R];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[1], &links, self->motion + HMMWV_VEHICLE_MOTION_LCA_F_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = HMMWV_VEHICLE_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[2], &links, self->motion + 90, one);
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_R_L];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[2], &links, self->motion + HMMWV_VEHICLE_MOTION_LCA_R_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = HMMWV_VEHICLE_SUBSET_LCA_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[3], &links, self->motion + 120, one);
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_R_R];
+    hmmwv_vehicle_residual_lca_f_l(hmmwv_vehicle_k_lca_f_l[3], &links, self->motion + HMMWV_VEHICLE_MOTION_LCA_R_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496356)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = HMMWV_VEHICLE_SUBSET_LCA_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + HMMWV_VEHICLE_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_VEHICLE_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[HMMWV_VEHICLE_X_RACK];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_RACK];
+    links.x[1] = self->x[HMMWV_VEHICLE_X_SPRING_F_L];
+    links.rate[1] = self->xd[HMMWV_VEHICLE_X_SPRING_F_L];
+    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[0], &links, self->motion +
+        HMMWV_VEHICLE_MOTION_WHEEL_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = HMMWV_VEHICLE_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[1], &links, self->motion + 186, one);
+    links.known[0] = self->motion + HMMWV_VEHICLE_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + HMMWV_VEHICLE_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[HMMWV_VEHICLE_X_RACK];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_RACK];
+    links.x[1] = self->x[HMMWV_VEHICLE_X_SPRING_F_R];
+    links.rate[1] = self->xd[HMMWV_VEHICLE_X_SPRING_F_R];
+    hmmwv_vehicle_residual_wheel_f_l(hmmwv_vehicle_k_wheel_f_l[1], &links, self->motion +
+        HMMWV_VEHICLE_MOTION_WHEEL_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638516)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = HMMWV_VEHICLE_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 90;
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[0], &links, self->motion + 222, one);
+    links.known[0] = self->motion + HMMWV_VEHICLE_MOTION_LCA_R_L; /* lca_r_l */
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_R_L];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_R_L];
+    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[0], &links, self->motion +
+        HMMWV_VEHICLE_MOTION_WHEEL_R_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 8;
+        bad = HMMWV_VEHICLE_SUBSET_WHEEL_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 120;
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[1], &links, self->motion + 252, one);
+    links.known[0] = self->motion + HMMWV_VEHICLE_MOTION_LCA_R_R; /* lca_r_r */
+    links.x[0] = self->x[HMMWV_VEHICLE_X_SPRING_R_R];
+    links.rate[0] = self->xd[HMMWV_VEHICLE_X_SPRING_R_R];
+    hmmwv_vehicle_residual_wheel_r_l(hmmwv_vehicle_k_wheel_r_l[1], &links, self->motion +
+        HMMWV_VEHICLE_MOTION_WHEEL_R_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.3730635513175455)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 9;
+        bad = HMMWV_VEHICLE_SUBSET_WHEEL_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_vehicle_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_vehicle_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[16] * R(3570.2);
-        const gic_real t2 = y[15] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[13] - R(-9.81);
+        const gic_real t8 = rate[HMMWV_VEHICLE_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -3734,710 +5068,1178 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, g
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[12] + t15 * rate[11]);
-        const gic_real t17 = y[15] * R(0.056);
-        const gic_real t18 = y[15] * R(0.21300000000000002);
-        const gic_real t19 = y[14] * t17 + y[16] * t18 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000002));
+        const gic_real t16 = t7 * t8 + (t12 * rate[HMMWV_VEHICLE_STATE_V_Y] + t15 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        const gic_real t17 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002);
+        const gic_real t19 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t17 + y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t18 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * R(0.21300000000000002));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[15] * t1 - y[16] * t2 + rate[14] * R(1078.52) - t20 * R(444.42876000000007);
+        const gic_real t21 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t1 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t2 +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.42876000000007);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[12] + t27 * rate[11]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]));
-        const gic_real t30 = R(0.054228999999999916) * y[15] - m[1] * y[16];
-        const gic_real t31 = y[14] * t29 - y[15] * t30 + (m[1] * rate[14] - R(1.438648) * rate[15]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[HMMWV_VEHICLE_STATE_V_Y] + t27 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] + (R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t31 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t29 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t30 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * rate[HMMWV_VEHICLE_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t35 = y[16] * t30 - y[14] * t34 + (R(1.438648) * rate[16] - R(0.054228999999999916) * rate[14]);
-        const gic_real t36 = u[2] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[16] * t37 + y[15] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[16] * t40 + y[15] * t42;
-        const gic_real t44 = y[15] * t41 - y[16] * t43 + R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[16];
-        const gic_real t50 = t49 - y[14] * t46 - t47 - t47;
+        const gic_real t34 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t35 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t30 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t34 +
+            (R(1.438648) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z] - R(0.054228999999999916) *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t36 = u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t38 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t39 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t40 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * t38 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * t39;
+        const gic_real t41 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t37 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * t38 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * t39;
+        const gic_real t43 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t40 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t41 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t46;
+        const gic_real t48 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t45 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t47;
+        const gic_real t49 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[15] * t46 - y[16] * t51;
-        const gic_real t53 = R(1.688965) * rate[15];
-        const gic_real t54 = y[14] * t50 - y[15] * t52 + (rate[14] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[17] * (m[54] * t45);
+        const gic_real t52 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t46 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t54 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t50 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t52 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[15];
-        const gic_real t59 = t57 + (t57 + (y[14] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[16];
-        const gic_real t61 = y[16] * t52 - y[14] * t59 + (t60 - rate[14] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[17] * (m[54] * t46);
+        const gic_real t57 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t61 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t52 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t59 + (t60 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t57 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[14] + (m[1] * t33 - t36 * R(0.4919654879999992))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[16] * t67 + y[15] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[16] * t70 + y[15] * t72;
-        const gic_real t74 = y[15] * t71 - y[16] * t73 + R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[14] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t33 - t36 * R(0.4919654879999992))) + (t65 + t55 *
+            R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t68 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t69 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t70 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * t68 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * t69;
+        const gic_real t71 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t67 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * t68 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * t69;
+        const gic_real t73 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t70 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t71 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t76;
+        const gic_real t78 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t75 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t77;
+        const gic_real t79 = t49 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[15] * t76 - y[16] * t80;
-        const gic_real t82 = y[14] * t79 - y[15] * t81 + (rate[14] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[18] * (m[84] * t75);
+        const gic_real t81 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t76 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t79 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t81 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[14] * t80 - t58));
-        const gic_real t87 = y[16] * t81 - y[14] * t86 + (t60 - rate[14] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[18] * (m[84] * t76);
+        const gic_real t85 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t81 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t86 + (t60 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t85 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[163] + y[15];
-        const gic_real t93 = m[164] + y[16];
-        const gic_real t94 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t95 = m[158] * R(4.7728205);
-        const gic_real t96 = m[157] * R(0.19340000000000046);
-        const gic_real t97 = m[156] * R(4.8947505);
-        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
-        const gic_real t99 = m[162] + y[14];
-        const gic_real t100 = m[155] * R(4.7728205);
-        const gic_real t101 = m[154] * R(0.19340000000000046);
-        const gic_real t102 = m[153] * R(4.8947505);
-        const gic_real t103 = m[161] * t100 + (m[160] * t101 + m[159] * t102);
+        /* wheel tire_f_l */
+        const gic_real t92 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t93 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] + y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t94 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t95 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t97 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t98 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t95 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t96 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t97);
+        const gic_real t99 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t100 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t101 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t102 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t103 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t100 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t101 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t102);
         const gic_real t104 = t93 * t94 + (t92 * t98 + t99 * t103);
-        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
-        const gic_real t106 = m[158] * t100 + (m[157] * t101 + m[156] * t102);
+        const gic_real t105 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t95 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t96 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t97);
+        const gic_real t106 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t100 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t101 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t102);
         const gic_real t107 = t93 * t98 + (t92 * t105 + t99 * t106);
-        const gic_real t108 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t109 = t108 + m[182] * rate[17];
-        const gic_real t110 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t111 = t110 + m[181] * rate[17];
-        const gic_real t112 = m[155] * t100 + (m[154] * t101 + m[153] * t102);
-        const gic_real t113 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t114 = t113 + m[180] * rate[17];
+        const gic_real t108 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t109 = t108 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t111 = t110 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * t100 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t101 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * t102);
+        const gic_real t113 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t114 = t113 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t93 * t107 + (t103 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[156] * R(-0.004825999999999997);
-        const gic_real t117 = m[158] * R(0.09182099999999999) + (t116 + m[157] * R(0.08910630000000008));
-        const gic_real t118 = m[153] * R(-0.004825999999999997);
-        const gic_real t119 = m[155] * R(0.09182099999999999) + (t118 + m[154] * R(0.08910630000000008));
-        const gic_real t120 = m[159] * R(-0.004825999999999997);
-        const gic_real t121 = m[161] * R(0.09182099999999999) + (t120 + m[160] * R(0.08910630000000008));
-        const gic_real t122 = m[164] * t119 - m[162] * t121;
-        const gic_real t123 = m[163] * t121 - m[164] * t117;
-        const gic_real t124 = m[162] * t122 - m[163] * t123 + (m[168] * t117 - m[169] * t119);
-        const gic_real t125 = m[173] + t124;
-        const gic_real t126 = m[166] + t122;
+        const gic_real t116 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t116 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008));
+        const gic_real t118 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t119 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t118 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.08910630000000008));
+        const gic_real t120 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t121 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t120 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t122 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t119 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t121;
+        const gic_real t123 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t121 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t117;
+        const gic_real t124 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t122 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t123 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t117 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t119);
+        const gic_real t125 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Z] + t124;
+        const gic_real t126 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] + t122;
         const gic_real t127 = R(1.653405) + t119;
-        const gic_real t128 = m[152] + t121;
-        const gic_real t129 = t126 + (t126 + (y[16] * t127 - y[14] * t128));
-        const gic_real t130 = m[151] + t117;
-        const gic_real t131 = t123 + (t123 + (y[15] * t128 - y[16] * t130));
-        const gic_real t132 = y[14] * t129 - y[15] * t131 + (rate[14] * t130 - rate[15] * t127);
-        const gic_real t133 = t125 + (t28 + t132) + u[2] * (m[174] * t117 - m[175] * t119);
-        const gic_real t134 = t133 + rate[17] * (m[185] + (m[180] * t117 - m[181] * t119));
+        const gic_real t128 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t121;
+        const gic_real t129 = t126 + (t126 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t127 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t128));
+        const gic_real t130 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t117;
+        const gic_real t131 = t123 + (t123 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t128 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] *
+            t130));
+        const gic_real t132 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t129 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t131 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t130 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t127);
+        const gic_real t133 = t125 + (t28 + t132) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t117 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t119);
+        const gic_real t134 = t133 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t117 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t119));
         const gic_real t135 = t134 * R(90.555);
-        const gic_real t136 = m[162] * t117 - m[163] * t119;
-        const gic_real t137 = m[164] * t123 - m[162] * t136 + (m[170] * t119 - m[168] * t121);
-        const gic_real t138 = m[172] + t137;
-        const gic_real t139 = m[167] + t136;
-        const gic_real t140 = t139 + (t139 + (y[14] * t130 - y[15] * t127));
-        const gic_real t141 = y[16] * t131 - y[14] * t140 + (rate[16] * t127 - rate[14] * t128);
-        const gic_real t142 = t138 + (t16 + t141) + u[2] * (m[176] * t119 - m[174] * t121);
-        const gic_real t143 = t142 + rate[17] * (m[184] + (m[182] * t119 - m[180] * t121));
+        const gic_real t136 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t117 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t119;
+        const gic_real t137 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t123 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t136 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t119 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t121);
+        const gic_real t138 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Y] + t137;
+        const gic_real t139 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] + t136;
+        const gic_real t140 = t139 + (t139 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t130 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t127));
+        const gic_real t141 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t131 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t140 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t127 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t128);
+        const gic_real t142 = t138 + (t16 + t141) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t119 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t121);
+        const gic_real t143 = t142 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t119 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t121));
         const gic_real t144 = t143 * R(90.555);
         const gic_real t145 = t115 + (t117 * t135 - t121 * t144);
-        const gic_real t146 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t145 + (m[151] * t135 - m[152] * t144));
-        const gic_real t147 = m[199] + y[15];
-        const gic_real t148 = m[200] + y[16];
-        const gic_real t149 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t150 = m[194] * R(4.7728205);
-        const gic_real t151 = m[193] * R(0.19340000000000046);
-        const gic_real t152 = m[192] * R(4.8947505);
-        const gic_real t153 = m[197] * t150 + (m[196] * t151 + m[195] * t152);
-        const gic_real t154 = m[198] + y[14];
-        const gic_real t155 = m[191] * R(4.7728205);
-        const gic_real t156 = m[190] * R(0.19340000000000046);
-        const gic_real t157 = m[189] * R(4.8947505);
-        const gic_real t158 = m[197] * t155 + (m[196] * t156 + m[195] * t157);
+        const gic_real t146 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t145 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t135 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t144));
+        /* wheel tire_f_r */
+        const gic_real t147 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t148 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t149 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t150 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t151 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t152 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t153 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t150 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t151 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t152);
+        const gic_real t154 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t155 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t156 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t157 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t158 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t155 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t156 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t157);
         const gic_real t159 = t148 * t149 + (t147 * t153 + t154 * t158);
-        const gic_real t160 = m[194] * t150 + (m[193] * t151 + m[192] * t152);
-        const gic_real t161 = m[194] * t155 + (m[193] * t156 + m[192] * t157);
+        const gic_real t160 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t150 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t151 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t152);
+        const gic_real t161 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t155 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t156 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t157);
         const gic_real t162 = t148 * t153 + (t147 * t160 + t154 * t161);
-        const gic_real t163 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t164 = t163 + m[218] * rate[18];
-        const gic_real t165 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t166 = t165 + m[217] * rate[18];
-        const gic_real t167 = m[191] * t155 + (m[190] * t156 + m[189] * t157);
-        const gic_real t168 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t169 = t168 + m[216] * rate[18];
+        const gic_real t163 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t164 = t163 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t165 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t166 = t165 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t167 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * t155 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t156 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * t157);
+        const gic_real t168 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t169 = t168 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
         const gic_real t170 = t147 * t159 - t148 * t162 + (t158 * t164 + (t161 * t166 + t167 * t169));
-        const gic_real t171 = m[192] * R(-0.004825999999999997);
-        const gic_real t172 = m[194] * R(0.09182099999999999) + (t171 + m[193] * R(-0.08910630000000008));
-        const gic_real t173 = m[189] * R(-0.004825999999999997);
-        const gic_real t174 = m[191] * R(0.09182099999999999) + (t173 + m[190] * R(-0.08910630000000008));
-        const gic_real t175 = m[195] * R(-0.004825999999999997);
-        const gic_real t176 = m[197] * R(0.09182099999999999) + (t175 + m[196] * R(-0.08910630000000008));
-        const gic_real t177 = m[200] * t174 - m[198] * t176;
-        const gic_real t178 = m[199] * t176 - m[200] * t172;
-        const gic_real t179 = m[198] * t177 - m[199] * t178 + (m[204] * t172 - m[205] * t174);
-        const gic_real t180 = m[209] + t179;
-        const gic_real t181 = m[202] + t177;
+        const gic_real t171 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t172 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t171 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t173 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t174 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t173 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.08910630000000008));
+        const gic_real t175 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t176 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t175 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t177 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t174 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t176;
+        const gic_real t178 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t176 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t172;
+        const gic_real t179 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t177 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t178 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t172 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t174);
+        const gic_real t180 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Z] + t179;
+        const gic_real t181 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] + t177;
         const gic_real t182 = R(1.653405) + t174;
-        const gic_real t183 = m[188] + t176;
-        const gic_real t184 = t181 + (t181 + (y[16] * t182 - y[14] * t183));
-        const gic_real t185 = m[187] + t172;
-        const gic_real t186 = t178 + (t178 + (y[15] * t183 - y[16] * t185));
-        const gic_real t187 = y[14] * t184 - y[15] * t186 + (rate[14] * t185 - rate[15] * t182);
-        const gic_real t188 = t180 + (t28 + t187) + u[2] * (m[210] * t172 - m[211] * t174);
-        const gic_real t189 = t188 + rate[18] * (m[221] + (m[216] * t172 - m[217] * t174));
+        const gic_real t183 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t176;
+        const gic_real t184 = t181 + (t181 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t182 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t183));
+        const gic_real t185 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t172;
+        const gic_real t186 = t178 + (t178 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t183 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] *
+            t185));
+        const gic_real t187 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t184 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t186 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t185 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t182);
+        const gic_real t188 = t180 + (t28 + t187) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t172 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t174);
+        const gic_real t189 = t188 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t172 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t174));
         const gic_real t190 = R(90.555) * t189;
-        const gic_real t191 = m[198] * t172 - m[199] * t174;
-        const gic_real t192 = m[200] * t178 - m[198] * t191 + (m[206] * t174 - m[204] * t176);
-        const gic_real t193 = m[208] + t192;
-        const gic_real t194 = m[203] + t191;
-        const gic_real t195 = t194 + (t194 + (y[14] * t185 - y[15] * t182));
-        const gic_real t196 = y[16] * t186 - y[14] * t195 + (rate[16] * t182 - rate[14] * t183);
-        const gic_real t197 = t193 + (t16 + t196) + u[2] * (m[212] * t174 - m[210] * t176);
-        const gic_real t198 = t197 + rate[18] * (m[220] + (m[218] * t174 - m[216] * t176));
+        const gic_real t191 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t172 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t174;
+        const gic_real t192 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t178 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t191 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t174 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t176);
+        const gic_real t193 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Y] + t192;
+        const gic_real t194 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] + t191;
+        const gic_real t195 = t194 + (t194 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t185 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t182));
+        const gic_real t196 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t186 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t195 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t182 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t183);
+        const gic_real t197 = t193 + (t16 + t196) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t174 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t176);
+        const gic_real t198 = t197 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t174 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t176));
         const gic_real t199 = R(90.555) * t198;
         const gic_real t200 = t170 + (t172 * t190 - t176 * t199);
-        const gic_real t201 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t202 = m[98] * R(0.8938);
-        const gic_real t203 = m[97] * R(0.4469);
-        const gic_real t204 = m[101] * t202 + m[100] * t203;
-        const gic_real t205 = y[16] * t201 + y[15] * t204;
-        const gic_real t206 = m[98] * t202 + m[97] * t203;
-        const gic_real t207 = y[16] * t204 + y[15] * t206;
-        const gic_real t208 = y[15] * t205 - y[16] * t207 + R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]);
-        const gic_real t209 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t210 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t211 = m[102] * t210;
-        const gic_real t212 = m[108] * t209 - m[102] * t211;
-        const gic_real t213 = R(-1.688965) * y[16];
-        const gic_real t214 = t213 - y[14] * t210 - t211 - t211;
+        /* inertia of lca_r_l */
+        const gic_real t201 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t202 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t203 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t204 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * t202 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * t203;
+        const gic_real t205 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t201 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t204;
+        const gic_real t206 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * t202 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * t203;
+        const gic_real t207 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t204 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t206;
+        const gic_real t208 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t205 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t207 +
+            R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE]);
+        const gic_real t209 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.246867347245056);
+        const gic_real t210 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.246867347245056);
+        const gic_real t211 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t210;
+        const gic_real t212 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t209 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t211;
+        const gic_real t213 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t214 = t213 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t210 - t211 - t211;
         const gic_real t215 = R(0.307086) + t209;
-        const gic_real t216 = y[15] * t210 - y[16] * t215;
-        const gic_real t217 = R(-1.688965) * rate[15];
-        const gic_real t218 = y[14] * t214 - y[15] * t216 + (rate[14] * t215 - t217);
-        const gic_real t219 = t212 + (t28 + t218) + rate[19] * (m[114] * t209);
+        const gic_real t216 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t210 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t215;
+        const gic_real t217 = R(-1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t218 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t214 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t216 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t215 - t217);
+        const gic_real t219 = t212 + (t28 + t218) + rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t209);
         const gic_real t220 = R(23.965) * t219;
-        const gic_real t221 = m[102] * t209;
-        const gic_real t222 = R(-1.688965) * y[15];
-        const gic_real t223 = t221 + (t221 + (y[14] * t215 - t222));
-        const gic_real t224 = R(-1.688965) * rate[16];
-        const gic_real t225 = y[16] * t216 - y[14] * t223 + (t224 - rate[14] * t210);
-        const gic_real t226 = m[102] * t221 + m[108] * t210;
-        const gic_real t227 = t16 + t225 - t226 - rate[19] * (m[114] * t210);
+        const gic_real t221 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t209;
+        const gic_real t222 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t223 = t221 + (t221 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t215 - t222));
+        const gic_real t224 = R(-1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t225 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t216 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t223 + (t224 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t210);
+        const gic_real t226 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t221 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t210;
+        const gic_real t227 = t16 + t225 - t226 - rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t210);
         const gic_real t228 = R(23.965) * t227;
         const gic_real t229 = t208 + (t209 * t220 - t210 * t228);
-        const gic_real t230 = t146 + (t200 + (m[187] * t190 - m[188] * t199)) + (t229 + R(7.359315990000001) * t219);
-        const gic_real t231 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t232 = m[128] * R(0.8938);
-        const gic_real t233 = m[127] * R(0.4469);
-        const gic_real t234 = m[131] * t232 + m[130] * t233;
-        const gic_real t235 = y[16] * t231 + y[15] * t234;
-        const gic_real t236 = m[128] * t232 + m[127] * t233;
-        const gic_real t237 = y[16] * t234 + y[15] * t236;
-        const gic_real t238 = y[15] * t235 - y[16] * t237 + R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]);
-        const gic_real t239 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t240 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t241 = m[132] * t240;
-        const gic_real t242 = m[138] * t239 - m[132] * t241;
-        const gic_real t243 = t213 - y[14] * t240 - t241 - t241;
+        const gic_real t230 = t146 + (t200 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t190 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t199)) + (t229 + R(7.359315990000001) * t219);
+        /* inertia of lca_r_r */
+        const gic_real t231 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t232 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t233 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t234 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * t232 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * t233;
+        const gic_real t235 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t231 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t234;
+        const gic_real t236 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * t232 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * t233;
+        const gic_real t237 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t234 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t236;
+        const gic_real t238 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t235 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t237 +
+            R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE]);
+        const gic_real t239 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(-0.246867347245056);
+        const gic_real t240 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.246867347245056);
+        const gic_real t241 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t240;
+        const gic_real t242 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t239 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t241;
+        const gic_real t243 = t213 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t240 - t241 - t241;
         const gic_real t244 = R(-0.307086) + t239;
-        const gic_real t245 = y[15] * t240 - y[16] * t244;
-        const gic_real t246 = y[14] * t243 - y[15] * t245 + (rate[14] * t244 - t217);
-        const gic_real t247 = t242 + (t28 + t246) + rate[20] * (m[144] * t239);
+        const gic_real t245 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t240 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t244;
+        const gic_real t246 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t243 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t245 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t244 - t217);
+        const gic_real t247 = t242 + (t28 + t246) + rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t239);
         const gic_real t248 = R(23.965) * t247;
-        const gic_real t249 = m[132] * t239;
-        const gic_real t250 = t249 + (t249 + (y[14] * t244 - t222));
-        const gic_real t251 = y[16] * t245 - y[14] * t250 + (t224 - rate[14] * t240);
-        const gic_real t252 = m[132] * t249 + m[138] * t240;
-        const gic_real t253 = t16 + t251 - t252 - rate[20] * (m[144] * t240);
+        const gic_real t249 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t239;
+        const gic_real t250 = t249 + (t249 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t244 - t222));
+        const gic_real t251 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t245 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t250 + (t224 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t240);
+        const gic_real t252 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t249 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t240;
+        const gic_real t253 = t16 + t251 - t252 - rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t240);
         const gic_real t254 = R(23.965) * t253;
         const gic_real t255 = t238 + (t239 * t248 - t240 * t254);
-        const gic_real t256 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
-        const gic_real t257 = m[230] * R(4.7728205);
-        const gic_real t258 = m[229] * R(0.19340000000000046);
-        const gic_real t259 = m[233] * t257 + m[232] * t258;
-        const gic_real t260 = y[16] * t256 + y[15] * t259;
-        const gic_real t261 = m[230] * t257 + m[229] * t258;
-        const gic_real t262 = y[16] * t259 + y[15] * t261;
-        const gic_real t263 = y[15] * t260 - y[16] * t262 + R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]);
-        const gic_real t264 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
-        const gic_real t265 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
-        const gic_real t266 = m[234] * t265;
-        const gic_real t267 = m[245] + (m[240] * t264 - m[234] * t266);
-        const gic_real t268 = m[238] - t266;
-        const gic_real t269 = R(-1.653405) * y[16];
-        const gic_real t270 = m[224] + t265;
-        const gic_real t271 = t268 + (t268 + (t269 - y[14] * t270));
-        const gic_real t272 = m[223] + t264;
-        const gic_real t273 = y[15] * t270 - y[16] * t272;
-        const gic_real t274 = R(-1.653405) * rate[15];
-        const gic_real t275 = y[14] * t271 - y[15] * t273 + (rate[14] * t272 - t274);
-        const gic_real t276 = t267 + (t28 + t275) + rate[19] * (m[251] + m[246] * t264);
+        /* inertia of wheel_r_l */
+        const gic_real t256 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046));
+        const gic_real t257 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t258 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t259 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * t257 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t258;
+        const gic_real t260 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t256 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t259;
+        const gic_real t261 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * t257 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t258;
+        const gic_real t262 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t259 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t261;
+        const gic_real t263 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t260 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t262 +
+            R(4.8947505) * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE]);
+        const gic_real t264 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008);
+        const gic_real t265 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008);
+        const gic_real t266 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t265;
+        const gic_real t267 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t264 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t266);
+        const gic_real t268 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] - t266;
+        /* wheel tire_r_l */
+        const gic_real t269 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t270 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t265;
+        const gic_real t271 = t268 + (t268 + (t269 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t270));
+        const gic_real t272 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t264;
+        const gic_real t273 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t270 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t272;
+        const gic_real t274 = R(-1.653405) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t275 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t271 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t273 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t272 - t274);
+        const gic_real t276 = t267 + (t28 + t275) + rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t264);
         const gic_real t277 = R(90.555) * t276;
-        const gic_real t278 = m[234] * t264;
-        const gic_real t279 = m[244] - (m[234] * t278 + m[240] * t265);
-        const gic_real t280 = m[239] + t278;
-        const gic_real t281 = R(-1.653405) * y[15];
-        const gic_real t282 = t280 + (t280 + (y[14] * t272 - t281));
-        const gic_real t283 = R(-1.653405) * rate[16];
-        const gic_real t284 = y[16] * t273 - y[14] * t282 + (t283 - rate[14] * t270);
-        const gic_real t285 = t279 + (t16 + t284) + rate[19] * (m[250] - m[246] * t265);
+        const gic_real t278 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t264;
+        const gic_real t279 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t278 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t265);
+        const gic_real t280 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] + t278;
+        const gic_real t281 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t282 = t280 + (t280 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t272 - t281));
+        const gic_real t283 = R(-1.653405) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t284 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t273 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t282 + (t283 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t270);
+        const gic_real t285 = t279 + (t16 + t284) + rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t265);
         const gic_real t286 = R(90.555) * t285;
         const gic_real t287 = t263 + (t264 * t277 - t265 * t286);
-        const gic_real t288 = t230 + (t255 + R(-7.359315990000001) * t247) + (t287 + (m[223] * t277 - m[224] * t286));
-        const gic_real t289 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
-        const gic_real t290 = m[260] * R(4.7728205);
-        const gic_real t291 = m[259] * R(0.19340000000000046);
-        const gic_real t292 = m[263] * t290 + m[262] * t291;
-        const gic_real t293 = y[16] * t289 + y[15] * t292;
-        const gic_real t294 = m[260] * t290 + m[259] * t291;
-        const gic_real t295 = y[16] * t292 + y[15] * t294;
-        const gic_real t296 = y[15] * t293 - y[16] * t295 + R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]);
-        const gic_real t297 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
-        const gic_real t298 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
-        const gic_real t299 = m[264] * t298;
-        const gic_real t300 = m[275] + (m[270] * t297 - m[264] * t299);
-        const gic_real t301 = m[268] - t299;
-        const gic_real t302 = m[254] + t298;
-        const gic_real t303 = t301 + (t301 + (t269 - y[14] * t302));
-        const gic_real t304 = m[253] + t297;
-        const gic_real t305 = y[15] * t302 - y[16] * t304;
-        const gic_real t306 = y[14] * t303 - y[15] * t305 + (rate[14] * t304 - t274);
-        const gic_real t307 = t300 + (t28 + t306) + rate[20] * (m[281] + m[276] * t297);
+        const gic_real t288 = t230 + (t255 + R(-7.359315990000001) * t247) + (t287 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t277 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t286));
+        /* inertia of wheel_r_r */
+        const gic_real t289 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046));
+        const gic_real t290 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t291 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t292 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * t290 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t291;
+        const gic_real t293 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t289 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t292;
+        const gic_real t294 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * t290 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t291;
+        const gic_real t295 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t292 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t294;
+        const gic_real t296 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t293 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t295 +
+            R(4.8947505) * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE]);
+        const gic_real t297 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008);
+        const gic_real t298 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008);
+        const gic_real t299 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t298;
+        const gic_real t300 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t297 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t299);
+        const gic_real t301 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] - t299;
+        const gic_real t302 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t298;
+        const gic_real t303 = t301 + (t301 + (t269 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t302));
+        const gic_real t304 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t297;
+        const gic_real t305 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t302 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t304;
+        const gic_real t306 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t303 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t305 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t304 - t274);
+        const gic_real t307 = t300 + (t28 + t306) + rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t297);
         const gic_real t308 = R(90.555) * t307;
-        const gic_real t309 = m[264] * t297;
-        const gic_real t310 = m[274] - (m[264] * t309 + m[270] * t298);
-        const gic_real t311 = m[269] + t309;
-        const gic_real t312 = t311 + (t311 + (y[14] * t304 - t281));
-        const gic_real t313 = y[16] * t305 - y[14] * t312 + (t283 - rate[14] * t302);
-        const gic_real t314 = t310 + (t16 + t313) + rate[20] * (m[280] - m[276] * t298);
+        const gic_real t309 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t297;
+        const gic_real t310 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t309 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t298);
+        const gic_real t311 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] + t309;
+        const gic_real t312 = t311 + (t311 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t304 - t281));
+        const gic_real t313 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t305 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t312 + (t283 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t302);
+        const gic_real t314 = t310 + (t16 + t313) + rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t298);
         const gic_real t315 = R(90.555) * t314;
         const gic_real t316 = t296 + (t297 * t308 - t298 * t315);
         const gic_real t317 = t25 - t26;
         const gic_real t318 = t13 + t14;
         const gic_real t319 = R(1.0) - (t22 + t11);
-        const gic_real t320 = t317 * self->grip[86] + (t318 * self->grip[85] + t319 * self->grip[84]);
-        const gic_real t321 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t322 = t23 * self->grip[83] + (t24 * self->grip[82] + t27 * self->grip[81]);
-        const gic_real t323 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t324 = t7 * self->grip[83] + (t12 * self->grip[82] + t15 * self->grip[81]);
+        /* wheel tire_r_r */
+        const gic_real t320 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t321 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
+        const gic_real t322 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t323 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
+        const gic_real t324 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t325 = t320 + (t321 * t322 - t323 * t324);
-        const gic_real t326 = t317 * self->grip[59] + (t318 * self->grip[58] + t319 * self->grip[57]);
-        const gic_real t327 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t328 = t23 * self->grip[56] + (t24 * self->grip[55] + t27 * self->grip[54]);
-        const gic_real t329 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t330 = t7 * self->grip[56] + (t12 * self->grip[55] + t15 * self->grip[54]);
+        const gic_real t326 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t327 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t328 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t329 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t330 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t331 = t326 + (t327 * t328 - t329 * t330);
-        const gic_real t332 = t317 * self->grip[32] + (t318 * self->grip[31] + t319 * self->grip[30]);
-        const gic_real t333 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + t171);
-        const gic_real t334 = t23 * self->grip[29] + (t24 * self->grip[28] + t27 * self->grip[27]);
-        const gic_real t335 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + t175);
-        const gic_real t336 = t7 * self->grip[29] + (t12 * self->grip[28] + t15 * self->grip[27]);
+        const gic_real t332 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t333 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) + t171);
+        const gic_real t334 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t335 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) + t175);
+        const gic_real t336 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t337 = t332 + (t333 * t334 - t335 * t336);
-        const gic_real t338 = t317 * self->grip[5] + (t318 * self->grip[4] + t319 * self->grip[3]);
-        const gic_real t339 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + t116);
-        const gic_real t340 = t23 * self->grip[2] + (t24 * self->grip[1] + t27 * self->grip[0]);
-        const gic_real t341 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + t120);
-        const gic_real t342 = t7 * self->grip[2] + (t12 * self->grip[1] + t15 * self->grip[0]);
+        const gic_real t338 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t339 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) + t116);
+        const gic_real t340 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t341 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) + t120);
+        const gic_real t342 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t343 = t338 + (t339 * t340 - t341 * t342);
-        const gic_real t344 = m[154] * self->grip[6];
-        const gic_real t345 = m[190] * self->grip[33];
-        const gic_real t346 = t343 + (m[151] * t340 - m[152] * t342 - (t344 + t345));
-        const gic_real t347 = t337 + (t346 + (m[187] * t334 - m[188] * t336)) + (m[223] * t328 - m[224] * t330);
-        const gic_real t348 = t325 + (t331 + t347 + (m[253] * t322 - m[254] * t324));
-        const gic_real t349 = t288 + (t316 + (m[253] * t308 - m[254] * t315)) - t348;
-        const gic_real t350 = m[160] * self->grip[6];
-        const gic_real t351 = m[157] * self->grip[6];
+        const gic_real t344 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t345 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t346 = t343 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t340 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t342 - (t344 + t345));
+        const gic_real t347 = t337 + (t346 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t334 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t336)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t328 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t330);
+        const gic_real t348 = t325 + (t331 + t347 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t322 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t324));
+        const gic_real residual_0 = t288 + (t316 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t308 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t315)) - t348;
+        const gic_real t350 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t351 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE];
         const gic_real t352 = GIC_FABS(-t350) + GIC_FABS(-t351) + GIC_FABS(-t344);
-        const gic_real t353 = m[196] * self->grip[33];
-        const gic_real t354 = m[193] * self->grip[33];
+        const gic_real t353 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t354 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE];
         const gic_real t355 = GIC_FABS(-t353) + GIC_FABS(-t354) + GIC_FABS(-t345);
-        const gic_real t356 = m[232] * self->grip[60];
-        const gic_real t357 = m[229] * self->grip[60];
+        const gic_real t356 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t357 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE];
         const gic_real t358 = t352 + t355 + (GIC_FABS(-t356) + GIC_FABS(-t357));
-        const gic_real t359 = m[262] * self->grip[87];
-        const gic_real t360 = m[259] * self->grip[87];
+        const gic_real t359 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t360 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
         const gic_real t361 = t358 + (GIC_FABS(-t359) + GIC_FABS(-t360));
         const gic_real t362 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t317);
-        const gic_real t363 = t317 * t8 + (t318 * rate[12] + t319 * rate[11]);
+        const gic_real t363 = t317 * t8 + (t318 * rate[HMMWV_VEHICLE_STATE_V_Y] + t319 * rate[HMMWV_VEHICLE_STATE_V_X]);
         const gic_real t364 = t362 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t363));
-        const gic_real t365 = GIC_FABS(y[16]) + GIC_FABS(y[15]) + GIC_FABS(y[14]);
-        const gic_real t366 = GIC_FABS(rate[16]) + GIC_FABS(rate[15]) + GIC_FABS(rate[14]);
+        const gic_real t365 = GIC_FABS(y[HMMWV_VEHICLE_STATE_OMEGA_Z]) + GIC_FABS(y[HMMWV_VEHICLE_STATE_OMEGA_Y]) +
+            GIC_FABS(y[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t366 = GIC_FABS(rate[HMMWV_VEHICLE_STATE_OMEGA_Z]) +
+            GIC_FABS(rate[HMMWV_VEHICLE_STATE_OMEGA_Y]) + GIC_FABS(rate[HMMWV_VEHICLE_STATE_OMEGA_X]);
         const gic_real t367 = t365 * t365 + t366;
         const gic_real t368 = t364 + t367 * R(0.269);
         const gic_real t369 = t361 + (t368 * R(561.2738800000001) + t367 * R(7604.379999999999));
-        const gic_real t370 = R(1.438648) + (R(0.054228999999999916) + GIC_FABS(m[1]));
-        const gic_real t371 = GIC_FABS(u[2]);
-        const gic_real t372 = t364 + t367 * t370 + t365 * GIC_FABS(m[16]) + t371;
+        const gic_real t370 = R(1.438648) + (R(0.054228999999999916) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y]));
+        const gic_real t371 = GIC_FABS(u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION]);
+        const gic_real t372 = t364 + t367 * t370 + t365 *
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y]) + t371;
         const gic_real t373 = R(9.072) * t372 + t367 * R(0.0005216895628628198);
-        const gic_real t374 = t369 + t368 * R(0.3983301514773894) + (R(3.0) * t367 + t372 * R(0.0005216895628628198) + t370 * t373);
+        const gic_real t374 = t369 + t368 * R(0.3983301514773894) + (R(3.0) * t367 + t372 * R(0.0005216895628628198) +
+            t370 * t373);
         const gic_real t375 = GIC_FABS(t46);
         const gic_real t376 = t375 + GIC_FABS(t45);
-        const gic_real t377 = t365 + GIC_FABS(m[42]);
+        const gic_real t377 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t378 = t366 + t377 * t377;
-        const gic_real t379 = t364 + t378 * (R(1.688965) + (t375 + GIC_FABS(t51))) + t365 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t380 = GIC_FABS(rate[17]);
-        const gic_real t381 = GIC_FABS(m[54]);
+        const gic_real t379 = t364 + t378 * (R(1.688965) + (t375 + GIC_FABS(t51))) + t365 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t380 = GIC_FABS(rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE]);
+        const gic_real t381 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0]);
         const gic_real t382 = t380 * t381;
         const gic_real t383 = t379 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t382 * t376;
         const gic_real t384 = R(23.965) * t383;
-        const gic_real t385 = t376 * t384 + (t378 + GIC_FABS(m[48]) + t382) * R(1.7876);
+        const gic_real t385 = t376 * t384 + (t378 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X]) +
+            t382) * R(1.7876);
         const gic_real t386 = t385 + t383 * R(0.0006545214587773269);
         const gic_real t387 = t384 + t385 * R(0.00036614536740732094);
         const gic_real t388 = GIC_FABS(t76);
         const gic_real t389 = t388 + GIC_FABS(t75);
-        const gic_real t390 = t365 + GIC_FABS(m[72]);
+        const gic_real t390 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t391 = t366 + t390 * t390;
-        const gic_real t392 = t364 + t391 * (R(1.688965) + (t388 + GIC_FABS(t80))) + t365 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t393 = GIC_FABS(rate[18]);
-        const gic_real t394 = GIC_FABS(m[84]);
+        const gic_real t392 = t364 + t391 * (R(1.688965) + (t388 + GIC_FABS(t80))) + t365 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t393 = GIC_FABS(rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE]);
+        const gic_real t394 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0]);
         const gic_real t395 = t393 * t394;
         const gic_real t396 = t392 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t395 * t389;
         const gic_real t397 = R(23.965) * t396;
-        const gic_real t398 = t389 * t397 + R(1.7876) * (t391 + GIC_FABS(m[78]) + t395);
+        const gic_real t398 = t389 * t397 + R(1.7876) * (t391 +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X]) + t395);
         const gic_real t399 = t398 + R(0.0006545214587773269) * t396;
         const gic_real t400 = t397 + R(0.00036614536740732094) * t398;
         const gic_real t401 = t374 + (t386 + t387 * R(1.996051)) + (t399 + R(1.996051) * t400);
-        const gic_real t402 = t317 * self->grip[2] + (t318 * self->grip[1] + t319 * self->grip[0]);
+        const gic_real t402 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t403 = GIC_FABS(t340) + GIC_FABS(t342) + GIC_FABS(t402);
-        const gic_real t404 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + t118);
+        const gic_real t404 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) + t118);
         const gic_real t405 = t403 * (GIC_FABS(t341) + GIC_FABS(t339) + GIC_FABS(t404));
-        const gic_real t406 = t23 * self->grip[5] + (t24 * self->grip[4] + t27 * self->grip[3]);
-        const gic_real t407 = t7 * self->grip[5] + (t12 * self->grip[4] + t15 * self->grip[3]);
+        const gic_real t406 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t407 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
         const gic_real t408 = t405 + (GIC_FABS(t406) + GIC_FABS(t407) + GIC_FABS(t338));
         const gic_real t409 = GIC_FABS(t121) + GIC_FABS(t117) + GIC_FABS(t119);
-        const gic_real t410 = t365 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t410 = t365 + (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X]));
         const gic_real t411 = t366 + t410 * t410;
         const gic_real t412 = t411 * (GIC_FABS(t128) + GIC_FABS(t130) + GIC_FABS(t127));
         const gic_real t413 = t365 * (GIC_FABS(t139) + GIC_FABS(t126) + GIC_FABS(t123));
-        const gic_real t414 = m[163] * t136 - m[164] * t122 + (m[169] * t121 - m[170] * t117);
+        const gic_real t414 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t136 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t122 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t121 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t117);
         const gic_real t415 = t364 + t412 + t413 + (GIC_FABS(t125) + GIC_FABS(t138) + GIC_FABS(t414));
-        const gic_real t416 = t371 * (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
-        const gic_real t417 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t416 = t371 * (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0]));
+        const gic_real t417 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6]);
         const gic_real t418 = t380 * t417;
-        const gic_real t419 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t419 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10]);
         const gic_real t420 = t415 + t416 * t409 + t409 * t418 + t380 * t419;
         const gic_real t421 = R(90.555) * t420;
-        const gic_real t422 = t411 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t422 = t411 + (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X]));
         const gic_real t423 = t408 + (t409 * t421 + (t422 + t416 + t418) * R(9.860971));
         const gic_real t424 = t403 + t421;
         const gic_real t425 = t423 + t424 * R(3.299921610411797e-05);
         const gic_real t426 = t424 + t423 * R(0.000303037501510592);
-        const gic_real t427 = t425 + t426 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
-        const gic_real t428 = t317 * self->grip[29] + (t318 * self->grip[28] + t319 * self->grip[27]);
+        const gic_real t427 = t425 + t426 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y])));
+        const gic_real t428 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t429 = GIC_FABS(t334) + GIC_FABS(t336) + GIC_FABS(t428);
-        const gic_real t430 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + t173);
+        const gic_real t430 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) + t173);
         const gic_real t431 = t429 * (GIC_FABS(t335) + GIC_FABS(t333) + GIC_FABS(t430));
-        const gic_real t432 = t23 * self->grip[32] + (t24 * self->grip[31] + t27 * self->grip[30]);
-        const gic_real t433 = t7 * self->grip[32] + (t12 * self->grip[31] + t15 * self->grip[30]);
+        const gic_real t432 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t433 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
         const gic_real t434 = t431 + (GIC_FABS(t432) + GIC_FABS(t433) + GIC_FABS(t332));
         const gic_real t435 = GIC_FABS(t176) + GIC_FABS(t172) + GIC_FABS(t174);
-        const gic_real t436 = t365 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t436 = t365 + (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X]));
         const gic_real t437 = t366 + t436 * t436;
         const gic_real t438 = t437 * (GIC_FABS(t183) + GIC_FABS(t185) + GIC_FABS(t182));
         const gic_real t439 = t365 * (GIC_FABS(t194) + GIC_FABS(t181) + GIC_FABS(t178));
-        const gic_real t440 = m[199] * t191 - m[200] * t177 + (m[205] * t176 - m[206] * t172);
+        const gic_real t440 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t191 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t177 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t176 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t172);
         const gic_real t441 = t364 + t438 + t439 + (GIC_FABS(t180) + GIC_FABS(t193) + GIC_FABS(t440));
-        const gic_real t442 = t371 * (GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]));
-        const gic_real t443 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t442 = t371 * (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0]));
+        const gic_real t443 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6]);
         const gic_real t444 = t393 * t443;
-        const gic_real t445 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t445 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10]);
         const gic_real t446 = t441 + t442 * t435 + t435 * t444 + t393 * t445;
         const gic_real t447 = R(90.555) * t446;
-        const gic_real t448 = t437 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t448 = t437 + (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X]));
         const gic_real t449 = t434 + (t435 * t447 + R(9.860971) * (t448 + t442 + t444));
         const gic_real t450 = t429 + t447;
         const gic_real t451 = t449 + R(3.299921610411797e-05) * t450;
         const gic_real t452 = t450 + R(0.000303037501510592) * t449;
-        const gic_real t453 = t451 + t452 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t453 = t451 + t452 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y])));
         const gic_real t454 = GIC_FABS(t210);
         const gic_real t455 = t454 + GIC_FABS(t209);
-        const gic_real t456 = t365 + GIC_FABS(m[102]);
+        const gic_real t456 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t457 = t366 + t456 * t456;
-        const gic_real t458 = t364 + t457 * (R(1.688965) + (t454 + GIC_FABS(t215))) + t365 * (GIC_FABS(t221) + GIC_FABS(-t211));
-        const gic_real t459 = GIC_FABS(rate[19]);
-        const gic_real t460 = GIC_FABS(m[114]);
+        const gic_real t458 = t364 + t457 * (R(1.688965) + (t454 + GIC_FABS(t215))) + t365 * (GIC_FABS(t221) +
+            GIC_FABS(-t211));
+        const gic_real t459 = GIC_FABS(rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE]);
+        const gic_real t460 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0]);
         const gic_real t461 = t459 * t460;
         const gic_real t462 = t458 + (GIC_FABS(t212) + GIC_FABS(-t226)) + t461 * t455;
         const gic_real t463 = R(23.965) * t462;
-        const gic_real t464 = t455 * t463 + R(1.7876) * (t457 + GIC_FABS(m[108]) + t461);
+        const gic_real t464 = t455 * t463 + R(1.7876) * (t457 +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X]) + t461);
         const gic_real t465 = t464 + R(0.0006545214587773269) * t462;
         const gic_real t466 = t463 + R(0.00036614536740732094) * t464;
         const gic_real t467 = GIC_FABS(t240);
         const gic_real t468 = t467 + GIC_FABS(t239);
-        const gic_real t469 = t365 + GIC_FABS(m[132]);
+        const gic_real t469 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t470 = t366 + t469 * t469;
-        const gic_real t471 = t364 + t470 * (R(1.688965) + (t467 + GIC_FABS(t244))) + t365 * (GIC_FABS(t249) + GIC_FABS(-t241));
-        const gic_real t472 = GIC_FABS(rate[20]);
-        const gic_real t473 = GIC_FABS(m[144]);
+        const gic_real t471 = t364 + t470 * (R(1.688965) + (t467 + GIC_FABS(t244))) + t365 * (GIC_FABS(t249) +
+            GIC_FABS(-t241));
+        const gic_real t472 = GIC_FABS(rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE]);
+        const gic_real t473 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0]);
         const gic_real t474 = t472 * t473;
         const gic_real t475 = t471 + (GIC_FABS(t242) + GIC_FABS(-t252)) + t474 * t468;
         const gic_real t476 = R(23.965) * t475;
-        const gic_real t477 = t468 * t476 + R(1.7876) * (t470 + GIC_FABS(m[138]) + t474);
+        const gic_real t477 = t468 * t476 + R(1.7876) * (t470 +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X]) + t474);
         const gic_real t478 = t477 + R(0.0006545214587773269) * t475;
         const gic_real t479 = t476 + R(0.00036614536740732094) * t477;
         const gic_real t480 = t401 + t427 + t453 + (t465 + R(1.996051) * t466) + (t478 + R(1.996051) * t479);
-        const gic_real t481 = t317 * self->grip[56] + (t318 * self->grip[55] + t319 * self->grip[54]);
+        const gic_real t481 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t482 = GIC_FABS(t328) + GIC_FABS(t330) + GIC_FABS(t481);
-        const gic_real t483 = t23 * self->grip[59] + (t24 * self->grip[58] + t27 * self->grip[57]);
-        const gic_real t484 = t7 * self->grip[59] + (t12 * self->grip[58] + t15 * self->grip[57]);
-        const gic_real t485 = t482 * (GIC_FABS(t329) + GIC_FABS(t327)) + (GIC_FABS(t483) + GIC_FABS(t484) + GIC_FABS(t326));
+        const gic_real t483 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t484 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t485 = t482 * (GIC_FABS(t329) + GIC_FABS(t327)) + (GIC_FABS(t483) + GIC_FABS(t484) +
+            GIC_FABS(t326));
         const gic_real t486 = GIC_FABS(t265) + GIC_FABS(t264);
-        const gic_real t487 = t365 + GIC_FABS(m[234]);
+        const gic_real t487 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t488 = t366 + t487 * t487;
         const gic_real t489 = t364 + t488 * (R(1.653405) + (GIC_FABS(t270) + GIC_FABS(t272)));
         const gic_real t490 = t489 + t365 * (GIC_FABS(t280) + GIC_FABS(t268)) + (GIC_FABS(t267) + GIC_FABS(t279));
-        const gic_real t491 = GIC_FABS(m[246]);
+        const gic_real t491 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0]);
         const gic_real t492 = t459 * t491;
-        const gic_real t493 = GIC_FABS(m[251]) + GIC_FABS(m[250]);
+        const gic_real t493 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4]);
         const gic_real t494 = R(90.555) * (t490 + t492 * t486 + t459 * t493);
-        const gic_real t495 = t486 * t494 + R(9.860971) * (t488 + GIC_FABS(m[240]) + t492);
+        const gic_real t495 = t486 * t494 + R(9.860971) * (t488 +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X]) + t492);
         const gic_real t496 = t485 + t495;
         const gic_real t497 = t482 + t494;
         const gic_real t498 = t496 + R(3.299921610411797e-05) * t497;
         const gic_real t499 = t497 + R(0.000303037501510592) * t496;
-        const gic_real t500 = t498 + t499 * (R(1.653405) + (GIC_FABS(m[224]) + GIC_FABS(m[223])));
-        const gic_real t501 = t317 * self->grip[83] + (t318 * self->grip[82] + t319 * self->grip[81]);
+        const gic_real t500 = t498 + t499 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y])));
+        const gic_real t501 = t317 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t318 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t319 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
         const gic_real t502 = GIC_FABS(t322) + GIC_FABS(t324) + GIC_FABS(t501);
-        const gic_real t503 = t23 * self->grip[86] + (t24 * self->grip[85] + t27 * self->grip[84]);
-        const gic_real t504 = t7 * self->grip[86] + (t12 * self->grip[85] + t15 * self->grip[84]);
-        const gic_real t505 = t502 * (GIC_FABS(t323) + GIC_FABS(t321)) + (GIC_FABS(t503) + GIC_FABS(t504) + GIC_FABS(t320));
+        const gic_real t503 = t23 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t24 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t27 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t504 = t7 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t12 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t15 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t505 = t502 * (GIC_FABS(t323) + GIC_FABS(t321)) + (GIC_FABS(t503) + GIC_FABS(t504) +
+            GIC_FABS(t320));
         const gic_real t506 = GIC_FABS(t298) + GIC_FABS(t297);
-        const gic_real t507 = t365 + GIC_FABS(m[264]);
+        const gic_real t507 = t365 + GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X]);
         const gic_real t508 = t366 + t507 * t507;
         const gic_real t509 = t364 + t508 * (R(1.653405) + (GIC_FABS(t302) + GIC_FABS(t304)));
         const gic_real t510 = t509 + t365 * (GIC_FABS(t311) + GIC_FABS(t301)) + (GIC_FABS(t300) + GIC_FABS(t310));
-        const gic_real t511 = GIC_FABS(m[276]);
+        const gic_real t511 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0]);
         const gic_real t512 = t472 * t511;
-        const gic_real t513 = GIC_FABS(m[281]) + GIC_FABS(m[280]);
+        const gic_real t513 = GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4]);
         const gic_real t514 = R(90.555) * (t510 + t512 * t506 + t472 * t513);
-        const gic_real t515 = t506 * t514 + R(9.860971) * (t508 + GIC_FABS(m[270]) + t512);
+        const gic_real t515 = t506 * t514 + R(9.860971) * (t508 +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X]) + t512);
         const gic_real t516 = t505 + t515;
         const gic_real t517 = t502 + t514;
         const gic_real t518 = t516 + R(3.299921610411797e-05) * t517;
         const gic_real t519 = t517 + R(0.000303037501510592) * t516;
-        const gic_real t520 = t518 + t519 * (R(1.653405) + (GIC_FABS(m[254]) + GIC_FABS(m[253])));
+        const gic_real t520 = t518 + t519 * (R(1.653405) +
+            (GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z]) +
+            GIC_FABS(m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y])));
         const gic_real t521 = t480 + t500 + t520;
-        const gic_real t522 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
-        const gic_real t523 = t363 + (rate[15] * R(0.21300000000000002) - (y[16] * t522 + y[15] * t17));
-        const gic_real t524 = y[15] * t34 - y[16] * t29 + (R(0.054228999999999916) * rate[15] - m[1] * rate[16]);
+        const gic_real t522 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(0.21300000000000002);
+        const gic_real t523 = t363 + (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002) -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t522 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t17));
+        const gic_real t524 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t34 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t29 +
+            (R(0.054228999999999916) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * rate[HMMWV_VEHICLE_STATE_OMEGA_Z]);
         const gic_real t525 = t363 + t524;
         const gic_real t526 = t525 * R(9.072);
-        const gic_real t527 = y[15] * t59 - y[16] * t50 + (rate[15] * t46 - rate[16] * t51);
+        const gic_real t527 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t59 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t50 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t46 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t51);
         const gic_real t528 = t363 + t527;
         const gic_real t529 = t528 * R(23.965);
-        const gic_real t530 = y[15] * t86 - y[16] * t79 + (rate[15] * t76 - rate[16] * t80);
+        const gic_real t530 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t86 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t79 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t76 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t80);
         const gic_real t531 = t363 + t530;
         const gic_real t532 = R(23.965) * t531;
-        const gic_real t533 = y[15] * t140 - y[16] * t129 + (rate[15] * t128 - rate[16] * t130);
-        const gic_real t534 = t414 + (t363 + t533) + u[2] * (m[175] * t121 - m[176] * t117);
-        const gic_real t535 = (t534 + rate[17] * (m[181] * t121 - m[182] * t117)) * R(90.555);
-        const gic_real t536 = y[15] * t195 - y[16] * t184 + (rate[15] * t183 - rate[16] * t185);
-        const gic_real t537 = t440 + (t363 + t536) + u[2] * (m[211] * t176 - m[212] * t172);
-        const gic_real t538 = R(90.555) * (t537 + rate[18] * (m[217] * t176 - m[218] * t172));
+        const gic_real t533 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t140 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t129 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t128 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t130);
+        const gic_real t534 = t414 + (t363 + t533) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t121 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t117);
+        const gic_real t535 = (t534 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t121 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t117)) * R(90.555);
+        const gic_real t536 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t195 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t184 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t183 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t185);
+        const gic_real t537 = t440 + (t363 + t536) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t176 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t172);
+        const gic_real t538 = R(90.555) * (t537 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t176 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t172));
         const gic_real t539 = t523 * R(2086.52) + t526 + t529 + t532 + t535 + t538;
-        const gic_real t540 = y[15] * t223 - y[16] * t214 + (rate[15] * t210 - rate[16] * t215);
+        const gic_real t540 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t223 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t214 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t210 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t215);
         const gic_real t541 = t363 + t540;
         const gic_real t542 = R(23.965) * t541;
-        const gic_real t543 = y[15] * t250 - y[16] * t243 + (rate[15] * t240 - rate[16] * t244);
+        const gic_real t543 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t250 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t243 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t240 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t244);
         const gic_real t544 = t363 + t543;
         const gic_real t545 = R(23.965) * t544;
-        const gic_real t546 = y[15] * t282 - y[16] * t271 + (rate[15] * t270 - rate[16] * t272);
+        const gic_real t546 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t282 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t271 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t270 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t272);
         const gic_real t547 = R(90.555) * (t363 + t546);
-        const gic_real t548 = y[15] * t312 - y[16] * t303 + (rate[15] * t302 - rate[16] * t304);
+        const gic_real t548 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t312 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t303 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t302 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t304);
         const gic_real t549 = R(90.555) * (t363 + t548);
-        const gic_real t550 = t539 + t542 + t545 + t547 + t549 - (t501 + (t481 + (t402 + t428)));
+        const gic_real residual_3 = t539 + t542 + t545 + t547 + t549 - (t501 + (t481 + (t402 + t428)));
         const gic_real t551 = R(2086.52) * t368 + t369 * R(5.2381673650894547e-05) + t373 + t387 + t400;
         const gic_real t552 = t551 + t426 + t452 + t466 + t479 + t499 + t519;
-        const gic_real t553 = y[14] * R(1078.52);
-        const gic_real t554 = t28 + (y[14] * t522 - y[15] * t18 - rate[15] * R(0.056));
-        const gic_real t555 = y[16] * t553 - y[14] * t1 + rate[15] * R(2955.66) + (t523 * R(444.42876000000007) - t554 * R(116.84512));
-        const gic_real t556 = m[42] + y[14];
+        const gic_real t553 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t554 = t28 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t522 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t18 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t555 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t553 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t1 +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(2955.66) + (t523 * R(444.42876000000007) - t554 * R(116.84512));
+        const gic_real t556 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t557 = R(0.4469) * t556;
-        const gic_real t558 = rate[16] - m[42] * y[15];
-        const gic_real t559 = rate[15] + m[42] * y[16];
-        const gic_real t560 = y[16] * t557 - t556 * t41 + (t40 * t558 + t42 * t559);
-        const gic_real t561 = t555 + (rate[15] + (t525 * R(0.4919654879999992) - t32 * R(13.051414655999999))) + (t560 + t46 * t529 - t55 * R(40.476046225));
-        const gic_real t562 = m[72] + y[14];
+        const gic_real t558 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t559 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t560 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t557 - t556 * t41 + (t40 * t558 + t42 * t559);
+        const gic_real t561 = t555 + (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (t525 * R(0.4919654879999992) - t32 *
+            R(13.051414655999999))) + (t560 + t46 * t529 - t55 * R(40.476046225));
+        const gic_real t562 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t563 = R(0.4469) * t562;
-        const gic_real t564 = rate[16] - m[72] * y[15];
-        const gic_real t565 = rate[15] + m[72] * y[16];
-        const gic_real t566 = y[16] * t563 - t562 * t71 + (t70 * t564 + t72 * t565);
+        const gic_real t564 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t565 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t566 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t563 - t562 * t71 + (t70 * t564 + t72 * t565);
         const gic_real t567 = t93 * t103 + (t92 * t106 + t99 * t112);
         const gic_real t568 = t93 * t567 - t99 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t569 = t568 + (t121 * t535 - t119 * t135);
-        const gic_real t570 = t561 + (t566 + t76 * t532 - R(40.476046225) * t83) + (t569 + (m[152] * t535 - t134 * R(149.724089775)));
+        const gic_real t570 = t561 + (t566 + t76 * t532 - R(40.476046225) * t83) + (t569 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t535 - t134 * R(149.724089775)));
         const gic_real t571 = t148 * t158 + (t147 * t161 + t154 * t167);
         const gic_real t572 = t148 * t571 - t154 * t159 + (t153 * t164 + (t160 * t166 + t161 * t169));
         const gic_real t573 = t572 + (t176 * t538 - t174 * t190);
-        const gic_real t574 = m[102] + y[14];
+        const gic_real t574 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t575 = R(0.4469) * t574;
-        const gic_real t576 = rate[16] - m[102] * y[15];
-        const gic_real t577 = rate[15] + m[102] * y[16];
-        const gic_real t578 = y[16] * t575 - t574 * t205 + (t204 * t576 + t206 * t577);
-        const gic_real t579 = t570 + (t573 + (m[188] * t538 - R(149.724089775) * t189)) + (t578 + t210 * t542 - t219 * R(-40.476046225));
-        const gic_real t580 = m[132] + y[14];
+        const gic_real t576 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t577 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t578 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t575 - t574 * t205 + (t204 * t576 + t206 * t577);
+        const gic_real t579 = t570 + (t573 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t538 -
+            R(149.724089775) * t189)) + (t578 + t210 * t542 - t219 * R(-40.476046225));
+        const gic_real t580 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t581 = R(0.4469) * t580;
-        const gic_real t582 = rate[16] - m[132] * y[15];
-        const gic_real t583 = rate[15] + m[132] * y[16];
-        const gic_real t584 = y[16] * t581 - t580 * t235 + (t234 * t582 + t236 * t583);
-        const gic_real t585 = m[234] + y[14];
+        const gic_real t582 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t583 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t584 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t581 - t580 * t235 + (t234 * t582 + t236 * t583);
+        const gic_real t585 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t586 = t585 * R(4.8947505);
-        const gic_real t587 = rate[16] - m[234] * y[15];
-        const gic_real t588 = rate[15] + m[234] * y[16];
-        const gic_real t589 = y[16] * t586 - t585 * t260 + (t259 * t587 + t261 * t588);
-        const gic_real t590 = t589 + t265 * t547 + (m[224] * t547 - t276 * R(-149.724089775));
+        const gic_real t587 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t588 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t589 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t586 - t585 * t260 + (t259 * t587 + t261 * t588);
+        const gic_real t590 = t589 + t265 * t547 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t547 -
+            t276 * R(-149.724089775));
         const gic_real t591 = t579 + (t584 + t240 * t545 - R(-40.476046225) * t247) + t590;
-        const gic_real t592 = m[264] + y[14];
+        const gic_real t592 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t593 = t592 * R(4.8947505);
-        const gic_real t594 = rate[16] - m[264] * y[15];
-        const gic_real t595 = rate[15] + m[264] * y[16];
-        const gic_real t596 = y[16] * t593 - t592 * t293 + (t292 * t594 + t294 * t595);
-        const gic_real t597 = t596 + t298 * t549 + (m[254] * t549 - R(-149.724089775) * t307);
+        const gic_real t594 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t595 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t596 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t593 - t592 * t293 + (t292 * t594 + t294 * t595);
+        const gic_real t597 = t596 + t298 * t549 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t549 -
+            R(-149.724089775) * t307);
         const gic_real t598 = t433 + (t335 * t428 - t430 * t334);
         const gic_real t599 = t407 + (t341 * t402 - t404 * t340);
-        const gic_real t600 = m[152] * t402 - R(1.653405) * t340 - (t351 + t354 + t357 + t360);
-        const gic_real t601 = t598 + (t599 + t600 + (m[188] * t428 - R(1.653405) * t334));
-        const gic_real t602 = t484 + t329 * t481 + (t601 + (m[224] * t481 - R(-1.653405) * t328));
-        const gic_real t603 = t504 + t323 * t501 + (t602 + (m[254] * t501 - R(-1.653405) * t322));
+        const gic_real t600 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t402 - R(1.653405) * t340 -
+            (t351 + t354 + t357 + t360);
+        const gic_real t601 = t598 + (t599 + t600 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t428 -
+            R(1.653405) * t334));
+        const gic_real t602 = t484 + t329 * t481 + (t601 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] *
+            t481 - R(-1.653405) * t328));
+        const gic_real t603 = t504 + t323 * t501 + (t602 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] *
+            t501 - R(-1.653405) * t322));
         const gic_real t604 = t20 * R(2086.52) + t36 * R(9.072) + t64 + t90 + t144;
-        const gic_real t605 = t604 + t199 + t228 + t254 + t286 + t315 - (t324 + (t330 + (t342 + t336)));
-        const gic_real t606 = y[14] * t2 - y[15] * t553 + rate[16] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t607 = t556 * t43 - y[15] * t557 + (t37 * t558 + t40 * t559);
+        const gic_real residual_4 = t604 + t199 + t228 + t254 + t286 + t315 - (t324 + (t330 + (t342 + t336)));
+        const gic_real t606 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t2 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t553 +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t607 = t556 * t43 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t557 + (t37 * t558 + t40 * t559);
         const gic_real t608 = t607 - t45 * t529 + (t63 * R(40.476046225) - t528 * R(7.359315990000001));
-        const gic_real t609 = t606 + (rate[16] + (t36 * R(13.051414655999999) - m[1] * t526)) + t608;
-        const gic_real t610 = t562 * t73 - y[15] * t563 + (t67 * t564 + t70 * t565);
+        const gic_real t609 = t606 + (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t526)) + t608;
+        const gic_real t610 = t562 * t73 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t563 + (t67 * t564 + t70 * t565);
         const gic_real t611 = t610 - t75 * t532 + (R(40.476046225) * t89 - t531 * R(-7.359315990000001));
         const gic_real t612 = t99 * t107 - t92 * t567 + (t94 * t109 + (t98 * t111 + t103 * t114));
         const gic_real t613 = t612 + (t119 * t144 - t117 * t535);
-        const gic_real t614 = t609 + t611 + (t613 + (t143 * R(149.724089775) - m[151] * t535));
+        const gic_real t614 = t609 + t611 + (t613 + (t143 * R(149.724089775) -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t535));
         const gic_real t615 = t154 * t162 - t147 * t571 + (t149 * t164 + (t153 * t166 + t158 * t169));
         const gic_real t616 = t615 + (t174 * t199 - t172 * t538);
-        const gic_real t617 = t574 * t207 - y[15] * t575 + (t201 * t576 + t204 * t577);
+        const gic_real t617 = t574 * t207 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t575 + (t201 * t576 + t204 * t577);
         const gic_real t618 = t617 - t209 * t542 + (t227 * R(-40.476046225) - R(7.359315990000001) * t541);
-        const gic_real t619 = t614 + (t616 + (R(149.724089775) * t198 - m[187] * t538)) + t618;
-        const gic_real t620 = t580 * t237 - y[15] * t581 + (t231 * t582 + t234 * t583);
+        const gic_real t619 = t614 + (t616 + (R(149.724089775) * t198 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t538)) + t618;
+        const gic_real t620 = t580 * t237 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t581 + (t231 * t582 + t234 * t583);
         const gic_real t621 = t620 - t239 * t545 + (R(-40.476046225) * t253 - R(-7.359315990000001) * t544);
-        const gic_real t622 = t585 * t262 - y[15] * t586 + (t256 * t587 + t259 * t588);
-        const gic_real t623 = t622 - t264 * t547 + (t285 * R(-149.724089775) - m[223] * t547);
-        const gic_real t624 = t592 * t295 - y[15] * t593 + (t289 * t594 + t292 * t595);
-        const gic_real t625 = t624 - t297 * t549 + (R(-149.724089775) * t314 - m[253] * t549);
+        const gic_real t622 = t585 * t262 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t586 + (t256 * t587 + t259 * t588);
+        const gic_real t623 = t622 - t264 * t547 + (t285 * R(-149.724089775) -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t547);
+        const gic_real t624 = t592 * t295 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t593 + (t289 * t594 + t292 * t595);
+        const gic_real t625 = t624 - t297 * t549 + (R(-149.724089775) * t314 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t549);
         const gic_real t626 = t432 + (t430 * t336 - t333 * t428);
         const gic_real t627 = t406 + (t404 * t342 - t339 * t402);
-        const gic_real t628 = R(1.653405) * t342 - m[151] * t402 - (t350 + t353 + t356 + t359);
-        const gic_real t629 = t626 + (t627 + t628 + (R(1.653405) * t336 - m[187] * t428));
-        const gic_real t630 = t483 - t327 * t481 + (t629 + (R(-1.653405) * t330 - m[223] * t481));
-        const gic_real t631 = t503 - t321 * t501 + (t630 + (R(-1.653405) * t324 - m[253] * t501));
+        const gic_real t628 = R(1.653405) * t342 - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t402 -
+            (t350 + t353 + t356 + t359);
+        const gic_real t629 = t626 + (t627 + t628 + (R(1.653405) * t336 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t428));
+        const gic_real t630 = t483 - t327 * t481 + (t629 + (R(-1.653405) * t330 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t481));
+        const gic_real t631 = t503 - t321 * t501 + (t630 + (R(-1.653405) * t324 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t501));
         const gic_real t632 = t554 * R(2086.52) + t33 + t56 + t84 + t135 + t190;
-        const gic_real t633 = t632 + t220 + t248 + t277 + t308 - (t322 + (t328 + (t340 + t334)));
-        const gic_real t634 = m[185] * t135 + m[184] * t144 + (m[182] * t613 + (m[181] * t569 + m[180] * t145));
-        const gic_real t635 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        const gic_real residual_5 = t632 + t220 + t248 + t277 + t308 - (t322 + (t328 + (t340 + t334)));
+        const gic_real t634 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] * t135 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] * t144 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t613 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t569 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t145));
+        /* force stop_f_l */
+        const gic_real t635 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L], R(0.0));
         const gic_real t636 = GIC_MIN(R(100.0) * t635, R(1.0));
-        const gic_real t637 = xd[0] * (R(5000.0) * ((R(3.0) - (t636 + t636)) * (t636 * t636)));
+        const gic_real t637 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t636 + t636)) * (t636 * t636)));
         const gic_real t638 = GIC_MAX(R(400000.0) * t635 - t637, R(0.0));
-        const gic_real t639 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        const gic_real t639 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29), R(0.0));
         const gic_real t640 = GIC_MIN(t639 * R(100.0), R(1.0));
-        const gic_real t641 = xd[0] * ((R(3.0) - (t640 + t640)) * (t640 * t640) * R(5000.0));
+        const gic_real t641 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t640 + t640)) * (t640 * t640) * R(5000.0));
         const gic_real t642 = GIC_MAX(t639 * R(400000.0) + t641, R(0.0));
-        const gic_real t643 = (x[0] - R(0.31903)) * R(167070.9);
-        const gic_real t644 = xd[0] * R(17490.8);
-        const gic_real t645 = m[185] * t340 + m[184] * t342 + (m[182] * t627 + (m[181] * t599 + m[180] * t343));
-        const gic_real t646 = m[54] * t65 + t634 - (t638 - t642 - (t643 + t644) + t645);
-        const gic_real t647 = GIC_FABS(t644) + GIC_FABS(t643) + R(167070.9) * (R(0.31903) + GIC_FABS(x[0]));
+        /* force spring_f_l */
+        const gic_real t643 = (x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.31903)) * R(167070.9);
+        const gic_real t644 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * R(17490.8);
+        const gic_real t645 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] * t340 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] * t342 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t627 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t599 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t343));
+        const gic_real residual_6 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t65 + t634 - (t638 - t642 -
+            (t643 + t644) + t645);
+        const gic_real t647 = GIC_FABS(t644) + GIC_FABS(t643) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_VEHICLE_X_SPRING_F_L]));
         const gic_real t648 = t647 + GIC_FABS(t642 - t638) + t381 * t386 + t417 * t425;
-        const gic_real t649 = m[221] * t190 + m[220] * t199 + (m[218] * t616 + (m[217] * t573 + m[216] * t200));
-        const gic_real t650 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        const gic_real t649 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] * t190 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] * t199 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t616 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t573 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t200));
+        /* force stop_f_r */
+        const gic_real t650 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R], R(0.0));
         const gic_real t651 = GIC_MIN(R(100.0) * t650, R(1.0));
-        const gic_real t652 = xd[1] * (R(5000.0) * ((R(3.0) - (t651 + t651)) * (t651 * t651)));
+        const gic_real t652 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t651 + t651)) * (t651 * t651)));
         const gic_real t653 = GIC_MAX(R(400000.0) * t650 - t652, R(0.0));
-        const gic_real t654 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        const gic_real t654 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29), R(0.0));
         const gic_real t655 = GIC_MIN(R(100.0) * t654, R(1.0));
-        const gic_real t656 = xd[1] * (R(5000.0) * ((R(3.0) - (t655 + t655)) * (t655 * t655)));
+        const gic_real t656 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t655 + t655)) * (t655 * t655)));
         const gic_real t657 = GIC_MAX(R(400000.0) * t654 + t656, R(0.0));
-        const gic_real t658 = R(167070.9) * (x[1] - R(0.31903));
-        const gic_real t659 = xd[1] * R(17490.8);
-        const gic_real t660 = m[221] * t334 + m[220] * t336 + (m[218] * t626 + (m[217] * t598 + m[216] * t337));
-        const gic_real t661 = m[84] * t91 + t649 - (t653 - t657 - (t658 + t659) + t660);
-        const gic_real t662 = GIC_FABS(t659) + GIC_FABS(t658) + R(167070.9) * (R(0.31903) + GIC_FABS(x[1]));
+        /* force spring_f_r */
+        const gic_real t658 = R(167070.9) * (x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.31903));
+        const gic_real t659 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * R(17490.8);
+        const gic_real t660 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] * t334 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] * t336 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t626 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t598 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t337));
+        const gic_real residual_7 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t91 + t649 - (t653 - t657 -
+            (t658 + t659) + t660);
+        const gic_real t662 = GIC_FABS(t659) + GIC_FABS(t658) + R(167070.9) * (R(0.31903) +
+            GIC_FABS(x[HMMWV_VEHICLE_X_SPRING_F_R]));
         const gic_real t663 = t662 + GIC_FABS(t657 - t653) + t394 * t399 + t443 * t451;
-        const gic_real t664 = m[114] * t229 + (m[251] * t277 + m[250] * t286 + m[246] * t287);
-        const gic_real t665 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        const gic_real t664 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t229 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] * t277 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] * t286 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t287);
+        /* force stop_r_l */
+        const gic_real t665 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L], R(0.0));
         const gic_real t666 = GIC_MIN(R(100.0) * t665, R(1.0));
-        const gic_real t667 = xd[2] * (R(5000.0) * ((R(3.0) - (t666 + t666)) * (t666 * t666)));
+        const gic_real t667 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t666 + t666)) * (t666 * t666)));
         const gic_real t668 = GIC_MAX(R(400000.0) * t665 - t667, R(0.0));
-        const gic_real t669 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        const gic_real t669 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34), R(0.0));
         const gic_real t670 = GIC_MIN(R(100.0) * t669, R(1.0));
-        const gic_real t671 = xd[2] * (R(5000.0) * ((R(3.0) - (t670 + t670)) * (t670 * t670)));
+        const gic_real t671 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t670 + t670)) * (t670 * t670)));
         const gic_real t672 = GIC_MAX(R(400000.0) * t669 + t671, R(0.0));
-        const gic_real t673 = (x[2] - R(0.33727)) * R(369167.2);
-        const gic_real t674 = xd[2] * R(24780.4);
-        const gic_real t675 = t668 - t672 - (t673 + t674) + (m[251] * t328 + m[250] * t330 + m[246] * t331);
-        const gic_real t676 = GIC_FABS(t674) + GIC_FABS(t673) + R(369167.2) * (R(0.33727) + GIC_FABS(x[2]));
+        /* force spring_r_l */
+        const gic_real t673 = (x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.33727)) * R(369167.2);
+        const gic_real t674 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * R(24780.4);
+        const gic_real t675 = t668 - t672 - (t673 + t674) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] *
+            t328 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] * t330 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t331);
+        const gic_real t676 = GIC_FABS(t674) + GIC_FABS(t673) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_VEHICLE_X_SPRING_R_L]));
         const gic_real t677 = t676 + GIC_FABS(t672 - t668) + t460 * t465 + t491 * t498;
-        const gic_real t678 = m[144] * t255 + (m[281] * t308 + m[280] * t315 + m[276] * t316);
-        const gic_real t679 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t678 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t255 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] * t308 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] * t315 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t316);
+        /* force stop_r_r */
+        const gic_real t679 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R], R(0.0));
         const gic_real t680 = GIC_MIN(R(100.0) * t679, R(1.0));
-        const gic_real t681 = xd[3] * (R(5000.0) * ((R(3.0) - (t680 + t680)) * (t680 * t680)));
+        const gic_real t681 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t680 + t680)) * (t680 * t680)));
         const gic_real t682 = GIC_MAX(R(400000.0) * t679 - t681, R(0.0));
-        const gic_real t683 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        const gic_real t683 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34), R(0.0));
         const gic_real t684 = GIC_MIN(R(100.0) * t683, R(1.0));
-        const gic_real t685 = xd[3] * (R(5000.0) * ((R(3.0) - (t684 + t684)) * (t684 * t684)));
+        const gic_real t685 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t684 + t684)) * (t684 * t684)));
         const gic_real t686 = GIC_MAX(R(400000.0) * t683 + t685, R(0.0));
-        const gic_real t687 = R(369167.2) * (x[3] - R(0.33727));
-        const gic_real t688 = xd[3] * R(24780.4);
-        const gic_real t689 = t682 - t686 - (t687 + t688) + (m[281] * t322 + m[280] * t324 + m[276] * t325);
-        const gic_real t690 = GIC_FABS(t688) + GIC_FABS(t687) + R(369167.2) * (R(0.33727) + GIC_FABS(x[3]));
+        /* force spring_r_r */
+        const gic_real t687 = R(369167.2) * (x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.33727));
+        const gic_real t688 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * R(24780.4);
+        const gic_real t689 = t682 - t686 - (t687 + t688) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] *
+            t322 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] * t324 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t325);
+        const gic_real t690 = GIC_FABS(t688) + GIC_FABS(t687) + R(369167.2) * (R(0.33727) +
+            GIC_FABS(x[HMMWV_VEHICLE_X_SPRING_R_R]));
         const gic_real t691 = t690 + GIC_FABS(t686 - t682) + t473 * t478 + t511 * t518;
-        const gic_real t692 = t591 + t597 - t603;
-        const gic_real t693 = t619 + t621 + t623 + t625 - t631;
+        const gic_real residual_1 = t591 + t597 - t603;
+        const gic_real residual_2 = t619 + t621 + t623 + t625 - t631;
         const gic_real t694 = t648 + t419 * t426;
         const gic_real t695 = t663 + t445 * t452;
-        const gic_real t696 = t664 - t675;
+        const gic_real residual_8 = t664 - t675;
         const gic_real t697 = t677 + t493 * t499;
-        const gic_real t698 = t678 - t689;
+        const gic_real residual_9 = t678 - t689;
         const gic_real t699 = t691 + t513 * t519;
-        tau[0] = t349;
-        size[0] = t521;
-        tau[3] = t550;
-        size[3] = t552;
-        tau[1] = t692;
-        size[1] = t521;
-        tau[4] = t605;
-        size[4] = t552;
-        tau[2] = t693;
-        size[2] = t521;
-        tau[5] = t633;
-        size[5] = t552;
-        tau[6] = t646;
-        size[6] = t694;
-        tau[7] = t661;
-        size[7] = t695;
-        tau[8] = t696;
-        size[8] = t697;
-        tau[9] = t698;
-        size[9] = t699;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] = residual_0;
+        size[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] = t521;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] = t552;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] = residual_1;
+        size[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] = t521;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] = t552;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] = residual_2;
+        size[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] = t521;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] = t552;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] = t694;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] = t695;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] = t697;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] = t699;
     }
     return GIC_OK;
 }
@@ -4456,8 +6258,8 @@ static GIC_COLD int hmmwv_vehicle_check_constraints(hmmwv_vehicle *self)
 }
 
 /* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
-static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate)
+static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate)
 {
     gic_real tau[HMMWV_VEHICLE_UNKNOWN_ROOM], size[HMMWV_VEHICLE_UNKNOWN_ROOM];
     int i, status = hmmwv_vehicle_check_constraints(self);
@@ -4474,7 +6276,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real 
     return status;
 }
 
-/* ---- the functions of hmmwv_vehicle.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of hmmwv_vehicle.h ---------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -4482,7 +6284,8 @@ static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_re
     const gic_real *turn;
     int status;
     self->head.subset = -1;
-    if (!GIC_BOUNDED(y, HMMWV_VEHICLE_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, HMMWV_VEHICLE_INPUTS) ||
+    if (!GIC_BOUNDED(y, HMMWV_VEHICLE_SLOW) || !GIC_FINITE(&time, 1) || !GIC_FINITE(self->input, HMMWV_VEHICLE_INPUTS)
+        ||
         !GIC_FINITE(self->parameter, HMMWV_VEHICLE_PARAMETERS) || !GIC_FINITE(self->port, HMMWV_VEHICLE_PORTS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_vehicle_orient(self, y, e, &turn);
@@ -4494,7 +6297,8 @@ static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_re
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[HMMWV_VEHICLE_STATE_ROOM])
+static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[HMMWV_VEHICLE_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = hmmwv_vehicle_locate(self, time, y, e);
@@ -4504,7 +6308,8 @@ static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_
     if (status == GIC_OK)
         status = hmmwv_vehicle_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + HMMWV_VEHICLE_TWIST, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_TWIST))
+    if (status == GIC_OK && HMMWV_VEHICLE_STATES > HMMWV_VEHICLE_TWIST && !GIC_FINITE(rate + HMMWV_VEHICLE_TWIST,
+        HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv_vehicle_check(self, time, y, e, rate);
@@ -4524,8 +6329,9 @@ int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state,
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int hmmwv_vehicle_march(hmmwv_vehicle *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -4536,7 +6342,7 @@ static int hmmwv_vehicle_march(hmmwv_vehicle *self, gic_real time)
         return status;
     memcpy(before, state, HMMWV_VEHICLE_STATES * sizeof *state);
     for (i = 0; i < HMMWV_VEHICLE_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = hmmwv_vehicle_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, HMMWV_VEHICLE_STATES * sizeof *state);
@@ -4885,7 +6691,8 @@ static const char *const hmmwv_vehicle_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -5022,7 +6829,8 @@ const char *hmmwv_vehicle_status_state(const hmmwv_vehicle *self)
 const char *hmmwv_vehicle_status_condition(const hmmwv_vehicle *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < hmmwv_vehicle_model.condition_count ? hmmwv_vehicle_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < hmmwv_vehicle_model.condition_count ?
+        hmmwv_vehicle_model.condition_text[condition] : NULL;
 }
 
 void hmmwv_vehicle_snapshot(const hmmwv_vehicle *self, hmmwv_vehicle *copy)
@@ -5035,297 +6843,562 @@ void hmmwv_vehicle_restore(hmmwv_vehicle *self, const hmmwv_vehicle *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
-/* tau = residual of the equations of motion at accelerations acc, body by body: another way than hmmwv_vehicle_dynamics. */
-static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *acc, gic_real *tau)
+/* tau = residual of the equations of motion at accelerations acc, body by body: another way than
+ * hmmwv_vehicle_dynamics. */
+static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *acc, gic_real *tau)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[16] * R(3570.2);
-        const gic_real t2 = y[15] * R(2955.66);
-        const gic_real t3 = y[15] * R(0.056);
-        const gic_real t4 = y[15] * R(0.21300000000000002);
-        const gic_real t5 = y[14] * t3 + y[16] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000002));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[15] * t1 - y[16] * t2 + acc[0] * R(1078.52) - t6 * R(444.42876000000007);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]));
-        const gic_real t9 = R(0.054228999999999916) * y[15] - m[1] * y[16];
-        const gic_real t10 = y[14] * t8 - y[15] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002);
+        const gic_real t5 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t3 + y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t4 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * R(0.056) - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] *
+            R(0.21300000000000002));
+        const gic_real t6 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t1 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t2 +
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.42876000000007);
+        /* inertia of rack */
+        const gic_real t8 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] + (R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t10 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t8 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t9 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t14 = y[16] * t9 - y[14] * t13 + (R(1.438648) * acc[2] - R(0.054228999999999916) * acc[0]);
-        const gic_real t15 = u[2] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[16] * t16 + y[15] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[16] * t19 + y[15] * t21;
-        const gic_real t23 = y[15] * t20 - y[16] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[16];
-        const gic_real t28 = t27 - y[14] * t25 - t26 - t26;
+        const gic_real t13 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t14 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t9 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] - R(0.054228999999999916) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] + (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] +
+            t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t17 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t18 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t19 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * t17 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * t18;
+        const gic_real t20 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t16 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * t17 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * t18;
+        const gic_real t22 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t19 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t20 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] + acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[15] * t25 - y[16] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[14] * t28 - y[15] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t25 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t28 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t30 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t24 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t26 + (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] +
+            t32) + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] * (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] *
+            t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[15];
-        const gic_real t37 = t35 + (t35 + (y[14] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[16] * t30 - y[14] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t30 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t37 + (t38 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t39 -
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t35 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t25) - acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999992))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[16] * t44 + y[15] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[16] * t47 + y[15] * t49;
-        const gic_real t51 = y[15] * t48 - y[16] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[14] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t12 - t15 * R(0.4919654879999992))) + (t42 + t33 *
+            R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t45 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t46 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t47 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * t45 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * t46;
+        const gic_real t48 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t44 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * t45 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * t46;
+        const gic_real t50 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t47 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t48 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] + acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[15] * t53 - y[16] * t56;
-        const gic_real t58 = y[14] * t55 - y[15] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t53 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t55 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t57 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t52 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t54 + (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] +
+            t58) + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] * (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] *
+            t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[14] * t56 - t36));
-        const gic_real t63 = y[16] * t57 - y[14] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t57 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t62 + (t38 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t63 -
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t61 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t53) - acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[163] + y[15];
-        const gic_real t68 = m[164] + y[16];
-        const gic_real t69 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t70 = m[158] * R(4.7728205);
-        const gic_real t71 = m[157] * R(0.19340000000000046);
-        const gic_real t72 = m[156] * R(4.8947505);
-        const gic_real t73 = m[161] * t70 + (m[160] * t71 + m[159] * t72);
-        const gic_real t74 = m[162] + y[14];
-        const gic_real t75 = m[155] * R(4.7728205);
-        const gic_real t76 = m[154] * R(0.19340000000000046);
-        const gic_real t77 = m[153] * R(4.8947505);
-        const gic_real t78 = m[161] * t75 + (m[160] * t76 + m[159] * t77);
+        /* wheel tire_f_l */
+        const gic_real t67 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t68 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] + y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_l */
+        const gic_real t69 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t70 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t72 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t73 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t70 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t71 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t72);
+        const gic_real t74 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t75 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t76 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t77 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t78 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t75 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t76 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t77);
         const gic_real t79 = t68 * t69 + (t67 * t73 + t74 * t78);
-        const gic_real t80 = m[158] * t70 + (m[157] * t71 + m[156] * t72);
-        const gic_real t81 = m[158] * t75 + (m[157] * t76 + m[156] * t77);
+        const gic_real t80 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t70 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t71 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t72);
+        const gic_real t81 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t75 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t76 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t77);
         const gic_real t82 = t68 * t73 + (t67 * t80 + t74 * t81);
-        const gic_real t83 = m[170] + (acc[2] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t84 = t83 + m[182] * acc[6];
-        const gic_real t85 = m[169] + (acc[1] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t86 = t85 + m[181] * acc[6];
-        const gic_real t87 = m[155] * t75 + (m[154] * t76 + m[153] * t77);
-        const gic_real t88 = m[168] + (acc[0] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t89 = t88 + m[180] * acc[6];
+        const gic_real t83 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t84 = t83 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t86 = t85 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * t75 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t76 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * t77);
+        const gic_real t88 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t89 = t88 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t68 * t82 + (t78 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[156] * R(-0.004825999999999997);
-        const gic_real t92 = m[158] * R(0.09182099999999999) + (t91 + m[157] * R(0.08910630000000008));
-        const gic_real t93 = m[153] * R(-0.004825999999999997);
-        const gic_real t94 = m[155] * R(0.09182099999999999) + (t93 + m[154] * R(0.08910630000000008));
-        const gic_real t95 = m[159] * R(-0.004825999999999997);
-        const gic_real t96 = m[161] * R(0.09182099999999999) + (t95 + m[160] * R(0.08910630000000008));
-        const gic_real t97 = m[164] * t94 - m[162] * t96;
-        const gic_real t98 = m[163] * t96 - m[164] * t92;
-        const gic_real t99 = m[162] * t97 - m[163] * t98 + (m[168] * t92 - m[169] * t94);
-        const gic_real t100 = m[166] + t97;
+        const gic_real t91 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t92 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t91 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008));
+        const gic_real t93 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t94 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t93 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.08910630000000008));
+        const gic_real t95 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t96 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t95 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t97 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t94 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t96;
+        const gic_real t98 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t96 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t92;
+        const gic_real t99 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t97 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t98 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t92 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t94);
+        const gic_real t100 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] + t97;
         const gic_real t101 = R(1.653405) + t94;
-        const gic_real t102 = m[152] + t96;
-        const gic_real t103 = t100 + (t100 + (y[16] * t101 - y[14] * t102));
-        const gic_real t104 = m[151] + t92;
-        const gic_real t105 = t98 + (t98 + (y[15] * t102 - y[16] * t104));
-        const gic_real t106 = y[14] * t103 - y[15] * t105 + (acc[0] * t104 - acc[1] * t101);
-        const gic_real t107 = m[173] + t99 + (acc[5] + t106) + u[2] * (m[174] * t92 - m[175] * t94);
-        const gic_real t108 = t107 + acc[6] * (m[185] + (m[180] * t92 - m[181] * t94));
+        const gic_real t102 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t96;
+        const gic_real t103 = t100 + (t100 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t101 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t102));
+        const gic_real t104 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t92;
+        const gic_real t105 = t98 + (t98 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t102 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] *
+            t104));
+        const gic_real t106 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t103 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t105 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t104 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t101);
+        const gic_real t107 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Z] + t99 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t106) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t92 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t94);
+        const gic_real t108 = t107 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t92 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t94));
         const gic_real t109 = t108 * R(90.555);
-        const gic_real t110 = m[162] * t92 - m[163] * t94;
-        const gic_real t111 = m[164] * t98 - m[162] * t110 + (m[170] * t94 - m[168] * t96);
-        const gic_real t112 = m[167] + t110;
-        const gic_real t113 = t112 + (t112 + (y[14] * t104 - y[15] * t101));
-        const gic_real t114 = y[16] * t105 - y[14] * t113 + (acc[2] * t101 - acc[0] * t102);
-        const gic_real t115 = m[172] + t111 + (acc[4] + t114) + u[2] * (m[176] * t94 - m[174] * t96);
-        const gic_real t116 = t115 + acc[6] * (m[184] + (m[182] * t94 - m[180] * t96));
+        const gic_real t110 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t92 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t94;
+        const gic_real t111 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t98 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t110 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t94 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t96);
+        const gic_real t112 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] + t110;
+        const gic_real t113 = t112 + (t112 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t104 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t101));
+        const gic_real t114 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t105 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t113 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t101 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t102);
+        const gic_real t115 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Y] + t111 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t114) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t94 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t96);
+        const gic_real t116 = t115 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t94 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t96));
         const gic_real t117 = t116 * R(90.555);
         const gic_real t118 = t90 + (t92 * t109 - t96 * t117);
-        const gic_real t119 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t118 + (m[151] * t109 - m[152] * t117));
-        const gic_real t120 = m[199] + y[15];
-        const gic_real t121 = m[200] + y[16];
-        const gic_real t122 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t123 = m[194] * R(4.7728205);
-        const gic_real t124 = m[193] * R(0.19340000000000046);
-        const gic_real t125 = m[192] * R(4.8947505);
-        const gic_real t126 = m[197] * t123 + (m[196] * t124 + m[195] * t125);
-        const gic_real t127 = m[198] + y[14];
-        const gic_real t128 = m[191] * R(4.7728205);
-        const gic_real t129 = m[190] * R(0.19340000000000046);
-        const gic_real t130 = m[189] * R(4.8947505);
-        const gic_real t131 = m[197] * t128 + (m[196] * t129 + m[195] * t130);
+        const gic_real t119 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t118 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t109 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t117));
+        /* wheel tire_f_r */
+        const gic_real t120 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t121 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        /* inertia of wheel_f_r */
+        const gic_real t122 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t123 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t124 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t125 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t126 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t123 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t124 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t125);
+        const gic_real t127 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t128 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t129 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t130 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t131 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t128 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t129 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t130);
         const gic_real t132 = t121 * t122 + (t120 * t126 + t127 * t131);
-        const gic_real t133 = m[194] * t123 + (m[193] * t124 + m[192] * t125);
-        const gic_real t134 = m[194] * t128 + (m[193] * t129 + m[192] * t130);
+        const gic_real t133 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t123 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t124 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t125);
+        const gic_real t134 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t128 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t129 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t130);
         const gic_real t135 = t121 * t126 + (t120 * t133 + t127 * t134);
-        const gic_real t136 = m[206] + (acc[2] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t137 = t136 + m[218] * acc[7];
-        const gic_real t138 = m[205] + (acc[1] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t139 = t138 + m[217] * acc[7];
-        const gic_real t140 = m[191] * t128 + (m[190] * t129 + m[189] * t130);
-        const gic_real t141 = m[204] + (acc[0] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t142 = t141 + m[216] * acc[7];
+        const gic_real t136 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t137 = t136 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t138 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t139 = t138 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t140 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * t128 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t129 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * t130);
+        const gic_real t141 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t142 = t141 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R];
         const gic_real t143 = t120 * t132 - t121 * t135 + (t131 * t137 + (t134 * t139 + t140 * t142));
-        const gic_real t144 = m[192] * R(-0.004825999999999997);
-        const gic_real t145 = m[194] * R(0.09182099999999999) + (t144 + m[193] * R(-0.08910630000000008));
-        const gic_real t146 = m[189] * R(-0.004825999999999997);
-        const gic_real t147 = m[191] * R(0.09182099999999999) + (t146 + m[190] * R(-0.08910630000000008));
-        const gic_real t148 = m[195] * R(-0.004825999999999997);
-        const gic_real t149 = m[197] * R(0.09182099999999999) + (t148 + m[196] * R(-0.08910630000000008));
-        const gic_real t150 = m[200] * t147 - m[198] * t149;
-        const gic_real t151 = m[199] * t149 - m[200] * t145;
-        const gic_real t152 = m[198] * t150 - m[199] * t151 + (m[204] * t145 - m[205] * t147);
-        const gic_real t153 = m[202] + t150;
+        const gic_real t144 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t145 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t144 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t146 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t147 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t146 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.08910630000000008));
+        const gic_real t148 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t149 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t148 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t150 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t147 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t149;
+        const gic_real t151 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t149 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t145;
+        const gic_real t152 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t150 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t151 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t145 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t147);
+        const gic_real t153 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] + t150;
         const gic_real t154 = R(1.653405) + t147;
-        const gic_real t155 = m[188] + t149;
-        const gic_real t156 = t153 + (t153 + (y[16] * t154 - y[14] * t155));
-        const gic_real t157 = m[187] + t145;
-        const gic_real t158 = t151 + (t151 + (y[15] * t155 - y[16] * t157));
-        const gic_real t159 = y[14] * t156 - y[15] * t158 + (acc[0] * t157 - acc[1] * t154);
-        const gic_real t160 = m[209] + t152 + (acc[5] + t159) + u[2] * (m[210] * t145 - m[211] * t147);
-        const gic_real t161 = t160 + acc[7] * (m[221] + (m[216] * t145 - m[217] * t147));
+        const gic_real t155 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t149;
+        const gic_real t156 = t153 + (t153 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t154 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t155));
+        const gic_real t157 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t145;
+        const gic_real t158 = t151 + (t151 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t155 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] *
+            t157));
+        const gic_real t159 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t156 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t158 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t157 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t154);
+        const gic_real t160 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Z] + t152 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t159) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t145 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t147);
+        const gic_real t161 = t160 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t145 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t147));
         const gic_real t162 = R(90.555) * t161;
-        const gic_real t163 = m[198] * t145 - m[199] * t147;
-        const gic_real t164 = m[200] * t151 - m[198] * t163 + (m[206] * t147 - m[204] * t149);
-        const gic_real t165 = m[203] + t163;
-        const gic_real t166 = t165 + (t165 + (y[14] * t157 - y[15] * t154));
-        const gic_real t167 = y[16] * t158 - y[14] * t166 + (acc[2] * t154 - acc[0] * t155);
-        const gic_real t168 = m[208] + t164 + (acc[4] + t167) + u[2] * (m[212] * t147 - m[210] * t149);
-        const gic_real t169 = t168 + acc[7] * (m[220] + (m[218] * t147 - m[216] * t149));
+        const gic_real t163 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t145 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t147;
+        const gic_real t164 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t151 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t163 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t147 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t149);
+        const gic_real t165 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] + t163;
+        const gic_real t166 = t165 + (t165 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t157 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t154));
+        const gic_real t167 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t158 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t166 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t154 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t155);
+        const gic_real t168 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Y] + t164 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t167) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t147 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t149);
+        const gic_real t169 = t168 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t147 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t149));
         const gic_real t170 = R(90.555) * t169;
         const gic_real t171 = t143 + (t145 * t162 - t149 * t170);
-        const gic_real t172 = m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469));
-        const gic_real t173 = m[98] * R(0.8938);
-        const gic_real t174 = m[97] * R(0.4469);
-        const gic_real t175 = m[101] * t173 + m[100] * t174;
-        const gic_real t176 = y[16] * t172 + y[15] * t175;
-        const gic_real t177 = m[98] * t173 + m[97] * t174;
-        const gic_real t178 = y[16] * t175 + y[15] * t177;
-        const gic_real t179 = y[15] * t176 - y[16] * t178 + R(0.4469) * (m[108] + acc[0] + m[114] * acc[8]);
-        const gic_real t180 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t181 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t182 = m[102] * t181;
-        const gic_real t183 = R(-1.688965) * y[16];
-        const gic_real t184 = t183 - y[14] * t181 - t182 - t182;
+        /* inertia of lca_r_l */
+        const gic_real t172 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t173 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t174 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t175 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * t173 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * t174;
+        const gic_real t176 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t172 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t175;
+        const gic_real t177 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * t173 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * t174;
+        const gic_real t178 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t175 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t177;
+        const gic_real t179 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t176 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t178 +
+            R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] + acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L]);
+        const gic_real t180 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.246867347245056);
+        const gic_real t181 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.246867347245056);
+        const gic_real t182 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t181;
+        const gic_real t183 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t184 = t183 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t181 - t182 - t182;
         const gic_real t185 = R(0.307086) + t180;
-        const gic_real t186 = y[15] * t181 - y[16] * t185;
-        const gic_real t187 = R(-1.688965) * acc[1];
-        const gic_real t188 = y[14] * t184 - y[15] * t186 + (acc[0] * t185 - t187);
-        const gic_real t189 = m[108] * t180 - m[102] * t182 + (acc[5] + t188) + acc[8] * (m[114] * t180);
+        const gic_real t186 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t181 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t185;
+        const gic_real t187 = R(-1.688965) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y];
+        const gic_real t188 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t184 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t186 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t185 - t187);
+        const gic_real t189 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t180 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t182 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t188) + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t180);
         const gic_real t190 = R(23.965) * t189;
-        const gic_real t191 = m[102] * t180;
-        const gic_real t192 = R(-1.688965) * y[15];
-        const gic_real t193 = t191 + (t191 + (y[14] * t185 - t192));
-        const gic_real t194 = R(-1.688965) * acc[2];
-        const gic_real t195 = y[16] * t186 - y[14] * t193 + (t194 - acc[0] * t181);
-        const gic_real t196 = acc[4] + t195 - (m[102] * t191 + m[108] * t181) - acc[8] * (m[114] * t181);
+        const gic_real t191 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t180;
+        const gic_real t192 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t193 = t191 + (t191 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t185 - t192));
+        const gic_real t194 = R(-1.688965) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z];
+        const gic_real t195 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t186 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t193 + (t194 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t181);
+        const gic_real t196 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t195 -
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t191 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t181) - acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t181);
         const gic_real t197 = R(23.965) * t196;
         const gic_real t198 = t179 + (t180 * t190 - t181 * t197);
-        const gic_real t199 = t119 + (t171 + (m[187] * t162 - m[188] * t170)) + (t198 + R(7.359315990000001) * t189);
-        const gic_real t200 = m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469));
-        const gic_real t201 = m[128] * R(0.8938);
-        const gic_real t202 = m[127] * R(0.4469);
-        const gic_real t203 = m[131] * t201 + m[130] * t202;
-        const gic_real t204 = y[16] * t200 + y[15] * t203;
-        const gic_real t205 = m[128] * t201 + m[127] * t202;
-        const gic_real t206 = y[16] * t203 + y[15] * t205;
-        const gic_real t207 = y[15] * t204 - y[16] * t206 + R(0.4469) * (m[138] + acc[0] + m[144] * acc[9]);
-        const gic_real t208 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t209 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t210 = m[132] * t209;
-        const gic_real t211 = t183 - y[14] * t209 - t210 - t210;
+        const gic_real t199 = t119 + (t171 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t162 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t170)) + (t198 + R(7.359315990000001) * t189);
+        /* inertia of lca_r_r */
+        const gic_real t200 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(0.4469));
+        const gic_real t201 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t202 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t203 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * t201 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * t202;
+        const gic_real t204 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t200 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t203;
+        const gic_real t205 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * t201 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * t202;
+        const gic_real t206 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t203 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t205;
+        const gic_real t207 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t204 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t206 +
+            R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] + acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R]);
+        const gic_real t208 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(-0.246867347245056);
+        const gic_real t209 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.246867347245056);
+        const gic_real t210 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t209;
+        const gic_real t211 = t183 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t209 - t210 - t210;
         const gic_real t212 = R(-0.307086) + t208;
-        const gic_real t213 = y[15] * t209 - y[16] * t212;
-        const gic_real t214 = y[14] * t211 - y[15] * t213 + (acc[0] * t212 - t187);
-        const gic_real t215 = m[138] * t208 - m[132] * t210 + (acc[5] + t214) + acc[9] * (m[144] * t208);
+        const gic_real t213 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t209 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t212;
+        const gic_real t214 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t211 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t213 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t212 - t187);
+        const gic_real t215 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t208 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t210 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t214) + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t208);
         const gic_real t216 = R(23.965) * t215;
-        const gic_real t217 = m[132] * t208;
-        const gic_real t218 = t217 + (t217 + (y[14] * t212 - t192));
-        const gic_real t219 = y[16] * t213 - y[14] * t218 + (t194 - acc[0] * t209);
-        const gic_real t220 = acc[4] + t219 - (m[132] * t217 + m[138] * t209) - acc[9] * (m[144] * t209);
+        const gic_real t217 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t208;
+        const gic_real t218 = t217 + (t217 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t212 - t192));
+        const gic_real t219 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t213 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t218 + (t194 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t209);
+        const gic_real t220 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t219 -
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t217 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t209) - acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t209);
         const gic_real t221 = R(23.965) * t220;
         const gic_real t222 = t207 + (t208 * t216 - t209 * t221);
-        const gic_real t223 = m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046));
-        const gic_real t224 = m[230] * R(4.7728205);
-        const gic_real t225 = m[229] * R(0.19340000000000046);
-        const gic_real t226 = m[233] * t224 + m[232] * t225;
-        const gic_real t227 = y[16] * t223 + y[15] * t226;
-        const gic_real t228 = m[230] * t224 + m[229] * t225;
-        const gic_real t229 = y[16] * t226 + y[15] * t228;
-        const gic_real t230 = y[15] * t227 - y[16] * t229 + R(4.8947505) * (m[240] + acc[0] + m[246] * acc[8]);
-        const gic_real t231 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
-        const gic_real t232 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
-        const gic_real t233 = m[234] * t232;
-        const gic_real t234 = m[238] - t233;
-        const gic_real t235 = R(-1.653405) * y[16];
-        const gic_real t236 = m[224] + t232;
-        const gic_real t237 = t234 + (t234 + (t235 - y[14] * t236));
-        const gic_real t238 = m[223] + t231;
-        const gic_real t239 = y[15] * t236 - y[16] * t238;
-        const gic_real t240 = R(-1.653405) * acc[1];
-        const gic_real t241 = y[14] * t237 - y[15] * t239 + (acc[0] * t238 - t240);
-        const gic_real t242 = m[245] + (m[240] * t231 - m[234] * t233) + (acc[5] + t241);
-        const gic_real t243 = t242 + acc[8] * (m[251] + m[246] * t231);
+        /* inertia of wheel_r_l */
+        const gic_real t223 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046));
+        const gic_real t224 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t225 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t226 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * t224 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t225;
+        const gic_real t227 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t223 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t226;
+        const gic_real t228 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * t224 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t225;
+        const gic_real t229 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t226 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t228;
+        const gic_real t230 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t227 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t229 +
+            R(4.8947505) * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] +
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] + m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L]);
+        const gic_real t231 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008);
+        const gic_real t232 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008);
+        const gic_real t233 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t232;
+        const gic_real t234 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] - t233;
+        /* wheel tire_r_l */
+        const gic_real t235 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t236 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t232;
+        const gic_real t237 = t234 + (t234 + (t235 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t236));
+        const gic_real t238 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t231;
+        const gic_real t239 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t236 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t238;
+        const gic_real t240 = R(-1.653405) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y];
+        const gic_real t241 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t237 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t239 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t238 - t240);
+        const gic_real t242 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t231 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t233) +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t241);
+        const gic_real t243 = t242 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t231);
         const gic_real t244 = R(90.555) * t243;
-        const gic_real t245 = m[234] * t231;
-        const gic_real t246 = m[239] + t245;
-        const gic_real t247 = R(-1.653405) * y[15];
-        const gic_real t248 = t246 + (t246 + (y[14] * t238 - t247));
-        const gic_real t249 = R(-1.653405) * acc[2];
-        const gic_real t250 = y[16] * t239 - y[14] * t248 + (t249 - acc[0] * t236);
-        const gic_real t251 = m[244] - (m[234] * t245 + m[240] * t232) + (acc[4] + t250);
-        const gic_real t252 = t251 + acc[8] * (m[250] - m[246] * t232);
+        const gic_real t245 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t231;
+        const gic_real t246 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] + t245;
+        const gic_real t247 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t248 = t246 + (t246 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t238 - t247));
+        const gic_real t249 = R(-1.653405) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z];
+        const gic_real t250 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t239 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t248 + (t249 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t236);
+        const gic_real t251 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t245 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t232) +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t250);
+        const gic_real t252 = t251 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t232);
         const gic_real t253 = R(90.555) * t252;
         const gic_real t254 = t230 + (t231 * t244 - t232 * t253);
-        const gic_real t255 = t199 + (t222 + R(-7.359315990000001) * t215) + (t254 + (m[223] * t244 - m[224] * t253));
-        const gic_real t256 = m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046));
-        const gic_real t257 = m[260] * R(4.7728205);
-        const gic_real t258 = m[259] * R(0.19340000000000046);
-        const gic_real t259 = m[263] * t257 + m[262] * t258;
-        const gic_real t260 = y[16] * t256 + y[15] * t259;
-        const gic_real t261 = m[260] * t257 + m[259] * t258;
-        const gic_real t262 = y[16] * t259 + y[15] * t261;
-        const gic_real t263 = y[15] * t260 - y[16] * t262 + R(4.8947505) * (m[270] + acc[0] + m[276] * acc[9]);
-        const gic_real t264 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
-        const gic_real t265 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
-        const gic_real t266 = m[264] * t265;
-        const gic_real t267 = m[268] - t266;
-        const gic_real t268 = m[254] + t265;
-        const gic_real t269 = t267 + (t267 + (t235 - y[14] * t268));
-        const gic_real t270 = m[253] + t264;
-        const gic_real t271 = y[15] * t268 - y[16] * t270;
-        const gic_real t272 = y[14] * t269 - y[15] * t271 + (acc[0] * t270 - t240);
-        const gic_real t273 = m[275] + (m[270] * t264 - m[264] * t266) + (acc[5] + t272);
-        const gic_real t274 = t273 + acc[9] * (m[281] + m[276] * t264);
+        const gic_real t255 = t199 + (t222 + R(-7.359315990000001) * t215) + (t254 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t244 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t253));
+        /* inertia of wheel_r_r */
+        const gic_real t256 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046));
+        const gic_real t257 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t258 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t259 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * t257 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t258;
+        const gic_real t260 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t256 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t259;
+        const gic_real t261 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * t257 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t258;
+        const gic_real t262 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t259 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t261;
+        const gic_real t263 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t260 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t262 +
+            R(4.8947505) * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] +
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] + m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] *
+            acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R]);
+        const gic_real t264 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008);
+        const gic_real t265 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008);
+        const gic_real t266 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t265;
+        const gic_real t267 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] - t266;
+        const gic_real t268 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t265;
+        const gic_real t269 = t267 + (t267 + (t235 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t268));
+        const gic_real t270 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t264;
+        const gic_real t271 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t268 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t270;
+        const gic_real t272 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t269 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t271 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t270 - t240);
+        const gic_real t273 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t264 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t266) +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + t272);
+        const gic_real t274 = t273 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t264);
         const gic_real t275 = R(90.555) * t274;
-        const gic_real t276 = m[264] * t264;
-        const gic_real t277 = m[269] + t276;
-        const gic_real t278 = t277 + (t277 + (y[14] * t270 - t247));
-        const gic_real t279 = y[16] * t271 - y[14] * t278 + (t249 - acc[0] * t268);
-        const gic_real t280 = m[274] - (m[264] * t276 + m[270] * t265) + (acc[4] + t279);
-        const gic_real t281 = t280 + acc[9] * (m[280] - m[276] * t265);
+        const gic_real t276 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t264;
+        const gic_real t277 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] + t276;
+        const gic_real t278 = t277 + (t277 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t270 - t247));
+        const gic_real t279 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t271 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t278 + (t249 -
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] * t268);
+        const gic_real t280 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t276 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t265) +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] + t279);
+        const gic_real t281 = t280 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t265);
         const gic_real t282 = R(90.555) * t281;
         const gic_real t283 = t263 + (t264 * t275 - t265 * t282);
         const gic_real t284 = e[3] + e[3];
@@ -5340,253 +7413,448 @@ static GIC_COLD int hmmwv_vehicle_inverse(const hmmwv_vehicle *self, gic_real ti
         const gic_real t293 = e[2] * t286;
         const gic_real t294 = e[3] * t284;
         const gic_real t295 = R(1.0) - (t293 + t294);
-        const gic_real t296 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
+        /* wheel tire_r_r */
+        const gic_real t296 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
         const gic_real t297 = e[1] * t289;
         const gic_real t298 = R(1.0) - (t297 + t293);
         const gic_real t299 = e[3] * t286;
         const gic_real t300 = e[0] * t289;
         const gic_real t301 = t299 - t300;
         const gic_real t302 = t285 + t287;
-        const gic_real t303 = t298 * self->grip[83] + (t301 * self->grip[82] + t302 * self->grip[81]);
-        const gic_real t304 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
+        const gic_real t303 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t304 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
         const gic_real t305 = t299 + t300;
         const gic_real t306 = R(1.0) - (t297 + t294);
         const gic_real t307 = t290 - t291;
-        const gic_real t308 = t305 * self->grip[83] + (t306 * self->grip[82] + t307 * self->grip[81]);
-        const gic_real t309 = t288 * self->grip[86] + (t292 * self->grip[85] + t295 * self->grip[84]) + (t296 * t303 - t304 * t308);
-        const gic_real t310 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t311 = t298 * self->grip[56] + (t301 * self->grip[55] + t302 * self->grip[54]);
-        const gic_real t312 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t313 = t305 * self->grip[56] + (t306 * self->grip[55] + t307 * self->grip[54]);
-        const gic_real t314 = t288 * self->grip[59] + (t292 * self->grip[58] + t295 * self->grip[57]) + (t310 * t311 - t312 * t313);
-        const gic_real t315 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + t144);
-        const gic_real t316 = t298 * self->grip[29] + (t301 * self->grip[28] + t302 * self->grip[27]);
-        const gic_real t317 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + t148);
-        const gic_real t318 = t305 * self->grip[29] + (t306 * self->grip[28] + t307 * self->grip[27]);
-        const gic_real t319 = t288 * self->grip[32] + (t292 * self->grip[31] + t295 * self->grip[30]) + (t315 * t316 - t317 * t318);
-        const gic_real t320 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + t91);
-        const gic_real t321 = t298 * self->grip[2] + (t301 * self->grip[1] + t302 * self->grip[0]);
-        const gic_real t322 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + t95);
-        const gic_real t323 = t305 * self->grip[2] + (t306 * self->grip[1] + t307 * self->grip[0]);
-        const gic_real t324 = t288 * self->grip[5] + (t292 * self->grip[4] + t295 * self->grip[3]) + (t320 * t321 - t322 * t323);
-        const gic_real t325 = m[151] * t321 - m[152] * t323 - (m[154] * self->grip[6] + m[190] * self->grip[33]);
-        const gic_real t326 = t319 + (t324 + t325 + (m[187] * t316 - m[188] * t318));
-        const gic_real t327 = t314 + (t326 + (m[223] * t311 - m[224] * t313)) + (m[253] * t303 - m[254] * t308);
-        const gic_real t328 = t255 + (t283 + (m[253] * t275 - m[254] * t282)) - (t309 + t327);
-        const gic_real t329 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
-        const gic_real t330 = acc[3] + (acc[1] * R(0.21300000000000002) - (y[16] * t329 + y[15] * t3));
-        const gic_real t331 = y[15] * t13 - y[16] * t8 + (R(0.054228999999999916) * acc[1] - m[1] * acc[2]);
-        const gic_real t332 = acc[3] + t331;
+        const gic_real t308 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t309 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t296 * t303 - t304 * t308);
+        const gic_real t310 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t311 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t312 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t313 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t314 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t310 * t311 - t312 * t313);
+        const gic_real t315 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) + t144);
+        const gic_real t316 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t317 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) + t148);
+        const gic_real t318 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t319 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t315 * t316 - t317 * t318);
+        const gic_real t320 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) + t91);
+        const gic_real t321 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t322 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) + t95);
+        const gic_real t323 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t324 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t320 * t321 - t322 * t323);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t325 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t321 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t323 -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]);
+        const gic_real t326 = t319 + (t324 + t325 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t316 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t318));
+        const gic_real t327 = t314 + (t326 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t311 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t313)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t303 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t308);
+        const gic_real residual_0 = t255 + (t283 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t275 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t282)) - (t309 + t327);
+        const gic_real t329 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(0.21300000000000002);
+        const gic_real t330 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000002) - (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t329 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t3));
+        const gic_real t331 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t13 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t8 +
+            (R(0.054228999999999916) * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z]);
+        const gic_real t332 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t331;
         const gic_real t333 = t332 * R(9.072);
-        const gic_real t334 = y[15] * t37 - y[16] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t335 = acc[3] + t334;
+        const gic_real t334 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t37 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t28 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t25 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t335 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t334;
         const gic_real t336 = t335 * R(23.965);
-        const gic_real t337 = y[15] * t62 - y[16] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t338 = acc[3] + t337;
+        const gic_real t337 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t62 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t55 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t53 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t338 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t337;
         const gic_real t339 = R(23.965) * t338;
-        const gic_real t340 = m[163] * t110 - m[164] * t97 + (m[169] * t96 - m[170] * t92);
-        const gic_real t341 = y[15] * t113 - y[16] * t103 + (acc[1] * t102 - acc[2] * t104);
-        const gic_real t342 = t340 + (acc[3] + t341) + u[2] * (m[175] * t96 - m[176] * t92);
-        const gic_real t343 = (t342 + acc[6] * (m[181] * t96 - m[182] * t92)) * R(90.555);
-        const gic_real t344 = m[199] * t163 - m[200] * t150 + (m[205] * t149 - m[206] * t145);
-        const gic_real t345 = y[15] * t166 - y[16] * t156 + (acc[1] * t155 - acc[2] * t157);
-        const gic_real t346 = t344 + (acc[3] + t345) + u[2] * (m[211] * t149 - m[212] * t145);
-        const gic_real t347 = R(90.555) * (t346 + acc[7] * (m[217] * t149 - m[218] * t145));
+        const gic_real t340 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t110 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t97 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t96 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t92);
+        const gic_real t341 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t113 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t103 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t102 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t104);
+        const gic_real t342 = t340 + (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t341) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t96 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t92);
+        const gic_real t343 = (t342 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t96 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t92)) * R(90.555);
+        const gic_real t344 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t163 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t150 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t149 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t145);
+        const gic_real t345 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t166 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t156 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t155 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t157);
+        const gic_real t346 = t344 + (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t345) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t149 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t145);
+        const gic_real t347 = R(90.555) * (t346 + acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t149 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t145));
         const gic_real t348 = t330 * R(2086.52) + t333 + t336 + t339 + t343 + t347;
-        const gic_real t349 = y[15] * t193 - y[16] * t184 + (acc[1] * t181 - acc[2] * t185);
-        const gic_real t350 = acc[3] + t349;
+        const gic_real t349 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t193 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t184 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t181 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t185);
+        const gic_real t350 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t349;
         const gic_real t351 = R(23.965) * t350;
-        const gic_real t352 = y[15] * t218 - y[16] * t211 + (acc[1] * t209 - acc[2] * t212);
-        const gic_real t353 = acc[3] + t352;
+        const gic_real t352 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t218 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t211 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t209 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t212);
+        const gic_real t353 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t352;
         const gic_real t354 = R(23.965) * t353;
-        const gic_real t355 = y[15] * t248 - y[16] * t237 + (acc[1] * t236 - acc[2] * t238);
-        const gic_real t356 = R(90.555) * (acc[3] + t355);
-        const gic_real t357 = y[15] * t278 - y[16] * t269 + (acc[1] * t268 - acc[2] * t270);
-        const gic_real t358 = R(90.555) * (acc[3] + t357);
-        const gic_real t359 = t288 * self->grip[83] + (t292 * self->grip[82] + t295 * self->grip[81]);
-        const gic_real t360 = t288 * self->grip[56] + (t292 * self->grip[55] + t295 * self->grip[54]);
-        const gic_real t361 = t288 * self->grip[2] + (t292 * self->grip[1] + t295 * self->grip[0]);
-        const gic_real t362 = t288 * self->grip[29] + (t292 * self->grip[28] + t295 * self->grip[27]);
-        const gic_real t363 = t348 + t351 + t354 + t356 + t358 - (t359 + (t360 + (t361 + t362)));
-        const gic_real t364 = y[14] * R(1078.52);
-        const gic_real t365 = acc[5] + (y[14] * t329 - y[15] * t4 - acc[1] * R(0.056));
-        const gic_real t366 = y[16] * t364 - y[14] * t1 + acc[1] * R(2955.66) + (t330 * R(444.42876000000007) - t365 * R(116.84512));
-        const gic_real t367 = m[42] + y[14];
+        const gic_real t355 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t248 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t237 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t236 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t238);
+        const gic_real t356 = R(90.555) * (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t355);
+        const gic_real t357 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t278 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t269 +
+            (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * t268 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * t270);
+        const gic_real t358 = R(90.555) * (acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] + t357);
+        const gic_real t359 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t360 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t361 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t362 = t288 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t292 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t295 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real residual_3 = t348 + t351 + t354 + t356 + t358 - (t359 + (t360 + (t361 + t362)));
+        const gic_real t364 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t365 = acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t329 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t4 - acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t366 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t364 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t1 +
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] * R(2955.66) + (t330 * R(444.42876000000007) - t365 * R(116.84512));
+        const gic_real t367 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t368 = R(0.4469) * t367;
-        const gic_real t369 = acc[2] - m[42] * y[15];
-        const gic_real t370 = acc[1] + m[42] * y[16];
-        const gic_real t371 = y[16] * t368 - t367 * t20 + (t19 * t369 + t21 * t370);
-        const gic_real t372 = t366 + (acc[1] + (t332 * R(0.4919654879999992) - t11 * R(13.051414655999999))) + (t371 + t25 * t336 - t33 * R(40.476046225));
-        const gic_real t373 = m[72] + y[14];
+        const gic_real t369 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t370 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t371 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t368 - t367 * t20 + (t19 * t369 + t21 * t370);
+        const gic_real t372 = t366 + (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] + (t332 * R(0.4919654879999992) - t11 *
+            R(13.051414655999999))) + (t371 + t25 * t336 - t33 * R(40.476046225));
+        const gic_real t373 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t374 = R(0.4469) * t373;
-        const gic_real t375 = acc[2] - m[72] * y[15];
-        const gic_real t376 = acc[1] + m[72] * y[16];
-        const gic_real t377 = y[16] * t374 - t373 * t48 + (t47 * t375 + t49 * t376);
+        const gic_real t375 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t376 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t377 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t374 - t373 * t48 + (t47 * t375 + t49 * t376);
         const gic_real t378 = t68 * t78 + (t67 * t81 + t74 * t87);
         const gic_real t379 = t68 * t378 - t74 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t380 = t379 + (t96 * t343 - t94 * t109);
-        const gic_real t381 = t372 + (t377 + t53 * t339 - R(40.476046225) * t59) + (t380 + (m[152] * t343 - t108 * R(149.724089775)));
+        const gic_real t381 = t372 + (t377 + t53 * t339 - R(40.476046225) * t59) + (t380 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t343 - t108 * R(149.724089775)));
         const gic_real t382 = t121 * t131 + (t120 * t134 + t127 * t140);
         const gic_real t383 = t121 * t382 - t127 * t132 + (t126 * t137 + (t133 * t139 + t134 * t142));
         const gic_real t384 = t383 + (t149 * t347 - t147 * t162);
-        const gic_real t385 = m[102] + y[14];
+        const gic_real t385 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t386 = R(0.4469) * t385;
-        const gic_real t387 = acc[2] - m[102] * y[15];
-        const gic_real t388 = acc[1] + m[102] * y[16];
-        const gic_real t389 = y[16] * t386 - t385 * t176 + (t175 * t387 + t177 * t388);
-        const gic_real t390 = t381 + (t384 + (m[188] * t347 - R(149.724089775) * t161)) + (t389 + t181 * t351 - t189 * R(-40.476046225));
-        const gic_real t391 = m[132] + y[14];
+        const gic_real t387 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t388 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t389 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t386 - t385 * t176 + (t175 * t387 + t177 * t388);
+        const gic_real t390 = t381 + (t384 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t347 -
+            R(149.724089775) * t161)) + (t389 + t181 * t351 - t189 * R(-40.476046225));
+        const gic_real t391 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] + y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t392 = R(0.4469) * t391;
-        const gic_real t393 = acc[2] - m[132] * y[15];
-        const gic_real t394 = acc[1] + m[132] * y[16];
-        const gic_real t395 = y[16] * t392 - t391 * t204 + (t203 * t393 + t205 * t394);
-        const gic_real t396 = m[234] + y[14];
+        const gic_real t393 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t394 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t395 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t392 - t391 * t204 + (t203 * t393 + t205 * t394);
+        const gic_real t396 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t397 = t396 * R(4.8947505);
-        const gic_real t398 = acc[2] - m[234] * y[15];
-        const gic_real t399 = acc[1] + m[234] * y[16];
-        const gic_real t400 = y[16] * t397 - t396 * t227 + (t226 * t398 + t228 * t399);
-        const gic_real t401 = t400 + t232 * t356 + (m[224] * t356 - t243 * R(-149.724089775));
+        const gic_real t398 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t399 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t400 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t397 - t396 * t227 + (t226 * t398 + t228 * t399);
+        const gic_real t401 = t400 + t232 * t356 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t356 -
+            t243 * R(-149.724089775));
         const gic_real t402 = t390 + (t395 + t209 * t354 - R(-40.476046225) * t215) + t401;
-        const gic_real t403 = m[264] + y[14];
+        const gic_real t403 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
         const gic_real t404 = t403 * R(4.8947505);
-        const gic_real t405 = acc[2] - m[264] * y[15];
-        const gic_real t406 = acc[1] + m[264] * y[16];
-        const gic_real t407 = y[16] * t404 - t403 * t260 + (t259 * t405 + t261 * t406);
-        const gic_real t408 = t407 + t265 * t358 + (m[254] * t358 - R(-149.724089775) * t274);
-        const gic_real t409 = t305 * self->grip[86] + (t306 * self->grip[85] + t307 * self->grip[84]) + t304 * t359;
-        const gic_real t410 = t305 * self->grip[59] + (t306 * self->grip[58] + t307 * self->grip[57]) + t312 * t360;
-        const gic_real t411 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + t146);
-        const gic_real t412 = t305 * self->grip[32] + (t306 * self->grip[31] + t307 * self->grip[30]) + (t317 * t362 - t411 * t316);
-        const gic_real t413 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + t93);
-        const gic_real t414 = t305 * self->grip[5] + (t306 * self->grip[4] + t307 * self->grip[3]) + (t322 * t361 - t413 * t321);
-        const gic_real t415 = m[157] * self->grip[6] + m[193] * self->grip[33] + m[229] * self->grip[60] + m[259] * self->grip[87];
-        const gic_real t416 = t414 + (m[152] * t361 - R(1.653405) * t321 - t415) + (m[188] * t362 - R(1.653405) * t316);
-        const gic_real t417 = t410 + (t412 + t416 + (m[224] * t360 - R(-1.653405) * t311));
-        const gic_real t418 = t402 + t408 - (t409 + (t417 + (m[254] * t359 - R(-1.653405) * t303)));
+        const gic_real t405 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t406 = acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t407 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t404 - t403 * t260 + (t259 * t405 + t261 * t406);
+        const gic_real t408 = t407 + t265 * t358 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t358 -
+            R(-149.724089775) * t274);
+        const gic_real t409 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + t304 * t359;
+        const gic_real t410 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + t312 * t360;
+        const gic_real t411 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) + t146);
+        const gic_real t412 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t317 * t362 - t411 * t316);
+        const gic_real t413 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) + t93);
+        const gic_real t414 = t305 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t306 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t307 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t322 * t361 - t413 * t321);
+        const gic_real t415 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t416 = t414 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] * t361 - R(1.653405) *
+            t321 - t415) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] * t362 - R(1.653405) * t316);
+        const gic_real t417 = t410 + (t412 + t416 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] * t360 -
+            R(-1.653405) * t311));
+        const gic_real residual_1 = t402 + t408 - (t409 + (t417 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] * t359 - R(-1.653405) * t303)));
         const gic_real t419 = t6 * R(2086.52) + t15 * R(9.072) + t41 + t65 + t117;
-        const gic_real t420 = t419 + t170 + t197 + t221 + t253 + t282 - (t308 + (t313 + (t323 + t318)));
-        const gic_real t421 = y[14] * t2 - y[15] * t364 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t422 = t367 * t22 - y[15] * t368 + (t16 * t369 + t19 * t370);
+        const gic_real residual_4 = t419 + t170 + t197 + t221 + t253 + t282 - (t308 + (t313 + (t323 + t318)));
+        const gic_real t421 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t2 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t364 +
+            acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t422 = t367 * t22 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t368 + (t16 * t369 + t19 * t370);
         const gic_real t423 = t422 - t24 * t336 + (t40 * R(40.476046225) - t335 * R(7.359315990000001));
-        const gic_real t424 = t421 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t333)) + t423;
-        const gic_real t425 = t373 * t50 - y[15] * t374 + (t44 * t375 + t47 * t376);
+        const gic_real t424 = t421 + (acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * t333)) + t423;
+        const gic_real t425 = t373 * t50 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t374 + (t44 * t375 + t47 * t376);
         const gic_real t426 = t425 - t52 * t339 + (R(40.476046225) * t64 - t338 * R(-7.359315990000001));
         const gic_real t427 = t74 * t82 - t67 * t378 + (t69 * t84 + (t73 * t86 + t78 * t89));
         const gic_real t428 = t427 + (t94 * t117 - t92 * t343);
-        const gic_real t429 = t424 + t426 + (t428 + (t116 * R(149.724089775) - m[151] * t343));
+        const gic_real t429 = t424 + t426 + (t428 + (t116 * R(149.724089775) -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] * t343));
         const gic_real t430 = t127 * t135 - t120 * t382 + (t122 * t137 + (t126 * t139 + t131 * t142));
         const gic_real t431 = t430 + (t147 * t170 - t145 * t347);
-        const gic_real t432 = t385 * t178 - y[15] * t386 + (t172 * t387 + t175 * t388);
+        const gic_real t432 = t385 * t178 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t386 + (t172 * t387 + t175 * t388);
         const gic_real t433 = t432 - t180 * t351 + (t196 * R(-40.476046225) - R(7.359315990000001) * t350);
-        const gic_real t434 = t429 + (t431 + (R(149.724089775) * t169 - m[187] * t347)) + t433;
-        const gic_real t435 = t391 * t206 - y[15] * t392 + (t200 * t393 + t203 * t394);
+        const gic_real t434 = t429 + (t431 + (R(149.724089775) * t169 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t347)) + t433;
+        const gic_real t435 = t391 * t206 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t392 + (t200 * t393 + t203 * t394);
         const gic_real t436 = t435 - t208 * t354 + (R(-40.476046225) * t220 - R(-7.359315990000001) * t353);
-        const gic_real t437 = t396 * t229 - y[15] * t397 + (t223 * t398 + t226 * t399);
-        const gic_real t438 = t437 - t231 * t356 + (t252 * R(-149.724089775) - m[223] * t356);
-        const gic_real t439 = t403 * t262 - y[15] * t404 + (t256 * t405 + t259 * t406);
-        const gic_real t440 = t439 - t264 * t358 + (R(-149.724089775) * t281 - m[253] * t358);
-        const gic_real t441 = t298 * self->grip[86] + (t301 * self->grip[85] + t302 * self->grip[84]) - t296 * t359;
-        const gic_real t442 = t298 * self->grip[59] + (t301 * self->grip[58] + t302 * self->grip[57]) - t310 * t360;
-        const gic_real t443 = t298 * self->grip[32] + (t301 * self->grip[31] + t302 * self->grip[30]) + (t411 * t318 - t315 * t362);
-        const gic_real t444 = t298 * self->grip[5] + (t301 * self->grip[4] + t302 * self->grip[3]) + (t413 * t323 - t320 * t361);
-        const gic_real t445 = m[160] * self->grip[6] + m[196] * self->grip[33] + m[232] * self->grip[60] + m[262] * self->grip[87];
-        const gic_real t446 = t444 + (R(1.653405) * t323 - m[151] * t361 - t445) + (R(1.653405) * t318 - m[187] * t362);
-        const gic_real t447 = t442 + (t443 + t446 + (R(-1.653405) * t313 - m[223] * t360));
-        const gic_real t448 = t434 + t436 + t438 + t440 - (t441 + (t447 + (R(-1.653405) * t308 - m[253] * t359)));
+        const gic_real t437 = t396 * t229 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t397 + (t223 * t398 + t226 * t399);
+        const gic_real t438 = t437 - t231 * t356 + (t252 * R(-149.724089775) -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t356);
+        const gic_real t439 = t403 * t262 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t404 + (t256 * t405 + t259 * t406);
+        const gic_real t440 = t439 - t264 * t358 + (R(-149.724089775) * t281 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t358);
+        const gic_real t441 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) - t296 * t359;
+        const gic_real t442 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) - t310 * t360;
+        const gic_real t443 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t411 * t318 - t315 * t362);
+        const gic_real t444 = t298 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t301 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t302 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]) + (t413 * t323 - t320 * t361);
+        const gic_real t445 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE];
+        const gic_real t446 = t444 + (R(1.653405) * t323 - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] *
+            t361 - t445) + (R(1.653405) * t318 - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] * t362);
+        const gic_real t447 = t442 + (t443 + t446 + (R(-1.653405) * t313 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] * t360));
+        const gic_real residual_2 = t434 + t436 + t438 + t440 - (t441 + (t447 + (R(-1.653405) * t308 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] * t359)));
         const gic_real t449 = t365 * R(2086.52) + t12 + t34 + t60 + t109 + t162;
-        const gic_real t450 = t449 + t190 + t216 + t244 + t275 - (t303 + (t311 + (t321 + t316)));
-        const gic_real t451 = m[185] * t109 + m[184] * t117 + (m[182] * t428 + (m[181] * t380 + m[180] * t118));
-        const gic_real t452 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        const gic_real residual_5 = t449 + t190 + t216 + t244 + t275 - (t303 + (t311 + (t321 + t316)));
+        const gic_real t451 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] * t109 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] * t117 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t428 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t380 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t118));
+        /* force stop_f_l */
+        const gic_real t452 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L], R(0.0));
         const gic_real t453 = GIC_MIN(R(100.0) * t452, R(1.0));
-        const gic_real t454 = xd[0] * (R(5000.0) * ((R(3.0) - (t453 + t453)) * (t453 * t453)));
-        const gic_real t455 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        const gic_real t454 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t453 + t453)) * (t453 * t453)));
+        const gic_real t455 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29), R(0.0));
         const gic_real t456 = GIC_MIN(t455 * R(100.0), R(1.0));
-        const gic_real t457 = xd[0] * ((R(3.0) - (t456 + t456)) * (t456 * t456) * R(5000.0));
-        const gic_real t458 = GIC_MAX(R(400000.0) * t452 - t454, R(0.0)) - GIC_MAX(t455 * R(400000.0) + t457, R(0.0));
-        const gic_real t459 = m[185] * t321 + m[184] * t323 + (m[182] * t444 + (m[181] * t414 + m[180] * t324));
-        const gic_real t460 = t458 - ((x[0] - R(0.31903)) * R(167070.9) + xd[0] * R(17490.8)) + t459;
-        const gic_real t461 = m[221] * t162 + m[220] * t170 + (m[218] * t431 + (m[217] * t384 + m[216] * t171));
-        const gic_real t462 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        const gic_real t457 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t456 + t456)) * (t456 * t456) * R(5000.0));
+        const gic_real force_stop_f_l = GIC_MAX(R(400000.0) * t452 - t454, R(0.0)) - GIC_MAX(t455 * R(400000.0) + t457,
+            R(0.0));
+        const gic_real t459 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] * t321 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] * t323 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t444 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t414 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t324));
+        const gic_real t460 = force_stop_f_l - ((x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.31903)) * R(167070.9) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_L] * R(17490.8)) + t459;
+        const gic_real t461 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] * t162 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] * t170 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t431 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t384 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t171));
+        /* force stop_f_r */
+        const gic_real t462 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R], R(0.0));
         const gic_real t463 = GIC_MIN(R(100.0) * t462, R(1.0));
-        const gic_real t464 = xd[1] * (R(5000.0) * ((R(3.0) - (t463 + t463)) * (t463 * t463)));
-        const gic_real t465 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        const gic_real t464 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t463 + t463)) * (t463 * t463)));
+        const gic_real t465 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29), R(0.0));
         const gic_real t466 = GIC_MIN(R(100.0) * t465, R(1.0));
-        const gic_real t467 = xd[1] * (R(5000.0) * ((R(3.0) - (t466 + t466)) * (t466 * t466)));
-        const gic_real t468 = GIC_MAX(R(400000.0) * t462 - t464, R(0.0)) - GIC_MAX(R(400000.0) * t465 + t467, R(0.0));
-        const gic_real t469 = m[221] * t316 + m[220] * t318 + (m[218] * t443 + (m[217] * t412 + m[216] * t319));
-        const gic_real t470 = t468 - (R(167070.9) * (x[1] - R(0.31903)) + xd[1] * R(17490.8)) + t469;
-        const gic_real t471 = m[114] * t198 + (m[251] * t244 + m[250] * t253 + m[246] * t254);
-        const gic_real t472 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        const gic_real t467 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t466 + t466)) * (t466 * t466)));
+        const gic_real force_stop_f_r = GIC_MAX(R(400000.0) * t462 - t464, R(0.0)) - GIC_MAX(R(400000.0) * t465 + t467,
+            R(0.0));
+        const gic_real t469 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] * t316 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] * t318 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t443 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t412 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t319));
+        const gic_real t470 = force_stop_f_r - (R(167070.9) * (x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.31903)) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * R(17490.8)) + t469;
+        const gic_real t471 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t198 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] * t244 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] * t253 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t254);
+        /* force stop_r_l */
+        const gic_real t472 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L], R(0.0));
         const gic_real t473 = GIC_MIN(R(100.0) * t472, R(1.0));
-        const gic_real t474 = xd[2] * (R(5000.0) * ((R(3.0) - (t473 + t473)) * (t473 * t473)));
-        const gic_real t475 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        const gic_real t474 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t473 + t473)) * (t473 * t473)));
+        const gic_real t475 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34), R(0.0));
         const gic_real t476 = GIC_MIN(R(100.0) * t475, R(1.0));
-        const gic_real t477 = xd[2] * (R(5000.0) * ((R(3.0) - (t476 + t476)) * (t476 * t476)));
-        const gic_real t478 = GIC_MAX(R(400000.0) * t472 - t474, R(0.0)) - GIC_MAX(R(400000.0) * t475 + t477, R(0.0));
-        const gic_real t479 = t478 - ((x[2] - R(0.33727)) * R(369167.2) + xd[2] * R(24780.4)) + (m[251] * t311 + m[250] * t313 + m[246] * t314);
-        const gic_real t480 = m[144] * t222 + (m[281] * t275 + m[280] * t282 + m[276] * t283);
-        const gic_real t481 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t477 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t476 + t476)) * (t476 * t476)));
+        const gic_real force_stop_r_l = GIC_MAX(R(400000.0) * t472 - t474, R(0.0)) - GIC_MAX(R(400000.0) * t475 + t477,
+            R(0.0));
+        const gic_real t479 = force_stop_r_l - ((x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.33727)) * R(369167.2) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * R(24780.4)) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] *
+            t311 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] * t313 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t314);
+        const gic_real t480 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t222 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] * t275 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] * t282 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t283);
+        /* force stop_r_r */
+        const gic_real t481 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R], R(0.0));
         const gic_real t482 = GIC_MIN(R(100.0) * t481, R(1.0));
-        const gic_real t483 = xd[3] * (R(5000.0) * ((R(3.0) - (t482 + t482)) * (t482 * t482)));
-        const gic_real t484 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        const gic_real t483 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t482 + t482)) * (t482 * t482)));
+        const gic_real t484 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34), R(0.0));
         const gic_real t485 = GIC_MIN(R(100.0) * t484, R(1.0));
-        const gic_real t486 = xd[3] * (R(5000.0) * ((R(3.0) - (t485 + t485)) * (t485 * t485)));
-        const gic_real t487 = GIC_MAX(R(400000.0) * t481 - t483, R(0.0)) - GIC_MAX(R(400000.0) * t484 + t486, R(0.0));
-        const gic_real t488 = t487 - (R(369167.2) * (x[3] - R(0.33727)) + xd[3] * R(24780.4)) + (m[281] * t303 + m[280] * t308 + m[276] * t309);
-        const gic_real t489 = m[54] * t42 + t451 - t460;
-        const gic_real t490 = m[84] * t66 + t461 - t470;
-        const gic_real t491 = t471 - t479;
-        const gic_real t492 = t480 - t488;
-        tau[0] = t328;
-        tau[3] = t363;
-        tau[1] = t418;
-        tau[4] = t420;
-        tau[2] = t448;
-        tau[5] = t450;
-        tau[6] = t489;
-        tau[7] = t490;
-        tau[8] = t491;
-        tau[9] = t492;
+        const gic_real t486 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t485 + t485)) * (t485 * t485)));
+        const gic_real force_stop_r_r = GIC_MAX(R(400000.0) * t481 - t483, R(0.0)) - GIC_MAX(R(400000.0) * t484 + t486,
+            R(0.0));
+        const gic_real t488 = force_stop_r_r - (R(369167.2) * (x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.33727)) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_R] * R(24780.4)) + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] *
+            t303 + m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] * t308 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t309);
+        const gic_real residual_6 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t42 + t451 - t460;
+        const gic_real residual_7 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t66 + t461 - t470;
+        const gic_real residual_8 = t471 - t479;
+        const gic_real residual_9 = t480 - t488;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] = residual_0;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] = residual_9;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31903)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31903)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.33727)) * R(369167.2)) + xd[3] * (R(369167.2) * (x[3] - R(0.33727)));
-        const gic_real t3 = GIC_MAX(x[0] - R(0.29), R(0.0));
+        /* force spring_f_r */
+        const gic_real t1 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.31903)) *
+            R(167070.9)) + xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(167070.9) * (x[HMMWV_VEHICLE_X_SPRING_F_R] -
+            R(0.31903)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[HMMWV_VEHICLE_X_SPRING_R_L] * ((x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.33727)) *
+            R(369167.2)) + xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(369167.2) * (x[HMMWV_VEHICLE_X_SPRING_R_R] -
+            R(0.33727)));
+        /* force stop_f_l */
+        const gic_real t3 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29), R(0.0));
         const gic_real t4 = t3 * R(400000.0);
-        const gic_real t5 = GIC_MAX(R(0.19) - x[0], R(0.0));
+        const gic_real t5 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L], R(0.0));
         const gic_real t6 = R(400000.0) * t5;
-        const gic_real t7 = GIC_MAX(x[1] - R(0.29), R(0.0));
+        /* force stop_f_r */
+        const gic_real t7 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29), R(0.0));
         const gic_real t8 = R(400000.0) * t7;
-        const gic_real t9 = t2 + xd[0] * t4 - xd[0] * t6 + xd[1] * t8;
-        const gic_real t10 = GIC_MAX(R(0.19) - x[1], R(0.0));
+        const gic_real t9 = t2 + xd[HMMWV_VEHICLE_X_SPRING_F_L] * t4 - xd[HMMWV_VEHICLE_X_SPRING_F_L] * t6 +
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * t8;
+        const gic_real t10 = GIC_MAX(R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R], R(0.0));
         const gic_real t11 = R(400000.0) * t10;
-        const gic_real t12 = GIC_MAX(x[2] - R(0.34), R(0.0));
+        /* force stop_r_l */
+        const gic_real t12 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34), R(0.0));
         const gic_real t13 = R(400000.0) * t12;
-        const gic_real t14 = GIC_MAX(R(0.25) - x[2], R(0.0));
+        const gic_real t14 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L], R(0.0));
         const gic_real t15 = R(400000.0) * t14;
-        const gic_real t16 = t9 - xd[1] * t11 + xd[2] * t13 - xd[2] * t15;
-        const gic_real t17 = GIC_MAX(x[3] - R(0.34), R(0.0));
+        const gic_real t16 = t9 - xd[HMMWV_VEHICLE_X_SPRING_F_R] * t11 + xd[HMMWV_VEHICLE_X_SPRING_R_L] * t13 -
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * t15;
+        /* force stop_r_r */
+        const gic_real t17 = GIC_MAX(x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34), R(0.0));
         const gic_real t18 = R(400000.0) * t17;
-        const gic_real t19 = GIC_MAX(R(0.25) - x[3], R(0.0));
+        const gic_real t19 = GIC_MAX(R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R], R(0.0));
         const gic_real t20 = R(400000.0) * t19;
-        const gic_real t21 = t16 + xd[3] * t18 - xd[3] * t20;
+        const gic_real t21 = t16 + xd[HMMWV_VEHICLE_X_SPRING_R_R] * t18 - xd[HMMWV_VEHICLE_X_SPRING_R_R] * t20;
         const gic_real t22 = e[1] + e[1];
         const gic_real t23 = e[1] * t22;
         const gic_real t24 = e[2] + e[2];
         const gic_real t25 = e[2] * t24;
         const gic_real t26 = R(1.0) - (t23 + t25);
-        const gic_real t27 = rate[13] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t27 = rate[HMMWV_VEHICLE_STATE_V_Z] - R(-9.81);
         const gic_real t28 = e[3] * t24;
         const gic_real t29 = e[0] * t22;
         const gic_real t30 = t28 - t29;
@@ -5594,430 +7862,839 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t32 = e[1] * t31;
         const gic_real t33 = e[0] * t24;
         const gic_real t34 = t32 + t33;
-        const gic_real t35 = t26 * t27 + (t30 * rate[12] + t34 * rate[11]);
-        const gic_real t36 = y[16] * R(0.056) - y[14] * R(0.21300000000000002);
-        const gic_real t37 = y[15] * R(0.21300000000000002);
-        const gic_real t38 = t35 + (y[14] * t36 - y[15] * t37 - rate[15] * R(0.056));
-        const gic_real t39 = y[13] * t26 + (y[12] * t30 + y[11] * t34);
-        const gic_real t40 = y[15] * R(0.056);
+        const gic_real t35 = t26 * t27 + (t30 * rate[HMMWV_VEHICLE_STATE_V_Y] + t34 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        /* inertia of chassis */
+        const gic_real t36 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            R(0.21300000000000002);
+        const gic_real t37 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002);
+        const gic_real t38 = t35 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t36 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t37 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056));
+        /* wheel tire_f_l */
+        const gic_real t39 = y[HMMWV_VEHICLE_STATE_V_Z] * t26 + (y[HMMWV_VEHICLE_STATE_V_Y] * t30 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t34);
+        const gic_real t40 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.056);
         const gic_real t41 = t28 + t29;
         const gic_real t42 = e[3] * t31;
         const gic_real t43 = R(1.0) - (t23 + t42);
         const gic_real t44 = e[2] * t22;
         const gic_real t45 = e[0] * t31;
         const gic_real t46 = t44 - t45;
-        const gic_real t47 = t41 * t27 + (t43 * rate[12] + t46 * rate[11]);
-        const gic_real t48 = y[14] * t40 + y[16] * t37 + (rate[16] * R(0.056) - rate[14] * R(0.21300000000000002));
-        const gic_real t49 = y[13] * t41 + (y[12] * t43 + y[11] * t46);
+        const gic_real t47 = t41 * t27 + (t43 * rate[HMMWV_VEHICLE_STATE_V_Y] + t46 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        const gic_real t48 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t40 + y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t37 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(0.056) - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * R(0.21300000000000002));
+        const gic_real t49 = y[HMMWV_VEHICLE_STATE_V_Z] * t41 + (y[HMMWV_VEHICLE_STATE_V_Y] * t43 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t46);
         const gic_real t50 = t32 - t33;
         const gic_real t51 = t44 + t45;
         const gic_real t52 = R(1.0) - (t25 + t42);
-        const gic_real t53 = t50 * t27 + (t51 * rate[12] + t52 * rate[11]);
-        const gic_real t54 = t53 + (rate[15] * R(0.21300000000000002) - (y[16] * t36 + y[15] * t40));
-        const gic_real t55 = y[13] * t50 + (y[12] * t51 + y[11] * t52);
+        const gic_real t53 = t50 * t27 + (t51 * rate[HMMWV_VEHICLE_STATE_V_Y] + t52 * rate[HMMWV_VEHICLE_STATE_V_X]);
+        const gic_real t54 = t53 + (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(0.21300000000000002) -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t36 + y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t40));
+        const gic_real t55 = y[HMMWV_VEHICLE_STATE_V_Z] * t50 + (y[HMMWV_VEHICLE_STATE_V_Y] * t51 +
+            y[HMMWV_VEHICLE_STATE_V_X] * t52);
+        /* inertia of wheel_r_r */
         const gic_real t56 = (t47 + t48) * (t49 + t36) + t54 * (t55 + t37);
         const gic_real t57 = R(2086.52) * (t38 * (t39 - t40) + t56);
-        const gic_real t58 = y[16] * (rate[16] * R(3570.2)) + (y[15] * (rate[15] * R(2955.66)) + y[14] * (rate[14] * R(1078.52)));
-        const gic_real t59 = m[16] + (R(1.438648) * y[16] - R(0.054228999999999916) * y[14]);
-        const gic_real t60 = m[16] + t59;
-        const gic_real t61 = R(0.054228999999999916) * y[15] - m[1] * y[16];
-        const gic_real t62 = y[14] * t60 - y[15] * t61 + (m[1] * rate[14] - R(1.438648) * rate[15]);
-        const gic_real t63 = m[1] * y[14] - R(1.438648) * y[15];
-        const gic_real t64 = y[16] * t61 - y[14] * t63 + (R(1.438648) * rate[16] - R(0.054228999999999916) * rate[14]);
-        const gic_real t65 = u[2] + (t47 + t64);
-        const gic_real t66 = y[15] * t63 - y[16] * t60 + (R(0.054228999999999916) * rate[15] - m[1] * rate[16]);
+        const gic_real t58 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * R(2955.66)) +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * R(1078.52)));
+        /* inertia of rack */
+        const gic_real t59 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] + (R(1.438648) *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t60 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_VELOCITY_Y] + t59;
+        const gic_real t61 = R(0.054228999999999916) * y[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t62 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t60 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t61 +
+            (m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * rate[HMMWV_VEHICLE_STATE_OMEGA_X] - R(1.438648) *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_Y]);
+        const gic_real t63 = m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * y[HMMWV_VEHICLE_STATE_OMEGA_X] -
+            R(1.438648) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t64 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t61 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t63 +
+            (R(1.438648) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z] - R(0.054228999999999916) *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        const gic_real t65 = u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] + (t47 + t64);
+        const gic_real t66 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t63 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t60 +
+            (R(0.054228999999999916) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y] -
+            m[HMMWV_VEHICLE_MOTION_RACK + HMMWV_VEHICLE_C_Y] * rate[HMMWV_VEHICLE_STATE_OMEGA_Z]);
         const gic_real t67 = t65 * (t49 + t59) + (t53 + t66) * (t55 + t61);
         const gic_real t68 = R(9.072) * ((t35 + t62) * (t39 + t63) + t67);
-        const gic_real t69 = y[16] * rate[16] + (y[15] * rate[15] + y[14] * rate[14]);
-        const gic_real t70 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t71 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t72 = m[42] * t71;
-        const gic_real t73 = R(1.688965) * y[16];
-        const gic_real t74 = t73 - y[14] * t71 - t72;
+        const gic_real t69 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * rate[HMMWV_VEHICLE_STATE_OMEGA_Z] +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X]);
+        /* inertia of lca_f_l */
+        const gic_real t70 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.24689200985615367);
+        const gic_real t71 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t72 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t71;
+        const gic_real t73 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t74 = t73 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t71 - t72;
         const gic_real t75 = t74 - t72;
         const gic_real t76 = R(0.307086) + t70;
-        const gic_real t77 = y[15] * t71 - y[16] * t76;
-        const gic_real t78 = R(1.688965) * rate[15];
-        const gic_real t79 = y[14] * t75 - y[15] * t77 + (rate[14] * t76 - t78);
-        const gic_real t80 = m[48] * t70 - m[42] * t72 + (t35 + t79) + rate[17] * (m[54] * t70);
-        const gic_real t81 = m[42] * t70;
-        const gic_real t82 = R(1.688965) * y[15];
-        const gic_real t83 = t81 + (y[14] * t76 - t82);
+        const gic_real t77 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t71 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t76;
+        const gic_real t78 = R(1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t79 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t75 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t77 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t76 - t78);
+        const gic_real t80 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t70 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t72 + (t35 + t79) +
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t70);
+        const gic_real t81 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t70;
+        const gic_real t82 = R(1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t83 = t81 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t76 - t82);
         const gic_real t84 = t81 + t83;
-        const gic_real t85 = R(1.688965) * rate[16];
-        const gic_real t86 = y[16] * t77 - y[14] * t84 + (t85 - rate[14] * t71);
-        const gic_real t87 = t47 + t86 - (m[42] * t81 + m[48] * t71) - rate[17] * (m[54] * t71);
-        const gic_real t88 = y[15] * t84 - y[16] * t75 + (rate[15] * t71 - rate[16] * t76);
+        const gic_real t85 = R(1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t86 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t77 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t84 + (t85 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t71);
+        const gic_real t87 = t47 + t86 - (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * t81 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] * t71) - rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] * t71);
+        const gic_real t88 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t84 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t75 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t71 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t76);
         const gic_real t89 = t87 * (t49 + t74) + (t53 + t88) * (t55 + t77);
         const gic_real t90 = R(23.965) * (t80 * (t39 + t83) + t89);
-        const gic_real t91 = rate[16] - m[42] * y[15];
-        const gic_real t92 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t91;
-        const gic_real t93 = m[38] * R(0.8938);
-        const gic_real t94 = m[37] * R(0.4469);
-        const gic_real t95 = m[41] * t93 + m[40] * t94;
-        const gic_real t96 = rate[15] + m[42] * y[16];
-        const gic_real t97 = t95 * t91 + (m[38] * t93 + m[37] * t94) * t96;
-        const gic_real t98 = (m[42] + y[14]) * (R(0.4469) * (m[48] + rate[14] + m[54] * rate[17]));
-        const gic_real t99 = y[16] * (t92 + t95 * t96) + (y[15] * t97 + t98);
-        const gic_real t100 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t101 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t102 = m[72] * t101;
-        const gic_real t103 = t73 - y[14] * t101 - t102;
+        const gic_real t91 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t92 = (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * R(0.4469))) * t91;
+        const gic_real t93 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t94 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t95 = m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZZ] * t93 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_ZY] * t94;
+        const gic_real t96 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t97 = t95 * t91 + (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YZ] * t93 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_A_YY] * t94) * t96;
+        const gic_real t98 = (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X]) * (R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_LCA_F_L + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE]));
+        const gic_real t99 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t92 + t95 * t96) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t97 + t98);
+        /* inertia of lca_f_r */
+        const gic_real t100 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t101 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t102 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t101;
+        const gic_real t103 = t73 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t101 - t102;
         const gic_real t104 = t103 - t102;
         const gic_real t105 = R(-0.307086) + t100;
-        const gic_real t106 = y[15] * t101 - y[16] * t105;
-        const gic_real t107 = y[14] * t104 - y[15] * t106 + (rate[14] * t105 - t78);
-        const gic_real t108 = m[78] * t100 - m[72] * t102 + (t35 + t107) + rate[18] * (m[84] * t100);
-        const gic_real t109 = m[72] * t100;
-        const gic_real t110 = t109 + (y[14] * t105 - t82);
+        const gic_real t106 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t101 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t105;
+        const gic_real t107 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t104 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t106 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t105 - t78);
+        const gic_real t108 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t100 -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t102 + (t35 + t107) +
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t100);
+        const gic_real t109 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t100;
+        const gic_real t110 = t109 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t105 - t82);
         const gic_real t111 = t109 + t110;
-        const gic_real t112 = y[16] * t106 - y[14] * t111 + (t85 - rate[14] * t101);
-        const gic_real t113 = t47 + t112 - (m[72] * t109 + m[78] * t101) - rate[18] * (m[84] * t101);
-        const gic_real t114 = y[15] * t111 - y[16] * t104 + (rate[15] * t101 - rate[16] * t105);
+        const gic_real t112 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t106 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t111 + (t85 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t101);
+        const gic_real t113 = t47 + t112 - (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * t109 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] * t101) -
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] * t101);
+        const gic_real t114 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t111 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t104 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t101 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t105);
         const gic_real t115 = t113 * (t49 + t103) + (t53 + t114) * (t55 + t106);
         const gic_real t116 = R(23.965) * (t108 * (t39 + t110) + t115);
-        const gic_real t117 = rate[16] - m[72] * y[15];
-        const gic_real t118 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t117;
-        const gic_real t119 = m[68] * R(0.8938);
-        const gic_real t120 = m[67] * R(0.4469);
-        const gic_real t121 = m[71] * t119 + m[70] * t120;
-        const gic_real t122 = rate[15] + m[72] * y[16];
-        const gic_real t123 = t121 * t117 + (m[68] * t119 + m[67] * t120) * t122;
-        const gic_real t124 = (m[72] + y[14]) * (R(0.4469) * (m[78] + rate[14] + m[84] * rate[18]));
-        const gic_real t125 = y[16] * (t118 + t121 * t122) + (y[15] * t123 + t124);
+        const gic_real t117 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t118 = (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * R(0.4469))) * t117;
+        const gic_real t119 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t120 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t121 = m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZZ] * t119 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_ZY] * t120;
+        const gic_real t122 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t123 = t121 * t117 + (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YZ] * t119 +
+            m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_A_YY] * t120) * t122;
+        const gic_real t124 = (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X]) * (R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_LCA_F_R + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE]));
+        const gic_real t125 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t118 + t121 * t122) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t123 + t124);
         const gic_real t126 = t57 + t58 + (t68 + t69) + (t90 + t99) + (t116 + t125);
-        const gic_real t127 = m[153] * R(-0.004825999999999997);
-        const gic_real t128 = m[155] * R(0.09182099999999999) + (t127 + m[154] * R(0.08910630000000008));
-        const gic_real t129 = m[159] * R(-0.004825999999999997);
-        const gic_real t130 = m[161] * R(0.09182099999999999) + (t129 + m[160] * R(0.08910630000000008));
-        const gic_real t131 = m[164] * t128 - m[162] * t130;
-        const gic_real t132 = m[156] * R(-0.004825999999999997);
-        const gic_real t133 = m[158] * R(0.09182099999999999) + (t132 + m[157] * R(0.08910630000000008));
-        const gic_real t134 = m[163] * t130 - m[164] * t133;
-        const gic_real t135 = m[162] * t131 - m[163] * t134 + (m[168] * t133 - m[169] * t128);
-        const gic_real t136 = m[166] + t131;
+        const gic_real t127 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel_f_l */
+        const gic_real t128 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t127 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.08910630000000008));
+        const gic_real t129 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t130 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t129 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t131 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t128 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t130;
+        const gic_real t132 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t133 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t132 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008));
+        const gic_real t134 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t130 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t133;
+        const gic_real t135 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t131 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t134 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t133 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t128);
+        const gic_real t136 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] + t131;
         const gic_real t137 = R(1.653405) + t128;
-        const gic_real t138 = m[152] + t130;
-        const gic_real t139 = t136 + (y[16] * t137 - y[14] * t138);
+        const gic_real t138 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t130;
+        const gic_real t139 = t136 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t137 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t138);
         const gic_real t140 = t136 + t139;
-        const gic_real t141 = m[151] + t133;
-        const gic_real t142 = t134 + (y[15] * t138 - y[16] * t141);
+        const gic_real t141 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t133;
+        const gic_real t142 = t134 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t138 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t141);
         const gic_real t143 = t134 + t142;
-        const gic_real t144 = y[14] * t140 - y[15] * t143 + (rate[14] * t141 - rate[15] * t137);
-        const gic_real t145 = m[173] + t135 + (t35 + t144) + u[2] * (m[174] * t133 - m[175] * t128);
-        const gic_real t146 = t145 + rate[17] * (m[185] + (m[180] * t133 - m[181] * t128));
-        const gic_real t147 = m[162] * t133 - m[163] * t128;
-        const gic_real t148 = m[167] + t147;
-        const gic_real t149 = t148 + (y[14] * t141 - y[15] * t137);
-        const gic_real t150 = m[164] * t134 - m[162] * t147 + (m[170] * t128 - m[168] * t130);
+        const gic_real t144 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t140 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t143 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t141 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t137);
+        const gic_real t145 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Z] + t135 + (t35 + t144) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t133 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t128);
+        const gic_real t146 = t145 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t133 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t128));
+        const gic_real t147 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t133 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t128;
+        const gic_real t148 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] + t147;
+        const gic_real t149 = t148 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t141 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t137);
+        const gic_real t150 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t134 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t147 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t128 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] * t130);
         const gic_real t151 = t148 + t149;
-        const gic_real t152 = y[16] * t143 - y[14] * t151 + (rate[16] * t137 - rate[14] * t138);
-        const gic_real t153 = m[172] + t150 + (t47 + t152) + u[2] * (m[176] * t128 - m[174] * t130);
-        const gic_real t154 = t153 + rate[17] * (m[184] + (m[182] * t128 - m[180] * t130));
-        const gic_real t155 = m[163] * t147 - m[164] * t131 + (m[169] * t130 - m[170] * t133);
-        const gic_real t156 = y[15] * t151 - y[16] * t140 + (rate[15] * t138 - rate[16] * t141);
-        const gic_real t157 = t155 + (t53 + t156) + u[2] * (m[175] * t130 - m[176] * t133);
-        const gic_real t158 = t157 + rate[17] * (m[181] * t130 - m[182] * t133);
+        const gic_real t152 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t143 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t151 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t137 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t138);
+        const gic_real t153 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ACCELERATION_Y] + t150 + (t47 + t152) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t128 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t130);
+        const gic_real t154 = t153 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t128 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] * t130));
+        const gic_real t155 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t147 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t131 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] * t130 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] * t133);
+        const gic_real t156 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t151 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t140 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t138 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t141);
+        const gic_real t157 = t155 + (t53 + t156) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t130 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t133);
+        const gic_real t158 = t157 + rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] * t130 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] * t133);
         const gic_real t159 = t146 * (t39 + t149) + (t154 * (t49 + t139) + t158 * (t55 + t142));
         const gic_real t160 = R(90.555) * t159;
-        const gic_real t161 = m[164] + y[16];
-        const gic_real t162 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(0.19340000000000046)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t163 = m[170] + (rate[16] + (m[163] * y[14] - m[162] * y[15])) + m[176] * u[2];
-        const gic_real t164 = t163 + m[182] * rate[17];
-        const gic_real t165 = m[158] * R(4.7728205);
-        const gic_real t166 = m[157] * R(0.19340000000000046);
-        const gic_real t167 = m[156] * R(4.8947505);
-        const gic_real t168 = m[161] * t165 + (m[160] * t166 + m[159] * t167);
-        const gic_real t169 = m[169] + (rate[15] + (m[162] * y[16] - m[164] * y[14])) + m[175] * u[2];
-        const gic_real t170 = t169 + m[181] * rate[17];
-        const gic_real t171 = m[155] * R(4.7728205);
-        const gic_real t172 = m[154] * R(0.19340000000000046);
-        const gic_real t173 = m[153] * R(4.8947505);
-        const gic_real t174 = m[161] * t171 + (m[160] * t172 + m[159] * t173);
-        const gic_real t175 = m[168] + (rate[14] + (m[164] * y[15] - m[163] * y[16])) + m[174] * u[2];
-        const gic_real t176 = t175 + m[180] * rate[17];
+        const gic_real t161 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t162 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t163 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t164 = t163 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t165 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t166 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t167 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t168 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t165 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t166 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t167);
+        const gic_real t169 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t170 = t169 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t171 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t172 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t173 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t174 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * t171 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * t172 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZX] * t173);
+        const gic_real t175 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t176 = t175 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
         const gic_real t177 = t162 * t164 + (t168 * t170 + t174 * t176);
-        const gic_real t178 = m[163] + y[15];
-        const gic_real t179 = m[158] * t165 + (m[157] * t166 + m[156] * t167);
-        const gic_real t180 = m[158] * t171 + (m[157] * t172 + m[156] * t173);
+        const gic_real t178 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t179 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t165 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t166 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t167);
+        const gic_real t180 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * t171 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * t172 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YX] * t173);
         const gic_real t181 = t168 * t164 + (t179 * t170 + t180 * t176);
-        const gic_real t182 = m[162] + y[14];
-        const gic_real t183 = m[155] * t171 + (m[154] * t172 + m[153] * t173);
+        const gic_real t182 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t183 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * t171 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * t172 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XX] * t173);
         const gic_real t184 = t174 * t164 + (t180 * t170 + t183 * t176);
         const gic_real t185 = t161 * t177 + (t178 * t181 + t182 * t184);
-        const gic_real t186 = m[189] * R(-0.004825999999999997);
-        const gic_real t187 = m[191] * R(0.09182099999999999) + (t186 + m[190] * R(-0.08910630000000008));
-        const gic_real t188 = m[195] * R(-0.004825999999999997);
-        const gic_real t189 = m[197] * R(0.09182099999999999) + (t188 + m[196] * R(-0.08910630000000008));
-        const gic_real t190 = m[200] * t187 - m[198] * t189;
-        const gic_real t191 = m[192] * R(-0.004825999999999997);
-        const gic_real t192 = m[194] * R(0.09182099999999999) + (t191 + m[193] * R(-0.08910630000000008));
-        const gic_real t193 = m[199] * t189 - m[200] * t192;
-        const gic_real t194 = m[198] * t190 - m[199] * t193 + (m[204] * t192 - m[205] * t187);
-        const gic_real t195 = m[202] + t190;
+        /* wheel tire_f_r */
+        const gic_real t186 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel_f_r */
+        const gic_real t187 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182099999999999) + (t186 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.08910630000000008));
+        const gic_real t188 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t189 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) + (t188 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t190 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t187 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t189;
+        const gic_real t191 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t192 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) + (t191 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t193 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t189 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t192;
+        const gic_real t194 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t190 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t193 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t192 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t187);
+        const gic_real t195 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] + t190;
         const gic_real t196 = R(1.653405) + t187;
-        const gic_real t197 = m[188] + t189;
-        const gic_real t198 = t195 + (y[16] * t196 - y[14] * t197);
+        const gic_real t197 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t189;
+        const gic_real t198 = t195 + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t196 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t197);
         const gic_real t199 = t195 + t198;
-        const gic_real t200 = m[187] + t192;
-        const gic_real t201 = t193 + (y[15] * t197 - y[16] * t200);
+        const gic_real t200 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t192;
+        const gic_real t201 = t193 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t197 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t200);
         const gic_real t202 = t193 + t201;
-        const gic_real t203 = y[14] * t199 - y[15] * t202 + (rate[14] * t200 - rate[15] * t196);
-        const gic_real t204 = m[209] + t194 + (t35 + t203) + u[2] * (m[210] * t192 - m[211] * t187);
-        const gic_real t205 = t204 + rate[18] * (m[221] + (m[216] * t192 - m[217] * t187));
-        const gic_real t206 = m[198] * t192 - m[199] * t187;
-        const gic_real t207 = m[203] + t206;
-        const gic_real t208 = t207 + (y[14] * t200 - y[15] * t196);
-        const gic_real t209 = m[200] * t193 - m[198] * t206 + (m[206] * t187 - m[204] * t189);
+        const gic_real t203 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t199 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t202 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t200 - rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t196);
+        const gic_real t204 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Z] + t194 + (t35 + t203) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t192 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t187);
+        const gic_real t205 = t204 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 11] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t192 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t187));
+        const gic_real t206 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t192 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t187;
+        const gic_real t207 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] + t206;
+        const gic_real t208 = t207 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t200 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t196);
+        const gic_real t209 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t193 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t206 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t187 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] * t189);
         const gic_real t210 = t207 + t208;
-        const gic_real t211 = y[16] * t202 - y[14] * t210 + (rate[16] * t196 - rate[14] * t197);
-        const gic_real t212 = m[208] + t209 + (t47 + t211) + u[2] * (m[212] * t187 - m[210] * t189);
-        const gic_real t213 = t212 + rate[18] * (m[220] + (m[218] * t187 - m[216] * t189));
-        const gic_real t214 = m[199] * t206 - m[200] * t190 + (m[205] * t189 - m[206] * t192);
-        const gic_real t215 = y[15] * t210 - y[16] * t199 + (rate[15] * t197 - rate[16] * t200);
-        const gic_real t216 = t214 + (t53 + t215) + u[2] * (m[211] * t189 - m[212] * t192);
-        const gic_real t217 = t216 + rate[18] * (m[217] * t189 - m[218] * t192);
+        const gic_real t211 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t202 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t210 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t196 - rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t197);
+        const gic_real t212 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ACCELERATION_Y] + t209 + (t47 + t211) +
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t187 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t189);
+        const gic_real t213 = t212 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 10] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t187 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] * t189));
+        const gic_real t214 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t206 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t190 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] * t189 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] * t192);
+        const gic_real t215 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t210 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t199 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t197 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t200);
+        const gic_real t216 = t214 + (t53 + t215) + u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t189 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t192);
+        const gic_real t217 = t216 + rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] * t189 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] * t192);
         const gic_real t218 = t205 * (t39 + t208) + (t213 * (t49 + t198) + t217 * (t55 + t201));
         const gic_real t219 = R(90.555) * t218;
-        const gic_real t220 = m[200] + y[16];
-        const gic_real t221 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(0.19340000000000046)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t222 = m[206] + (rate[16] + (m[199] * y[14] - m[198] * y[15])) + m[212] * u[2];
-        const gic_real t223 = t222 + m[218] * rate[18];
-        const gic_real t224 = m[194] * R(4.7728205);
-        const gic_real t225 = m[193] * R(0.19340000000000046);
-        const gic_real t226 = m[192] * R(4.8947505);
-        const gic_real t227 = m[197] * t224 + (m[196] * t225 + m[195] * t226);
-        const gic_real t228 = m[205] + (rate[15] + (m[198] * y[16] - m[200] * y[14])) + m[211] * u[2];
-        const gic_real t229 = t228 + m[217] * rate[18];
-        const gic_real t230 = m[191] * R(4.7728205);
-        const gic_real t231 = m[190] * R(0.19340000000000046);
-        const gic_real t232 = m[189] * R(4.8947505);
-        const gic_real t233 = m[197] * t230 + (m[196] * t231 + m[195] * t232);
-        const gic_real t234 = m[204] + (rate[14] + (m[200] * y[15] - m[199] * y[16])) + m[210] * u[2];
-        const gic_real t235 = t234 + m[216] * rate[18];
+        const gic_real t220 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t221 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * R(4.8947505)));
+        const gic_real t222 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Z] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Z] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t223 = t222 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 8] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t224 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t225 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t226 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * R(4.8947505);
+        const gic_real t227 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t224 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t225 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t226);
+        const gic_real t228 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_Y] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_X])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t229 = t228 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 7] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t230 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(4.7728205);
+        const gic_real t231 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(0.19340000000000046);
+        const gic_real t232 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * R(4.8947505);
+        const gic_real t233 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * t230 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * t231 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZX] * t232);
+        const gic_real t234 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_ALPHA_X] +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] - m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] *
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z])) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] *
+            u[HMMWV_VEHICLE_INPUT_RACK_ACCELERATION];
+        const gic_real t235 = t234 + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 6] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
         const gic_real t236 = t221 * t223 + (t227 * t229 + t233 * t235);
-        const gic_real t237 = m[199] + y[15];
-        const gic_real t238 = m[194] * t224 + (m[193] * t225 + m[192] * t226);
-        const gic_real t239 = m[194] * t230 + (m[193] * t231 + m[192] * t232);
+        const gic_real t237 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t238 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t224 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t225 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t226);
+        const gic_real t239 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * t230 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * t231 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YX] * t232);
         const gic_real t240 = t227 * t223 + (t238 * t229 + t239 * t235);
-        const gic_real t241 = m[198] + y[14];
-        const gic_real t242 = m[191] * t230 + (m[190] * t231 + m[189] * t232);
+        const gic_real t241 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t242 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * t230 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * t231 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XX] * t232);
         const gic_real t243 = t233 * t223 + (t239 * t229 + t242 * t235);
         const gic_real t244 = t220 * t236 + (t237 * t240 + t241 * t243);
-        const gic_real t245 = m[98] * R(-3.0379110358344508e-06) + m[97] * R(0.246867347245056);
-        const gic_real t246 = m[101] * R(-3.0379110358344508e-06) + m[100] * R(0.246867347245056);
-        const gic_real t247 = m[102] * t246;
-        const gic_real t248 = R(-1.688965) * y[16];
-        const gic_real t249 = t248 - y[14] * t246 - t247;
+        /* inertia of lca_r_l */
+        const gic_real t245 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.246867347245056);
+        const gic_real t246 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.246867347245056);
+        const gic_real t247 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t246;
+        const gic_real t248 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t249 = t248 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t246 - t247;
         const gic_real t250 = t249 - t247;
         const gic_real t251 = R(0.307086) + t245;
-        const gic_real t252 = y[15] * t246 - y[16] * t251;
-        const gic_real t253 = R(-1.688965) * rate[15];
-        const gic_real t254 = y[14] * t250 - y[15] * t252 + (rate[14] * t251 - t253);
-        const gic_real t255 = m[108] * t245 - m[102] * t247 + (t35 + t254) + rate[19] * (m[114] * t245);
-        const gic_real t256 = m[102] * t245;
-        const gic_real t257 = R(-1.688965) * y[15];
-        const gic_real t258 = t256 + (y[14] * t251 - t257);
+        const gic_real t252 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t246 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t251;
+        const gic_real t253 = R(-1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t254 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t250 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t252 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t251 - t253);
+        const gic_real t255 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t245 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t247 + (t35 + t254) +
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t245);
+        const gic_real t256 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t245;
+        const gic_real t257 = R(-1.688965) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t258 = t256 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t251 - t257);
         const gic_real t259 = t256 + t258;
-        const gic_real t260 = R(-1.688965) * rate[16];
-        const gic_real t261 = y[16] * t252 - y[14] * t259 + (t260 - rate[14] * t246);
-        const gic_real t262 = t47 + t261 - (m[102] * t256 + m[108] * t246) - rate[19] * (m[114] * t246);
-        const gic_real t263 = y[15] * t259 - y[16] * t250 + (rate[15] * t246 - rate[16] * t251);
+        const gic_real t260 = R(-1.688965) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t261 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t252 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t259 + (t260 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t246);
+        const gic_real t262 = t47 + t261 - (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * t256 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] * t246) -
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] * t246);
+        const gic_real t263 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t259 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t250 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t246 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t251);
         const gic_real t264 = t262 * (t49 + t249) + (t53 + t263) * (t55 + t252);
         const gic_real t265 = R(23.965) * (t255 * (t39 + t258) + t264);
-        const gic_real t266 = rate[16] - m[102] * y[15];
-        const gic_real t267 = (m[101] * (m[101] * R(0.8938)) + m[100] * (m[100] * R(0.4469))) * t266;
-        const gic_real t268 = m[98] * R(0.8938);
-        const gic_real t269 = m[97] * R(0.4469);
-        const gic_real t270 = m[101] * t268 + m[100] * t269;
-        const gic_real t271 = rate[15] + m[102] * y[16];
-        const gic_real t272 = t270 * t266 + (m[98] * t268 + m[97] * t269) * t271;
-        const gic_real t273 = (m[102] + y[14]) * (R(0.4469) * (m[108] + rate[14] + m[114] * rate[19]));
-        const gic_real t274 = y[16] * (t267 + t270 * t271) + (y[15] * t272 + t273);
+        const gic_real t266 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t267 = (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * R(0.4469))) * t266;
+        const gic_real t268 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t269 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t270 = m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZZ] * t268 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_ZY] * t269;
+        const gic_real t271 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t272 = t270 * t266 + (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YZ] * t268 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_A_YY] * t269) * t271;
+        const gic_real t273 = (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X]) * (R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_LCA_R_L + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE]));
+        const gic_real t274 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t267 + t270 * t271) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t272 + t273);
         const gic_real t275 = t126 + (t160 + t185) + (t219 + t244) + (t265 + t274);
-        const gic_real t276 = m[128] * R(-3.0379110358344508e-06) + m[127] * R(-0.246867347245056);
-        const gic_real t277 = m[131] * R(-3.0379110358344508e-06) + m[130] * R(-0.246867347245056);
-        const gic_real t278 = m[132] * t277;
-        const gic_real t279 = t248 - y[14] * t277 - t278;
+        /* inertia of lca_r_r */
+        const gic_real t276 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(-0.246867347245056);
+        const gic_real t277 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(-3.0379110358344508e-06) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.246867347245056);
+        const gic_real t278 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t277;
+        const gic_real t279 = t248 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t277 - t278;
         const gic_real t280 = t279 - t278;
         const gic_real t281 = R(-0.307086) + t276;
-        const gic_real t282 = y[15] * t277 - y[16] * t281;
-        const gic_real t283 = y[14] * t280 - y[15] * t282 + (rate[14] * t281 - t253);
-        const gic_real t284 = m[138] * t276 - m[132] * t278 + (t35 + t283) + rate[20] * (m[144] * t276);
-        const gic_real t285 = m[132] * t276;
-        const gic_real t286 = t285 + (y[14] * t281 - t257);
+        const gic_real t282 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t277 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t281;
+        const gic_real t283 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t280 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t282 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t281 - t253);
+        const gic_real t284 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t276 -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t278 + (t35 + t283) +
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t276);
+        const gic_real t285 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t276;
+        const gic_real t286 = t285 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t281 - t257);
         const gic_real t287 = t285 + t286;
-        const gic_real t288 = y[16] * t282 - y[14] * t287 + (t260 - rate[14] * t277);
-        const gic_real t289 = t47 + t288 - (m[132] * t285 + m[138] * t277) - rate[20] * (m[144] * t277);
-        const gic_real t290 = y[15] * t287 - y[16] * t280 + (rate[15] * t277 - rate[16] * t281);
+        const gic_real t288 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t282 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t287 + (t260 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t277);
+        const gic_real t289 = t47 + t288 - (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * t285 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] * t277) -
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] * t277);
+        const gic_real t290 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t287 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t280 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t277 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t281);
         const gic_real t291 = t289 * (t49 + t279) + (t53 + t290) * (t55 + t282);
         const gic_real t292 = R(23.965) * (t284 * (t39 + t286) + t291);
-        const gic_real t293 = rate[16] - m[132] * y[15];
-        const gic_real t294 = (m[131] * (m[131] * R(0.8938)) + m[130] * (m[130] * R(0.4469))) * t293;
-        const gic_real t295 = m[128] * R(0.8938);
-        const gic_real t296 = m[127] * R(0.4469);
-        const gic_real t297 = m[131] * t295 + m[130] * t296;
-        const gic_real t298 = rate[15] + m[132] * y[16];
-        const gic_real t299 = t297 * t293 + (m[128] * t295 + m[127] * t296) * t298;
-        const gic_real t300 = (m[132] + y[14]) * (R(0.4469) * (m[138] + rate[14] + m[144] * rate[20]));
-        const gic_real t301 = y[16] * (t294 + t297 * t298) + (y[15] * t299 + t300);
-        const gic_real t302 = m[230] * R(0.09182099999999999) + m[229] * R(0.08910630000000008);
-        const gic_real t303 = m[233] * R(0.09182099999999999) + m[232] * R(0.08910630000000008);
-        const gic_real t304 = m[234] * t303;
-        const gic_real t305 = m[238] - t304;
-        const gic_real t306 = R(-1.653405) * y[16];
-        const gic_real t307 = m[224] + t303;
-        const gic_real t308 = t305 + (t306 - y[14] * t307);
+        const gic_real t293 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t294 = (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.8938)) +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * R(0.4469))) * t293;
+        const gic_real t295 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * R(0.8938);
+        const gic_real t296 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * R(0.4469);
+        const gic_real t297 = m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZZ] * t295 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_ZY] * t296;
+        const gic_real t298 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t299 = t297 * t293 + (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YZ] * t295 +
+            m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_A_YY] * t296) * t298;
+        const gic_real t300 = (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X]) * (R(0.4469) * (m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_ALPHA_X] +
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] + m[HMMWV_VEHICLE_MOTION_LCA_R_R + HMMWV_VEHICLE_S + 0] *
+            rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE]));
+        const gic_real t301 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t294 + t297 * t298) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            t299 + t300);
+        /* inertia of wheel_r_l */
+        const gic_real t302 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.08910630000000008);
+        const gic_real t303 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.08910630000000008);
+        const gic_real t304 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t303;
+        const gic_real t305 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] - t304;
+        /* wheel tire_r_l */
+        const gic_real t306 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t307 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t303;
+        const gic_real t308 = t305 + (t306 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t307);
         const gic_real t309 = t305 + t308;
-        const gic_real t310 = m[223] + t302;
-        const gic_real t311 = y[15] * t307 - y[16] * t310;
-        const gic_real t312 = R(-1.653405) * rate[15];
-        const gic_real t313 = y[14] * t309 - y[15] * t311 + (rate[14] * t310 - t312);
-        const gic_real t314 = m[245] + (m[240] * t302 - m[234] * t304) + (t35 + t313);
-        const gic_real t315 = m[234] * t302;
-        const gic_real t316 = m[239] + t315;
-        const gic_real t317 = R(-1.653405) * y[15];
-        const gic_real t318 = t316 + (y[14] * t310 - t317);
-        const gic_real t319 = (t314 + rate[19] * (m[251] + m[246] * t302)) * (t39 + t318);
+        const gic_real t310 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t302;
+        const gic_real t311 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t307 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t310;
+        const gic_real t312 = R(-1.653405) * rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t313 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t309 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t311 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t310 - t312);
+        const gic_real t314 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t302 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t304) + (t35 + t313);
+        const gic_real t315 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t302;
+        const gic_real t316 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] + t315;
+        const gic_real t317 = R(-1.653405) * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t318 = t316 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t310 - t317);
+        const gic_real t319 = (t314 + rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t302)) * (t39 + t318);
         const gic_real t320 = t316 + t318;
-        const gic_real t321 = R(-1.653405) * rate[16];
-        const gic_real t322 = y[16] * t311 - y[14] * t320 + (t321 - rate[14] * t307);
-        const gic_real t323 = m[244] - (m[234] * t315 + m[240] * t303) + (t47 + t322);
-        const gic_real t324 = (t323 + rate[19] * (m[250] - m[246] * t303)) * (t49 + t308);
-        const gic_real t325 = y[15] * t320 - y[16] * t309 + (rate[15] * t307 - rate[16] * t310);
+        const gic_real t321 = R(-1.653405) * rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t322 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t311 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t320 + (t321 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t307);
+        const gic_real t323 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t315 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] * t303) + (t47 + t322);
+        const gic_real t324 = (t323 + rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * t303)) * (t49 + t308);
+        const gic_real t325 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t320 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t309 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t307 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t310);
         const gic_real t326 = R(90.555) * (t319 + (t324 + (t53 + t325) * (t55 + t311)));
-        const gic_real t327 = rate[16] - m[234] * y[15];
-        const gic_real t328 = (m[233] * (m[233] * R(4.7728205)) + m[232] * (m[232] * R(0.19340000000000046))) * t327;
-        const gic_real t329 = m[230] * R(4.7728205);
-        const gic_real t330 = m[229] * R(0.19340000000000046);
-        const gic_real t331 = m[233] * t329 + m[232] * t330;
-        const gic_real t332 = rate[15] + m[234] * y[16];
-        const gic_real t333 = t331 * t327 + (m[230] * t329 + m[229] * t330) * t332;
-        const gic_real t334 = m[234] + y[14];
-        const gic_real t335 = y[15] * t333 + t334 * (R(4.8947505) * (m[240] + rate[14] + m[246] * rate[19]));
-        const gic_real t336 = y[16] * (t328 + t331 * t332) + t335;
-        const gic_real t337 = m[260] * R(0.09182099999999999) + m[259] * R(-0.08910630000000008);
-        const gic_real t338 = m[263] * R(0.09182099999999999) + m[262] * R(-0.08910630000000008);
-        const gic_real t339 = m[264] * t338;
-        const gic_real t340 = m[268] - t339;
-        const gic_real t341 = m[254] + t338;
-        const gic_real t342 = t340 + (t306 - y[14] * t341);
+        const gic_real t327 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t328 = (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046))) * t327;
+        const gic_real t329 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t330 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t331 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * t329 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * t330;
+        const gic_real t332 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t333 = t331 * t327 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * t329 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * t330) * t332;
+        const gic_real t334 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t335 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t333 + t334 * (R(4.8947505) *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE]));
+        const gic_real t336 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t328 + t331 * t332) + t335;
+        const gic_real t337 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.08910630000000008);
+        const gic_real t338 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182099999999999) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.08910630000000008);
+        const gic_real t339 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t338;
+        const gic_real t340 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] - t339;
+        const gic_real t341 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t338;
+        const gic_real t342 = t340 + (t306 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t341);
         const gic_real t343 = t340 + t342;
-        const gic_real t344 = m[253] + t337;
-        const gic_real t345 = y[15] * t341 - y[16] * t344;
-        const gic_real t346 = y[14] * t343 - y[15] * t345 + (rate[14] * t344 - t312);
-        const gic_real t347 = m[275] + (m[270] * t337 - m[264] * t339) + (t35 + t346);
-        const gic_real t348 = m[264] * t337;
-        const gic_real t349 = m[269] + t348;
-        const gic_real t350 = t349 + (y[14] * t344 - t317);
-        const gic_real t351 = (t347 + rate[20] * (m[281] + m[276] * t337)) * (t39 + t350);
+        const gic_real t344 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t337;
+        const gic_real t345 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t341 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t344;
+        const gic_real t346 = y[HMMWV_VEHICLE_STATE_OMEGA_X] * t343 - y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t345 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t344 - t312);
+        const gic_real t347 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t337 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t339) + (t35 + t346);
+        const gic_real t348 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t337;
+        const gic_real t349 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] + t348;
+        const gic_real t350 = t349 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t344 - t317);
+        const gic_real t351 = (t347 + rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 5] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t337)) * (t39 + t350);
         const gic_real t352 = t349 + t350;
-        const gic_real t353 = y[16] * t345 - y[14] * t352 + (t321 - rate[14] * t341);
-        const gic_real t354 = m[274] - (m[264] * t348 + m[270] * t338) + (t47 + t353);
-        const gic_real t355 = (t354 + rate[20] * (m[280] - m[276] * t338)) * (t49 + t342);
-        const gic_real t356 = y[15] * t352 - y[16] * t343 + (rate[15] * t341 - rate[16] * t344);
+        const gic_real t353 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t345 - y[HMMWV_VEHICLE_STATE_OMEGA_X] * t352 + (t321 -
+            rate[HMMWV_VEHICLE_STATE_OMEGA_X] * t341);
+        const gic_real t354 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ACCELERATION_Y] -
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t348 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] * t338) + (t47 + t353);
+        const gic_real t355 = (t354 + rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 4] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * t338)) * (t49 + t342);
+        const gic_real t356 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t352 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t343 +
+            (rate[HMMWV_VEHICLE_STATE_OMEGA_Y] * t341 - rate[HMMWV_VEHICLE_STATE_OMEGA_Z] * t344);
         const gic_real t357 = R(90.555) * (t351 + (t355 + (t53 + t356) * (t55 + t345)));
-        const gic_real t358 = rate[16] - m[264] * y[15];
-        const gic_real t359 = (m[263] * (m[263] * R(4.7728205)) + m[262] * (m[262] * R(0.19340000000000046))) * t358;
-        const gic_real t360 = m[260] * R(4.7728205);
-        const gic_real t361 = m[259] * R(0.19340000000000046);
-        const gic_real t362 = m[263] * t360 + m[262] * t361;
-        const gic_real t363 = rate[15] + m[264] * y[16];
-        const gic_real t364 = t362 * t358 + (m[260] * t360 + m[259] * t361) * t363;
-        const gic_real t365 = m[264] + y[14];
-        const gic_real t366 = y[15] * t364 + t365 * (R(4.8947505) * (m[270] + rate[14] + m[276] * rate[20]));
-        const gic_real t367 = y[16] * (t359 + t362 * t363) + t366;
+        const gic_real t358 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t359 = (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(4.7728205)) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(0.19340000000000046))) * t358;
+        const gic_real t360 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(4.7728205);
+        const gic_real t361 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(0.19340000000000046);
+        const gic_real t362 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * t360 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * t361;
+        const gic_real t363 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * y[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t364 = t362 * t358 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * t360 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * t361) * t363;
+        /* wheel tire_r_r */
+        const gic_real t365 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] +
+            y[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t366 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t364 + t365 * (R(4.8947505) *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_ALPHA_X] + rate[HMMWV_VEHICLE_STATE_OMEGA_X] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_S + 0] * rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE]));
+        const gic_real t367 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t359 + t362 * t363) + t366;
         const gic_real t368 = t275 + (t292 + t301) + (t326 + t336) + (t357 + t367);
-        const gic_real t369 = rate[21] * y[21] * R(7.78782);
-        const gic_real t370 = R(7.78782) * (rate[25] * y[25]);
-        const gic_real t371 = R(7.78782) * (rate[29] * y[29]);
-        const gic_real t372 = R(7.78782) * (rate[33] * y[33]);
+        const gic_real t369 = rate[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN] * y[HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN] *
+            R(7.78782);
+        const gic_real t370 = R(7.78782) * (rate[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN] *
+            y[HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN]);
+        const gic_real t371 = R(7.78782) * (rate[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN] *
+            y[HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN]);
+        const gic_real t372 = R(7.78782) * (rate[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN] *
+            y[HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN]);
         const gic_real t373 = GIC_MIN(R(100.0) * t5, R(1.0));
-        const gic_real t374 = xd[0] * (R(5000.0) * ((R(3.0) - (t373 + t373)) * (t373 * t373)));
-        const gic_real t375 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(24780.4));
+        const gic_real t374 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t373 + t373)) * (t373 * t373)));
+        /* force spring_r_l */
+        const gic_real t375 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (xd[HMMWV_VEHICLE_X_SPRING_F_L] * R(17490.8)) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * (xd[HMMWV_VEHICLE_X_SPRING_F_R] * R(17490.8)) +
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * (xd[HMMWV_VEHICLE_X_SPRING_R_L] * R(24780.4));
         const gic_real t376 = GIC_MIN(t3 * R(100.0), R(1.0));
-        const gic_real t377 = xd[0] * ((R(3.0) - (t376 + t376)) * (t376 * t376) * R(5000.0));
-        const gic_real t378 = t375 + xd[3] * (xd[3] * R(24780.4)) + xd[0] * (GIC_MAX(t4 + t377, R(0.0)) - t4);
+        const gic_real t377 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t376 + t376)) * (t376 * t376) * R(5000.0));
+        const gic_real t378 = t375 + xd[HMMWV_VEHICLE_X_SPRING_R_R] * (xd[HMMWV_VEHICLE_X_SPRING_R_R] * R(24780.4)) +
+            xd[HMMWV_VEHICLE_X_SPRING_F_L] * (GIC_MAX(t4 + t377, R(0.0)) - t4);
         const gic_real t379 = GIC_MIN(R(100.0) * t7, R(1.0));
-        const gic_real t380 = xd[1] * (R(5000.0) * ((R(3.0) - (t379 + t379)) * (t379 * t379)));
-        const gic_real t381 = xd[0] * (GIC_MAX(t6 - t374, R(0.0)) - t6) - t378 - xd[1] * (GIC_MAX(t8 + t380, R(0.0)) - t8);
+        const gic_real t380 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t379 + t379)) * (t379 * t379)));
+        const gic_real t381 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (GIC_MAX(t6 - t374, R(0.0)) - t6) - t378 -
+            xd[HMMWV_VEHICLE_X_SPRING_F_R] * (GIC_MAX(t8 + t380, R(0.0)) - t8);
         const gic_real t382 = GIC_MIN(R(100.0) * t10, R(1.0));
-        const gic_real t383 = xd[1] * (R(5000.0) * ((R(3.0) - (t382 + t382)) * (t382 * t382)));
+        const gic_real t383 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t382 + t382)) * (t382 * t382)));
         const gic_real t384 = GIC_MIN(R(100.0) * t12, R(1.0));
-        const gic_real t385 = xd[2] * (R(5000.0) * ((R(3.0) - (t384 + t384)) * (t384 * t384)));
-        const gic_real t386 = t381 + xd[1] * (GIC_MAX(t11 - t383, R(0.0)) - t11) - xd[2] * (GIC_MAX(t13 + t385, R(0.0)) - t13);
+        const gic_real t385 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t384 + t384)) * (t384 * t384)));
+        const gic_real t386 = t381 + xd[HMMWV_VEHICLE_X_SPRING_F_R] * (GIC_MAX(t11 - t383, R(0.0)) - t11) -
+            xd[HMMWV_VEHICLE_X_SPRING_R_L] * (GIC_MAX(t13 + t385, R(0.0)) - t13);
         const gic_real t387 = GIC_MIN(R(100.0) * t14, R(1.0));
-        const gic_real t388 = xd[2] * (R(5000.0) * ((R(3.0) - (t387 + t387)) * (t387 * t387)));
+        const gic_real t388 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t387 + t387)) * (t387 * t387)));
         const gic_real t389 = GIC_MIN(R(100.0) * t17, R(1.0));
-        const gic_real t390 = xd[3] * (R(5000.0) * ((R(3.0) - (t389 + t389)) * (t389 * t389)));
-        const gic_real t391 = t386 + xd[2] * (GIC_MAX(t15 - t388, R(0.0)) - t15) - xd[3] * (GIC_MAX(t18 + t390, R(0.0)) - t18);
+        const gic_real t390 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t389 + t389)) * (t389 * t389)));
+        const gic_real t391 = t386 + xd[HMMWV_VEHICLE_X_SPRING_R_L] * (GIC_MAX(t15 - t388, R(0.0)) - t15) -
+            xd[HMMWV_VEHICLE_X_SPRING_R_R] * (GIC_MAX(t18 + t390, R(0.0)) - t18);
         const gic_real t392 = GIC_MIN(R(100.0) * t19, R(1.0));
-        const gic_real t393 = xd[3] * (R(5000.0) * ((R(3.0) - (t392 + t392)) * (t392 * t392)));
-        const gic_real t394 = t26 * self->grip[5] + (t30 * self->grip[4] + t34 * self->grip[3]);
-        const gic_real t395 = t41 * self->grip[5] + (t43 * self->grip[4] + t46 * self->grip[3]);
-        const gic_real t396 = t50 * self->grip[5] + (t51 * self->grip[4] + t52 * self->grip[3]);
-        const gic_real t397 = t26 * self->grip[2] + (t30 * self->grip[1] + t34 * self->grip[0]);
-        const gic_real t398 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + t132);
-        const gic_real t399 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + t127);
-        const gic_real t400 = m[151] + t398;
+        const gic_real t393 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t392 + t392)) * (t392 * t392)));
+        const gic_real t394 = t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t395 = t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t396 = t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t397 = t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t398 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002) + t132);
+        const gic_real t399 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] * R(0.12319000000000002) + t127);
+        const gic_real t400 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Y] + t398;
         const gic_real t401 = R(1.653405) + t399;
-        const gic_real t402 = m[167] + (m[162] * t398 - m[163] * t399) + (y[14] * t400 - y[15] * t401);
-        const gic_real t403 = t41 * self->grip[2] + (t43 * self->grip[1] + t46 * self->grip[0]);
-        const gic_real t404 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + t129);
-        const gic_real t405 = m[152] + t404;
-        const gic_real t406 = m[166] + (m[164] * t399 - m[162] * t404) + (y[16] * t401 - y[14] * t405);
-        const gic_real t407 = t50 * self->grip[2] + (t51 * self->grip[1] + t52 * self->grip[0]);
-        const gic_real t408 = m[163] * t404 - m[164] * t398 + (y[15] * t405 - y[16] * t400);
+        const gic_real t402 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t398 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t399) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t400 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t401);
+        const gic_real t403 = t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t404 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002) + t129);
+        const gic_real t405 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_C_Z] + t404;
+        const gic_real t406 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t399 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_X] * t404) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t401 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t405);
+        const gic_real t407 = t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t408 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Y] * t404 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_OMEGA_Z] * t398 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t405 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t400);
         const gic_real t409 = t397 * (t39 + t402) + (t403 * (t49 + t406) + t407 * (t55 + t408));
         const gic_real t410 = t394 * t161 + (t395 * t178 + t396 * t182) + t409;
-        const gic_real t411 = t391 + xd[3] * (GIC_MAX(t20 - t393, R(0.0)) - t20) + t410;
-        const gic_real t412 = y[16] * (m[160] * self->grip[6]) + (y[15] * (m[157] * self->grip[6]) + y[14] * (m[154] * self->grip[6]));
-        const gic_real t413 = t26 * self->grip[32] + (t30 * self->grip[31] + t34 * self->grip[30]);
-        const gic_real t414 = t41 * self->grip[32] + (t43 * self->grip[31] + t46 * self->grip[30]);
-        const gic_real t415 = t50 * self->grip[32] + (t51 * self->grip[31] + t52 * self->grip[30]);
-        const gic_real t416 = t26 * self->grip[29] + (t30 * self->grip[28] + t34 * self->grip[27]);
-        const gic_real t417 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + t191);
-        const gic_real t418 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + t186);
-        const gic_real t419 = m[187] + t417;
+        const gic_real t411 = t391 + xd[HMMWV_VEHICLE_X_SPRING_R_R] * (GIC_MAX(t20 - t393, R(0.0)) - t20) + t410;
+        const gic_real t412 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t413 = t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t414 = t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t415 = t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_TORQUE_X]);
+        const gic_real t416 = t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t417 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002) + t191);
+        const gic_real t418 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] * R(-0.12319000000000002) + t186);
+        const gic_real t419 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Y] + t417;
         const gic_real t420 = R(1.653405) + t418;
-        const gic_real t421 = m[203] + (m[198] * t417 - m[199] * t418) + (y[14] * t419 - y[15] * t420);
-        const gic_real t422 = t41 * self->grip[29] + (t43 * self->grip[28] + t46 * self->grip[27]);
-        const gic_real t423 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + t188);
-        const gic_real t424 = m[188] + t423;
-        const gic_real t425 = m[202] + (m[200] * t418 - m[198] * t423) + (y[16] * t420 - y[14] * t424);
-        const gic_real t426 = t50 * self->grip[29] + (t51 * self->grip[28] + t52 * self->grip[27]);
-        const gic_real t427 = m[199] * t423 - m[200] * t417 + (y[15] * t424 - y[16] * t419);
+        const gic_real t421 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t417 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t418) + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t419 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t420);
+        const gic_real t422 = t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t423 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002) + t188);
+        const gic_real t424 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_C_Z] + t423;
+        const gic_real t425 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_VELOCITY_Y] +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t418 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_X] * t423) + (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t420 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_X] * t424);
+        const gic_real t426 = t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_FORCE_X]);
+        const gic_real t427 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Y] * t423 -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_OMEGA_Z] * t417 + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t424 -
+            y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t419);
         const gic_real t428 = t416 * (t39 + t421) + (t422 * (t49 + t425) + t426 * (t55 + t427));
         const gic_real t429 = t413 * t220 + (t414 * t237 + t415 * t241) + t428;
-        const gic_real t430 = y[16] * (m[196] * self->grip[33]) + (y[15] * (m[193] * self->grip[33]) + y[14] * (m[190] * self->grip[33]));
-        const gic_real t431 = y[16] * (t26 * self->grip[59] + (t30 * self->grip[58] + t34 * self->grip[57]));
-        const gic_real t432 = y[15] * (t41 * self->grip[59] + (t43 * self->grip[58] + t46 * self->grip[57]));
-        const gic_real t433 = (t50 * self->grip[59] + (t51 * self->grip[58] + t52 * self->grip[57])) * t334;
-        const gic_real t434 = m[230] * R(0.09182100000000004) + m[229] * R(0.12319000000000002);
-        const gic_real t435 = m[223] + t434;
-        const gic_real t436 = t39 + (m[239] + m[234] * t434 + (y[14] * t435 - t317));
-        const gic_real t437 = (t26 * self->grip[56] + (t30 * self->grip[55] + t34 * self->grip[54])) * t436;
-        const gic_real t438 = m[233] * R(0.09182100000000004) + m[232] * R(0.12319000000000002);
-        const gic_real t439 = m[224] + t438;
-        const gic_real t440 = t49 + (m[238] - m[234] * t438 + (t306 - y[14] * t439));
-        const gic_real t441 = (t41 * self->grip[56] + (t43 * self->grip[55] + t46 * self->grip[54])) * t440;
-        const gic_real t442 = (t50 * self->grip[56] + (t51 * self->grip[55] + t52 * self->grip[54])) * (t55 + (y[15] * t439 - y[16] * t435));
-        const gic_real t443 = self->grip[53] + (self->grip[26] + t411 - t412 + t429) - t430 + (t431 + (t432 + t433) + (t437 + (t441 + t442)));
-        const gic_real t444 = self->grip[80] + t443 - (y[16] * (m[232] * self->grip[60]) + y[15] * (m[229] * self->grip[60]));
-        const gic_real t445 = y[16] * (t26 * self->grip[86] + (t30 * self->grip[85] + t34 * self->grip[84]));
-        const gic_real t446 = y[15] * (t41 * self->grip[86] + (t43 * self->grip[85] + t46 * self->grip[84]));
-        const gic_real t447 = (t50 * self->grip[86] + (t51 * self->grip[85] + t52 * self->grip[84])) * t365;
-        const gic_real t448 = m[260] * R(0.09182100000000004) + m[259] * R(-0.12319000000000002);
-        const gic_real t449 = m[253] + t448;
-        const gic_real t450 = t39 + (m[269] + m[264] * t448 + (y[14] * t449 - t317));
-        const gic_real t451 = (t26 * self->grip[83] + (t30 * self->grip[82] + t34 * self->grip[81])) * t450;
-        const gic_real t452 = m[263] * R(0.09182100000000004) + m[262] * R(-0.12319000000000002);
-        const gic_real t453 = m[254] + t452;
-        const gic_real t454 = t49 + (m[268] - m[264] * t452 + (t306 - y[14] * t453));
-        const gic_real t455 = (t41 * self->grip[83] + (t43 * self->grip[82] + t46 * self->grip[81])) * t454;
-        const gic_real t456 = (t50 * self->grip[83] + (t51 * self->grip[82] + t52 * self->grip[81])) * (t55 + (y[15] * t453 - y[16] * t449));
+        const gic_real t430 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]) + (y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_A_XY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t431 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t432 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (t41 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t433 = (t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_TORQUE_X])) * t334;
+        const gic_real t434 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] * R(0.12319000000000002);
+        const gic_real t435 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Y] + t434;
+        const gic_real t436 = t39 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t434 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t435 -
+            t317));
+        const gic_real t437 = (t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * t436;
+        const gic_real t438 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] * R(0.12319000000000002);
+        const gic_real t439 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_C_Z] + t438;
+        const gic_real t440 = t49 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_OMEGA_X] * t438 + (t306 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t439));
+        const gic_real t441 = (t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * t440;
+        const gic_real t442 = (t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_FORCE_X])) * (t55 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t439 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t435));
+        const gic_real t443 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_POWER] +
+            (self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_POWER] + t411 - t412 + t429) - t430 +
+            (t431 + (t432 + t433) + (t437 + (t441 + t442)));
+        const gic_real t444 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_POWER] + t443 -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_L + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_DRIVE]));
+        const gic_real t445 = y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (t26 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t446 = y[HMMWV_VEHICLE_STATE_OMEGA_Y] * (t41 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X]));
+        const gic_real t447 = (t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_TORQUE_X])) * t365;
+        const gic_real t448 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] * R(-0.12319000000000002);
+        const gic_real t449 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Y] + t448;
+        const gic_real t450 = t39 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Z] +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t448 + (y[HMMWV_VEHICLE_STATE_OMEGA_X] * t449 -
+            t317));
+        const gic_real t451 = (t26 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t30 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t34 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * t450;
+        const gic_real t452 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] * R(-0.12319000000000002);
+        const gic_real t453 = m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_C_Z] + t452;
+        const gic_real t454 = t49 + (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_VELOCITY_Y] -
+            m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_OMEGA_X] * t452 + (t306 - y[HMMWV_VEHICLE_STATE_OMEGA_X] *
+            t453));
+        const gic_real t455 = (t41 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t43 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t46 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * t454;
+        const gic_real t456 = (t50 * self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Z] + (t51 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_Y] + t52 *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_FORCE_X])) * (t55 +
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Y] * t453 - y[HMMWV_VEHICLE_STATE_OMEGA_Z] * t449));
         const gic_real t457 = t444 + (t445 + (t446 + t447) + (t451 + (t455 + t456)));
-        const gic_real t458 = self->grip[107] + t457 - (y[16] * (m[262] * self->grip[87]) + y[15] * (m[259] * self->grip[87]));
+        const gic_real t458 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_POWER] + t457 -
+            (y[HMMWV_VEHICLE_STATE_OMEGA_Z] * (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_ZY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE]) + y[HMMWV_VEHICLE_STATE_OMEGA_Y] *
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_R_R + HMMWV_VEHICLE_A_YY] *
+            self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_DRIVE]));
         const gic_real t459 = t161 * t168 + (t178 * t179 + t182 * t180);
         const gic_real t460 = t161 * t174 + (t178 * t180 + t182 * t183);
         const gic_real t461 = t154 * R(90.555);
@@ -6027,7 +8704,9 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t465 = t146 * R(90.555);
         const gic_real t466 = t161 * t460 - t182 * t464 + t181 + (t130 * t462 - t128 * t465);
         const gic_real t467 = t178 * t464 - t161 * t459 + t184 + (t133 * t465 - t130 * t461);
-        const gic_real t468 = t65 * R(9.072) + (m[176] * t463 + (m[175] * t466 + m[174] * t467));
+        const gic_real t468 = t65 * R(9.072) + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * t463 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * t466 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * t467));
         const gic_real t469 = t220 * t227 + (t237 * t238 + t241 * t239);
         const gic_real t470 = t220 * t233 + (t237 * t239 + t241 * t242);
         const gic_real t471 = R(90.555) * t213;
@@ -6037,12 +8716,18 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t475 = R(90.555) * t205;
         const gic_real t476 = t220 * t470 - t241 * t474 + t240 + (t189 * t472 - t187 * t475);
         const gic_real t477 = t237 * t474 - t220 * t469 + t243 + (t192 * t475 - t189 * t471);
-        const gic_real t478 = t468 + (m[212] * t473 + (m[211] * t476 + m[210] * t477));
-        const gic_real t479 = m[175] * (t395 + (t404 * t407 - t399 * t397)) + m[174] * (t396 + (t398 * t397 - t404 * t403));
-        const gic_real t480 = m[176] * (t394 + (t399 * t403 - t398 * t407)) + t479;
-        const gic_real t481 = m[211] * (t414 + (t423 * t426 - t418 * t416)) + m[210] * (t415 + (t417 * t416 - t423 * t422));
-        const gic_real t482 = m[212] * (t413 + (t418 * t422 - t417 * t426)) + t481;
-        const gic_real t483 = t458 + xd[4] * (t478 - (t480 + t482));
+        const gic_real t478 = t468 + (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * t473 +
+            (m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * t476 +
+            m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * t477));
+        const gic_real t479 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 1] * (t395 + (t404 * t407 - t399 *
+            t397)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 0] * (t396 + (t398 * t397 - t404 * t403));
+        const gic_real t480 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_L + HMMWV_VEHICLE_S + 2] * (t394 + (t399 * t403 - t398 *
+            t407)) + t479;
+        const gic_real t481 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 1] * (t414 + (t423 * t426 - t418 *
+            t416)) + m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 0] * (t415 + (t417 * t416 - t423 * t422));
+        const gic_real t482 = m[HMMWV_VEHICLE_MOTION_WHEEL_F_R + HMMWV_VEHICLE_S + 2] * (t413 + (t418 * t422 - t417 *
+            t426)) + t481;
+        const gic_real t483 = t458 + xd[HMMWV_VEHICLE_X_RACK] * (t478 - (t480 + t482));
         const gic_real t484 = GIC_FABS(t58) + GIC_FABS(t57) + (GIC_FABS(t69) + GIC_FABS(t68));
         const gic_real t485 = t484 + (GIC_FABS(t99) + GIC_FABS(t90)) + (GIC_FABS(t125) + GIC_FABS(t116));
         const gic_real t486 = t485 + (GIC_FABS(t185) + GIC_FABS(t160)) + (GIC_FABS(t244) + GIC_FABS(t219));
@@ -6051,33 +8736,34 @@ static GIC_COLD int hmmwv_vehicle_energy(const hmmwv_vehicle *self, gic_real tim
         const gic_real t489 = t488 + GIC_FABS(t369) + GIC_FABS(t370) + GIC_FABS(t371);
         const gic_real t490 = t489 + GIC_FABS(t372) + (GIC_FABS(t483) + GIC_FABS(t21));
         const gic_real t491 = t21 + (t368 + t369 + t370 + t371 + t372);
-        const gic_real t492 = rate[14];
-        const gic_real t493 = rate[15];
-        const gic_real t494 = rate[16];
-        const gic_real t495 = rate[17];
-        const gic_real t496 = rate[18];
-        const gic_real t497 = rate[19];
-        const gic_real t498 = rate[20];
-        energy[0] = t491;
-        energy[1] = t483;
-        energy[2] = t490;
-        acc[0] = t492;
-        acc[3] = t53;
-        acc[1] = t493;
-        acc[4] = t47;
-        acc[2] = t494;
-        acc[5] = t35;
-        acc[6] = t495;
-        acc[7] = t496;
-        acc[8] = t497;
-        acc[9] = t498;
+        const gic_real t492 = rate[HMMWV_VEHICLE_STATE_OMEGA_X];
+        const gic_real t493 = rate[HMMWV_VEHICLE_STATE_OMEGA_Y];
+        const gic_real t494 = rate[HMMWV_VEHICLE_STATE_OMEGA_Z];
+        const gic_real t495 = rate[HMMWV_VEHICLE_STATE_SPRING_F_L_RATE];
+        const gic_real t496 = rate[HMMWV_VEHICLE_STATE_SPRING_F_R_RATE];
+        const gic_real t497 = rate[HMMWV_VEHICLE_STATE_SPRING_R_L_RATE];
+        const gic_real t498 = rate[HMMWV_VEHICLE_STATE_SPRING_R_R_RATE];
+        energy[HMMWV_VEHICLE_ENERGY_RATE] = t491;
+        energy[HMMWV_VEHICLE_ENERGY_POWER] = t483;
+        energy[HMMWV_VEHICLE_ENERGY_MAGNITUDES] = t490;
+        acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_X] = t492;
+        acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_X] = t53;
+        acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Y] = t493;
+        acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Y] = t47;
+        acc[HMMWV_VEHICLE_UNKNOWN_ALPHA_Z] = t494;
+        acc[HMMWV_VEHICLE_UNKNOWN_ACCELERATION_Z] = t35;
+        acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_L] = t495;
+        acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_F_R] = t496;
+        acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_L] = t497;
+        acc[HMMWV_VEHICLE_UNKNOWN_OF_SPRING_R_R] = t498;
     }
     return GIC_OK;
 }
 
 GIC_COLD int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result)
 {
-    gic_real e[4], acc[HMMWV_VEHICLE_UNKNOWN_ROOM], unit[HMMWV_VEHICLE_UNKNOWN_ROOM], tau0[HMMWV_VEHICLE_UNKNOWN_ROOM], tau[HMMWV_VEHICLE_UNKNOWN_ROOM];
+    gic_real e[4], acc[HMMWV_VEHICLE_UNKNOWN_ROOM], unit[HMMWV_VEHICLE_UNKNOWN_ROOM], tau0[HMMWV_VEHICLE_UNKNOWN_ROOM],
+        tau[HMMWV_VEHICLE_UNKNOWN_ROOM];
     gic_real M[HMMWV_VEHICLE_UNKNOWN_ROOM][HMMWV_VEHICLE_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = hmmwv_vehicle_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -6155,12 +8841,14 @@ static int hmmwv_vehicle_any_link(void *instance, gic_real time, const gic_real 
     return GIC_OK;
 }
 
-static int hmmwv_vehicle_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate)
+static int hmmwv_vehicle_any_fast(void *instance, gic_real time, const gic_real *link, const gic_real *fast,
+    gic_real *rate)
 {
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
     gic_real result[HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW];
     int status;
-    if (!GIC_FINITE(link, HMMWV_VEHICLE_LINKS) || !GIC_BOUNDED(fast, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW) || !GIC_FINITE(&time, 1) ||
+    if (!GIC_FINITE(link, HMMWV_VEHICLE_LINKS) || !GIC_BOUNDED(fast, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW) ||
+        !GIC_FINITE(&time, 1) ||
         !GIC_FINITE(self->input, HMMWV_VEHICLE_INPUTS) || !GIC_FINITE(self->parameter, HMMWV_VEHICLE_PARAMETERS))
         return self->head.status = GIC_ERROR_INPUT;
     status = hmmwv_vehicle_grip(self, time, link, fast, result);
@@ -6203,28 +8891,15 @@ static int hmmwv_vehicle_any_roll(void *instance)
         for (j = 0; j < hmmwv_vehicle_rolling[i].states; ++j)
             own[j] = R(0.0);
         own[0] = v_x / radius;
-        own[2] = v_y * hmmwv_vehicle_rolling_share(speed / hmmwv_vehicle_rolling[i].low_speed) / hmmwv_vehicle_rolling[i].low_speed;
+        own[2] = v_y * hmmwv_vehicle_rolling_share(speed / hmmwv_vehicle_rolling[i].low_speed) /
+            hmmwv_vehicle_rolling[i].low_speed;
     }
     if (status == GIC_OK)
         gic_restart(self, time);
     return self->head.status = status;
 }
 
-/* ---- changes of gear ----------------------------------------------------------------------------------------------------- */
-
-/* A limit that a step ends at in exact arithmetic is reached whatever rounding makes of the step: relative to a time; to
- * 1 + the size of what is compared. */
-#define HMMWV_VEHICLE_ROUNDING (sizeof(gic_real) < sizeof(double) ? R(1e-4) : R(1e-9))
-
-static int hmmwv_vehicle_reached(gic_real time, gic_real limit)
-{
-    return time >= (R(1.0) - HMMWV_VEHICLE_ROUNDING) * limit;
-}
-
-static int hmmwv_vehicle_above(gic_real x, gic_real limit)
-{
-    return x - limit > HMMWV_VEHICLE_ROUNDING * (R(1.0) + GIC_FABS(limit));
-}
+/* ---- changes of gear --------------------------------------------------------------------------------------------- */
 
 /* After a step: 1 where the gear changes. */
 static int hmmwv_vehicle_any_shift(void *instance)
@@ -6236,34 +8911,30 @@ static int hmmwv_vehicle_any_shift(void *instance)
     const gic_real time = hmmwv_vehicle_time(self);
     const gic_real duration = R(0.3), latency = R(1.0);
     gic_real gear[5], choice[2 * HMMWV_VEHICLE_FORWARD]; /* selector, turbine speed, speeds for up, speeds for down */
-    const gic_real *const up = choice + 2, *const down = up + HMMWV_VEHICLE_FORWARD - 1;
-    int32_t wanted, next = gears[0];
-    (void)time, (void)x, (void)xd, (void)u, (void)p, (void)up, (void)down;
-    if (!hmmwv_vehicle_reached(*age, duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
+    int32_t next;
+    (void)time, (void)x, (void)xd, (void)u, (void)p;
+    if (!gic_reached(*age, duration) || hmmwv_vehicle_engage(self, gear) != GIC_OK)
         return 0;
     hmmwv_vehicle_gather(self, self->state);
     {
-        const gic_real t1 = (fast[0] * R(2.5) + fast[4] * R(2.5)) * R(0.5) + (fast[8] * R(2.5) + fast[12] * R(2.5)) * R(0.5);
-        const gic_real t2 = GIC_MIN(GIC_MAX(fast[17] * R(3.3333333333333335), R(0.0)), R(1.0));
-        const gic_real t3 = (R(3.0) - (t2 + t2)) * (t2 * t2) * (gear[1] - gear[2]);
-        const gic_real t4 = u[5];
-        const gic_real t5 = t1 * (gear[2] + t3);
-        choice[0] = t4;
-        choice[1] = t5;
-        choice[2] = R(261.79938779914943);
-        choice[4] = R(125.66370614359172);
-        choice[3] = R(261.79938779914943);
-        choice[5] = R(125.66370614359172);
+        const gic_real t1 = (fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_L_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5) +
+            fast[(int)HMMWV_VEHICLE_STATE_TIRE_F_R_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5)) * R(0.5) +
+            (fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_L_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5) +
+            fast[(int)HMMWV_VEHICLE_STATE_TIRE_R_R_SPIN - HMMWV_VEHICLE_SLOW] * R(2.5)) * R(0.5);
+        const gic_real t2 = GIC_MIN(GIC_MAX(fast[(int)HMMWV_VEHICLE_STATE_TRANSMISSION_AGE - HMMWV_VEHICLE_SLOW] *
+            R(3.3333333333333335), R(0.0)), R(1.0));
+        const gic_real t3 = (R(3.0) - (t2 + t2)) * (t2 * t2) * (gear[HMMWV_VEHICLE_GEAR_RATIO] -
+            gear[HMMWV_VEHICLE_GEAR_RATIO_BEFORE]);
+        const gic_real t4 = u[HMMWV_VEHICLE_INPUT_SELECTOR];
+        const gic_real t5 = t1 * (gear[HMMWV_VEHICLE_GEAR_RATIO_BEFORE] + t3);
+        choice[HMMWV_VEHICLE_CHOICE_SELECTOR] = t4;
+        choice[HMMWV_VEHICLE_CHOICE_TURBINE] = t5;
+        choice[HMMWV_VEHICLE_CHOICE_UP + 0] = R(261.79938779914943);
+        choice[HMMWV_VEHICLE_CHOICE_UP + 2] = R(125.66370614359172);
+        choice[HMMWV_VEHICLE_CHOICE_UP + 1] = R(261.79938779914943);
+        choice[HMMWV_VEHICLE_CHOICE_UP + 3] = R(125.66370614359172);
     }
-    wanted = hmmwv_vehicle_above(choice[0], R(0.5)) ? 1 : hmmwv_vehicle_above(-choice[0], R(0.5)) && HMMWV_VEHICLE_REVERSE != 0 ? -1 : 0;
-    if (wanted != (next > 0) - (next < 0))
-        next = wanted;
-    else if (next > 0 && hmmwv_vehicle_reached(*age, latency)) {
-        if (next < HMMWV_VEHICLE_FORWARD && hmmwv_vehicle_above(choice[1], up[next - 1]))
-            ++next;
-        else if (next > 1 && hmmwv_vehicle_above(-choice[1], -down[next - 2]))
-            --next;
-    }
+    next = gic_next_gear(gears[0], HMMWV_VEHICLE_FORWARD, HMMWV_VEHICLE_REVERSE, choice, gic_reached(*age, latency));
     if (next == gears[0])
         return 0;
     gears[1] = gears[0];
@@ -6272,7 +8943,7 @@ static int hmmwv_vehicle_any_shift(void *instance)
     return 1;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_vehicle_any_setup(void *self)
 {

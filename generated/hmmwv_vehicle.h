@@ -82,12 +82,12 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x3fb15107
+#define HMMWV_VEHICLE_H 0xb96f51f1
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "hmmwv_vehicle.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "hmmwv_vehicle.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -103,7 +103,7 @@ enum {
     HMMWV_VEHICLE_REVERSE = 1,
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
-    HMMWV_VEHICLE_ABI = 6,
+    HMMWV_VEHICLE_ABI = 7,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,
@@ -140,7 +140,8 @@ enum {
     HMMWV_VEHICLE_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[HMMWV_VEHICLE_STATE_...], .input[HMMWV_VEHICLE_INPUT_...], .output[HMMWV_VEHICLE_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[HMMWV_VEHICLE_STATE_...], .input[HMMWV_VEHICLE_INPUT_...],
+ * .output[HMMWV_VEHICLE_OUTPUT_...]. */
 enum {
     HMMWV_VEHICLE_STATE_R_X = 0, /* m */
     HMMWV_VEHICLE_STATE_R_Y = 1, /* m */
@@ -329,27 +330,34 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct hmmwv_vehicle {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[HMMWV_VEHICLE_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[HMMWV_VEHICLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][HMMWV_VEHICLE_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[HMMWV_VEHICLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][HMMWV_VEHICLE_START_ROOM];  /* work space: where Newton begins: the last good one, and
+        the next */
     gic_real state[HMMWV_VEHICLE_STATE_ROOM];
     gic_real input[HMMWV_VEHICLE_INPUT_ROOM];
     gic_real output[HMMWV_VEHICLE_OUTPUT_ROOM];
-    gic_real parameter[HMMWV_VEHICLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (hmmwv_vehicle_model.parameter_geometric) by hmmwv_vehicle_setup_with */
+    gic_real parameter[HMMWV_VEHICLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (hmmwv_vehicle_model.parameter_geometric) by
+                                                    * hmmwv_vehicle_setup_with */
     gic_real port[HMMWV_VEHICLE_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[HMMWV_VEHICLE_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[HMMWV_VEHICLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[HMMWV_VEHICLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(HMMWV_VEHICLE_STATE_ROOM, HMMWV_VEHICLE_INPUT_ROOM)];
     gic_real x[HMMWV_VEHICLE_COORDINATE_ROOM], xd[HMMWV_VEHICLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
+        last recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[HMMWV_VEHICLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_VEHICLE_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_VEHICLE_GRIP * HMMWV_VEHICLE_ROLLING]; /* what the wheels do, HMMWV_VEHICLE_GRIP numbers each */
@@ -359,13 +367,16 @@ typedef struct hmmwv_vehicle {
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_vehicle_setup(hmmwv_vehicle *self);
 
-/* The same as if the file had these numbers (HMMWV_VEHICLE_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (HMMWV_VEHICLE_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int hmmwv_vehicle_setup_with(hmmwv_vehicle *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_VEHICLE_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_VEHICLE_STATES numbers. rate
+ * is written only on GIC_OK. */
 int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int hmmwv_vehicle_step(hmmwv_vehicle *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -377,19 +388,20 @@ int hmmwv_vehicle_poses(hmmwv_vehicle *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_vehicle_time(const hmmwv_vehicle *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *hmmwv_vehicle_status_text(int status);
 const char *hmmwv_vehicle_status_subset(const hmmwv_vehicle *self);
 const char *hmmwv_vehicle_status_state(const hmmwv_vehicle *self);
 const char *hmmwv_vehicle_status_condition(const hmmwv_vehicle *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void hmmwv_vehicle_snapshot(const hmmwv_vehicle *self, hmmwv_vehicle *copy);
 void hmmwv_vehicle_restore(hmmwv_vehicle *self, const hmmwv_vehicle *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x49b44f77
+#if PENDULUM_H != 0xb2302ad1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -90,16 +90,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -119,10 +120,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -147,10 +164,83 @@ typedef struct pendulum_links {
     gic_real x[PENDULUM_DEPENDENCE_ROOM], rate[PENDULUM_DEPENDENCE_ROOM], change[PENDULUM_DEPENDENCE_ROOM], turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[PENDULUM_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[PENDULUM_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } pendulum_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef PENDULUM_LAYOUT_NAMES
+#define PENDULUM_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    PENDULUM_C_X = 0,
+    PENDULUM_C_Y = 1,
+    PENDULUM_C_Z = 2,
+    PENDULUM_A_XX = 3,
+    PENDULUM_A_XY = 4,
+    PENDULUM_A_XZ = 5,
+    PENDULUM_A_YX = 6,
+    PENDULUM_A_YY = 7,
+    PENDULUM_A_YZ = 8,
+    PENDULUM_A_ZX = 9,
+    PENDULUM_A_ZY = 10,
+    PENDULUM_A_ZZ = 11,
+    PENDULUM_OMEGA_X = 12,
+    PENDULUM_OMEGA_Y = 13,
+    PENDULUM_OMEGA_Z = 14,
+    PENDULUM_VELOCITY_X = 15,
+    PENDULUM_VELOCITY_Y = 16,
+    PENDULUM_VELOCITY_Z = 17,
+    PENDULUM_ALPHA_X = 18,
+    PENDULUM_ALPHA_Y = 19,
+    PENDULUM_ALPHA_Z = 20,
+    PENDULUM_ACCELERATION_X = 21,
+    PENDULUM_ACCELERATION_Y = 22,
+    PENDULUM_ACCELERATION_Z = 23,
+    PENDULUM_S = 24, /* unit velocities, 6 numbers a coordinate */
+    PENDULUM_I_FIRST_X = 0,
+    PENDULUM_I_FIRST_Y = 1,
+    PENDULUM_I_FIRST_Z = 2,
+    PENDULUM_I_SECOND_XX = 3,
+    PENDULUM_I_SECOND_YY = 4,
+    PENDULUM_I_SECOND_ZZ = 5,
+    PENDULUM_I_SECOND_XY = 6,
+    PENDULUM_I_SECOND_XZ = 7,
+    PENDULUM_I_SECOND_YZ = 8,
+    PENDULUM_I_FORCE_X = 9,
+    PENDULUM_I_FORCE_Y = 10,
+    PENDULUM_I_FORCE_Z = 11,
+    PENDULUM_I_MOMENT_X = 12,
+    PENDULUM_I_MOMENT_Y = 13,
+    PENDULUM_I_MOMENT_Z = 14,
+    PENDULUM_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    PENDULUM_MOTION_ROD = 0,
+    PENDULUM_INERTIA_ROD = 0,
+    PENDULUM_SUBSET_ROD = 0,
+    PENDULUM_X_ANGLE = 0,
+    PENDULUM_Q_X = 0,
+    PENDULUM_Q_Y = 1,
+    PENDULUM_Q_Z = 2,
+    PENDULUM_Q_P0 = 3,
+    PENDULUM_Q_P1 = 4,
+    PENDULUM_Q_P2 = 5,
+    PENDULUM_Q_P3 = 6,
+    PENDULUM_POSE_GROUND = 0,
+    PENDULUM_POSE_ROD = 7,
+    PENDULUM_UNKNOWN_OF_ANGLE = 0,
+    PENDULUM_ENERGY_RATE = 0,
+    PENDULUM_ENERGY_POWER = 1,
+    PENDULUM_ENERGY_MAGNITUDES = 2,
+    PENDULUM_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real pendulum_k_rod[1][1] = {
     { /* rod */
@@ -164,31 +254,35 @@ static const gic_real pendulum_k_rod[1][1] = {
 static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
     gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* angle */
     const gic_real *const rate = links->rate;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = GIC_COS(x[0]);
-        motion[3] = t1;
-        motion[11] = t1;
-        const gic_real t2 = GIC_SIN(x[0]);
-        motion[9] = t2;
-        const gic_real t3 = t1 * R(-0.5);
-        inertia[17] = t3;
-        const gic_real t4 = -rate[0];
-        motion[13] = t4;
-        const gic_real t5 = t2 * R(-0.5);
-        const gic_real t6 = -t2;
-        motion[5] = t6;
-        const gic_real t7 = t5 * (rate[0] * (rate[0] * t3)) - t3 * (rate[0] * (rate[0] * t5));
-        inertia[21] = t7;
-        const gic_real t8 = t3 * t3 + t5 * t5;
-        const gic_real t9 = -t5;
-        inertia[15] = t9;
-        const gic_real t10 = R(-0.25) - t8;
-        inertia[19] = t10;
-        const gic_real t11 = R(0.25) + t8;
-        inertia[22] = t11;
+        const gic_real a_xx = GIC_COS(x[0]);
+        motion[PENDULUM_A_XX] = a_xx;
+        motion[PENDULUM_A_ZZ] = a_xx;
+        const gic_real a_zx = GIC_SIN(x[0]);
+        motion[PENDULUM_A_ZX] = a_zx;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real along_0_force_z = a_xx * R(-0.5);
+        inertia[PENDULUM_I_COORDINATE + 2] = along_0_force_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real omega_y = -rate[0];
+        motion[PENDULUM_OMEGA_Y] = omega_y;
+        const gic_real t5 = a_zx * R(-0.5);
+        /* pose, in closed form */
+        const gic_real a_xz = -a_zx;
+        motion[PENDULUM_A_XZ] = a_xz;
+        const gic_real along_0_bias = t5 * (rate[0] * (rate[0] * along_0_force_z)) - along_0_force_z * (rate[0] *
+            (rate[0] * t5));
+        inertia[PENDULUM_I_COORDINATE + 6] = along_0_bias;
+        const gic_real t8 = along_0_force_z * along_0_force_z + t5 * t5;
+        const gic_real along_0_force_x = -t5;
+        inertia[PENDULUM_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_moment_y = R(-0.25) - t8;
+        inertia[PENDULUM_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real mass_0 = R(0.25) + t8;
+        inertia[PENDULUM_I_COORDINATE + 7] = mass_0;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -202,24 +296,27 @@ static int pendulum_solve_rod(pendulum *self, const gic_real *GIC_RESTRICT k, co
 static GIC_COLD void pendulum_residual_rod(const gic_real *GIC_RESTRICT k, const pendulum_links *GIC_RESTRICT links,
     const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* angle */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = GIC_COS(x[0]);
         const gic_real t2 = GIC_SIN(x[0]);
-        const gic_real t3 = t2 * motion[9] + t1 * motion[3];
-        const gic_real t4 = GIC_FABS(t1 * motion[9] - t2 * motion[3]) + (GIC_FABS(t3) - t3);
-        const gic_real t5 = t4 + GIC_FABS(motion[9] * motion[9] + motion[3] * motion[3] - R(1.0));
-        const gic_real t6 = t5 + GIC_FABS(-(motion[5] + motion[9])) + GIC_FABS(motion[3] - motion[11]);
-        const gic_real t7 = GIC_FABS(motion[13]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = t2 * motion[PENDULUM_A_ZX] + t1 * motion[PENDULUM_A_XX];
+        const gic_real t4 = GIC_FABS(t1 * motion[PENDULUM_A_ZX] - t2 * motion[PENDULUM_A_XX]) + (GIC_FABS(t3) - t3);
+        const gic_real t5 = t4 + GIC_FABS(motion[PENDULUM_A_ZX] * motion[PENDULUM_A_ZX] + motion[PENDULUM_A_XX] *
+            motion[PENDULUM_A_XX] - R(1.0));
+        const gic_real t6 = t5 + GIC_FABS(-(motion[PENDULUM_A_XZ] + motion[PENDULUM_A_ZX])) +
+            GIC_FABS(motion[PENDULUM_A_XX] - motion[PENDULUM_A_ZZ]);
+        const gic_real t7 = GIC_FABS(motion[PENDULUM_OMEGA_Y]);
         const gic_real t8 = (R(1.0) + GIC_FABS(-t3)) * GIC_FABS(rate[0]);
-        const gic_real t9 = motion[3] * motion[13];
-        const gic_real t10 = motion[9] * motion[13];
+        const gic_real t9 = motion[PENDULUM_A_XX] * motion[PENDULUM_OMEGA_Y];
+        const gic_real t10 = motion[PENDULUM_A_ZX] * motion[PENDULUM_OMEGA_Y];
         const gic_real t11 = rate[0] * (t1 * t10 - t2 * t9);
-        const gic_real t12 = t2 * (motion[13] * t9) - t1 * (motion[13] * t10) - (t11 + t11);
+        const gic_real t12 = t2 * (motion[PENDULUM_OMEGA_Y] * t9) - t1 * (motion[PENDULUM_OMEGA_Y] * t10) - (t11 + t11);
         const gic_real t13 = GIC_FABS(t12) / (R(1e-30) + (t7 * t7 + t8 * t8));
-        const gic_real t14 = GIC_FABS(rate[0] + motion[13]) / (R(1e-30) + (t7 + t8)) + t13;
+        const gic_real t14 = GIC_FABS(rate[0] + motion[PENDULUM_OMEGA_Y]) / (R(1e-30) + (t7 + t8)) + t13;
         worst[0] = t6;
         worst[1] = t14;
     }
@@ -243,22 +340,24 @@ static int pendulum_recover_piece(pendulum *self, pendulum_links *links, const g
     (void)xd;
     (void)status;
     /* stage 1: rod */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[PENDULUM_X_ANGLE]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* angle */
-        links->rate[0] = xd[0];
-        status = pendulum_solve_rod(self, pendulum_k_rod[0], links, start + 1, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[PENDULUM_X_ANGLE];
+        links->rate[0] = xd[PENDULUM_X_ANGLE];
+        status = pendulum_solve_rod(self, pendulum_k_rod[0], links, start + 1, self->motion + PENDULUM_MOTION_ROD,
+            self->inertia + PENDULUM_INERTIA_ROD);
         if (status != GIC_OK) {
-            self->head.subset = 0;
+            self->head.subset = PENDULUM_SUBSET_ROD;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
 static int pendulum_recover_way(pendulum *self, pendulum_links *links, const gic_real *way, int far, int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
@@ -281,13 +380,11 @@ static int pendulum_recover_way(pendulum *self, pendulum_links *links, const gic
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (PENDULUM_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -314,8 +411,8 @@ static int pendulum_recover(pendulum *self, const gic_real turn[3], int cold)
     links.ahead[0] = self->head.ahead;
     for (i = 0; i < PENDULUM_COORDINATES; ++i)
         way[i] = self->x[i] - self->start[first][i];
-    if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * pendulum_piece[0])) /* angle */
-        way[0] = gic_unwound(way[0]);
+    if (!(GIC_FABS(way[PENDULUM_X_ANGLE]) < R(GIC_PIECES) * pendulum_piece[PENDULUM_X_ANGLE])) /* angle */
+        way[PENDULUM_X_ANGLE] = gic_unwound(way[PENDULUM_X_ANGLE]);
     for (i = 0; i < PENDULUM_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < pendulum_piece[i]);
     if (far)
@@ -350,8 +447,8 @@ static void pendulum_gather(pendulum *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    x[0] = y[0]; /* angle */
-    xd[0] = y[1];
+    x[PENDULUM_X_ANGLE] = y[PENDULUM_STATE_ANGLE]; /* angle */
+    xd[PENDULUM_X_ANGLE] = y[PENDULUM_STATE_ANGLE_RATE];
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
@@ -385,7 +482,8 @@ static GIC_COLD int pendulum_about(pendulum *self, int status, int32_t subset, i
 
 /* Applied forces, composite inertia, and elimination of 1 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int pendulum_dynamics(pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int pendulum_dynamics(pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -395,12 +493,16 @@ static GIC_APART int pendulum_dynamics(pendulum *self, gic_real time, const gic_
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[22] > R(0.0)))
-            return pendulum_about(self, GIC_ERROR_MASS, 0, 0);
-        const gic_real t1 = xd[0];
-        const gic_real t2 = -((n[21] + n[17] * R(9.81)) * (R(1.0) / n[22]));
-        rate[0] = t1;
-        rate[1] = t2;
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        if (!(n[PENDULUM_INERTIA_ROD + PENDULUM_I_COORDINATE + 7] > R(0.0)))
+            return pendulum_about(self, GIC_ERROR_MASS, PENDULUM_SUBSET_ROD, PENDULUM_STATE_ANGLE);
+        const gic_real rate_of_angle = xd[PENDULUM_X_ANGLE];
+        /* accelerations */
+        const gic_real rate_of_angle_rate = -((n[PENDULUM_INERTIA_ROD + PENDULUM_I_COORDINATE + 6] +
+            n[PENDULUM_INERTIA_ROD + PENDULUM_I_COORDINATE + 2] * R(9.81)) * (R(1.0) /
+            n[PENDULUM_INERTIA_ROD + PENDULUM_I_COORDINATE + 7]));
+        rate[PENDULUM_STATE_ANGLE] = rate_of_angle;
+        rate[PENDULUM_STATE_ANGLE_RATE] = rate_of_angle_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -412,8 +514,8 @@ static GIC_APART int pendulum_dynamics(pendulum *self, gic_real time, const gic_
     return GIC_OK;
 }
 
-static int pendulum_measure(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int pendulum_measure(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -421,30 +523,37 @@ static int pendulum_measure(const pendulum *self, gic_real time, const gic_real 
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
-        const gic_real t1 = m[13] * (m[3] * R(-0.5));
-        const gic_real t2 = m[13] * (m[9] * R(-0.5));
-        const gic_real t3 = m[13] * (m[13] * R(0.25)) + (t1 * t1 + t2 * t2);
-        const gic_real t4 = -m[3];
-        const gic_real t5 = -m[9];
-        const gic_real t6 = -(m[9] * m[13]);
-        const gic_real t7 = m[3] * m[13];
-        const gic_real t8 = x[0];
-        const gic_real t9 = xd[0];
-        const gic_real t10 = rate[1];
-        const gic_real t11 = R(0.5) * t3;
-        const gic_real t12 = -(m[9] * R(4.905));
-        out[0] = t4;
-        out[1] = R(0.0);
-        out[2] = t5;
-        out[3] = t6;
-        out[4] = R(0.0);
-        out[5] = t7;
-        out[6] = t8;
-        out[7] = t9;
-        out[8] = t10;
-        out[9] = t11;
-        out[10] = t12;
-        out[11] = R(0.0);
+        /* output energy */
+        const gic_real t1 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] *
+            R(-0.5));
+        const gic_real t2 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] *
+            R(-0.5));
+        const gic_real t3 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] *
+            R(0.25)) + (t1 * t1 + t2 * t2);
+        /* output bob */
+        const gic_real output_bob_x = -m[PENDULUM_MOTION_ROD + PENDULUM_A_XX];
+        const gic_real output_bob_z = -m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX];
+        const gic_real output_bob_velocity_x = -(m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] *
+            m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y]);
+        const gic_real output_bob_velocity_z = m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] *
+            m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y];
+        const gic_real output_angle_value = x[PENDULUM_X_ANGLE];
+        const gic_real output_angle_rate = xd[PENDULUM_X_ANGLE];
+        const gic_real output_angle_acceleration = rate[PENDULUM_STATE_ANGLE_RATE];
+        const gic_real output_energy_kinetic = R(0.5) * t3;
+        const gic_real output_energy_potential = -(m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] * R(4.905));
+        out[PENDULUM_OUTPUT_BOB_X] = output_bob_x;
+        out[PENDULUM_OUTPUT_BOB_Y] = R(0.0);
+        out[PENDULUM_OUTPUT_BOB_Z] = output_bob_z;
+        out[PENDULUM_OUTPUT_BOB_VELOCITY_X] = output_bob_velocity_x;
+        out[PENDULUM_OUTPUT_BOB_VELOCITY_Y] = R(0.0);
+        out[PENDULUM_OUTPUT_BOB_VELOCITY_Z] = output_bob_velocity_z;
+        out[PENDULUM_OUTPUT_ANGLE_VALUE] = output_angle_value;
+        out[PENDULUM_OUTPUT_ANGLE_RATE] = output_angle_rate;
+        out[PENDULUM_OUTPUT_ANGLE_ACCELERATION] = output_angle_acceleration;
+        out[PENDULUM_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[PENDULUM_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[PENDULUM_OUTPUT_ENERGY_POWER] = R(0.0);
     }
     return GIC_OK;
 }
@@ -454,21 +563,24 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
     const gic_real *const m = self->motion;
     (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = R(1.0) + (m[11] - (R(1.0) + m[3]));
-        const gic_real t2 = R(1.0) + (R(1.0) - (m[3] + m[11]));
-        const gic_real t3 = R(1.0) + m[11];
-        const gic_real t4 = R(1.0) + (m[3] - t3);
-        const gic_real t5 = R(1.0) + (m[3] + t3);
+        /* pose of rod */
+        const gic_real t1 = R(1.0) + (m[PENDULUM_MOTION_ROD + PENDULUM_A_ZZ] - (R(1.0) +
+            m[PENDULUM_MOTION_ROD + PENDULUM_A_XX]));
+        const gic_real t2 = R(1.0) + (R(1.0) - (m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] +
+            m[PENDULUM_MOTION_ROD + PENDULUM_A_ZZ]));
+        const gic_real t3 = R(1.0) + m[PENDULUM_MOTION_ROD + PENDULUM_A_ZZ];
+        const gic_real t4 = R(1.0) + (m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] - t3);
+        const gic_real t5 = R(1.0) + (m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] + t3);
         const gic_real t6 = GIC_MAX(t4, t5);
         const gic_real t7 = GIC_MAX(t2, t6);
         const gic_real t8 = t1 - t7;
         const gic_real t9 = t2 - t6;
-        const gic_real t10 = m[5] - m[9];
+        const gic_real t10 = m[PENDULUM_MOTION_ROD + PENDULUM_A_XZ] - m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX];
         const gic_real t11 = t4 - t5;
         const gic_real t12 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? t10 : (t11 > GIC_R(0) ? R(0.0) : t5)));
         const gic_real t13 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
         const gic_real t14 = t12 * t13;
-        const gic_real t15 = m[5] + m[9];
+        const gic_real t15 = m[PENDULUM_MOTION_ROD + PENDULUM_A_XZ] + m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX];
         const gic_real t16 = (t8 > GIC_R(0) ? t15 : (t9 > GIC_R(0) ? R(0.0) : (t11 > GIC_R(0) ? t4 : R(0.0))));
         const gic_real t17 = t16 * t13;
         const gic_real t18 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? t2 : (t11 > GIC_R(0) ? R(0.0) : t10)));
@@ -479,27 +591,27 @@ static void pendulum_place(const pendulum *self, const gic_real *y, const gic_re
         const gic_real t23 = (t14 > GIC_R(0) ? t17 : -t17);
         const gic_real t24 = (t14 > GIC_R(0) ? t19 : -t19);
         const gic_real t25 = (t14 > GIC_R(0) ? t21 : -t21);
-        pose[0] = R(0.0);
-        pose[1] = R(0.0);
-        pose[2] = R(0.0);
-        pose[3] = R(1.0);
-        pose[4] = R(0.0);
-        pose[5] = R(0.0);
-        pose[6] = R(0.0);
-        pose[7] = R(0.0);
-        pose[8] = R(0.0);
-        pose[9] = R(0.0);
-        pose[10] = t22;
-        pose[11] = t23;
-        pose[12] = t24;
-        pose[13] = t25;
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_X] = R(0.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_Y] = R(0.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_Z] = R(0.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_P0] = R(1.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_P1] = R(0.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_P2] = R(0.0);
+        pose[PENDULUM_POSE_GROUND + PENDULUM_Q_P3] = R(0.0);
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_X] = R(0.0);
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_Y] = R(0.0);
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_Z] = R(0.0);
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_P0] = t22;
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_P1] = t23;
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_P2] = t24;
+        pose[PENDULUM_POSE_ROD + PENDULUM_Q_P3] = t25;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int pendulum_residual(const pendulum *self, gic_real largest[2])
 {
     pendulum_links links;
@@ -508,40 +620,45 @@ static GIC_COLD GIC_APART int pendulum_residual(const pendulum *self, gic_real l
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[PENDULUM_X_ANGLE];
+    links.rate[0] = self->xd[PENDULUM_X_ANGLE];
+    pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + PENDULUM_MOTION_ROD, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(0.0)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 0;
+        bad = PENDULUM_SUBSET_ROD;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than pendulum_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int pendulum_balance(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than pendulum_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int pendulum_balance(const pendulum *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = m[3] * R(-0.5);
-        const gic_real t2 = m[9] * R(-0.5);
-        const gic_real t3 = m[13] * (m[13] * t2);
-        const gic_real t4 = m[13] * (m[13] * t1);
-        const gic_real t5 = t1 * (R(9.81) - t3 + rate[1] * t1) + t2 * (t4 + rate[1] * t2);
+        /* inertia of rod */
+        const gic_real t1 = m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] * R(-0.5);
+        const gic_real t2 = m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] * R(-0.5);
+        const gic_real t3 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] *
+            t2);
+        const gic_real t4 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] *
+            t1);
+        const gic_real t5 = t1 * (R(9.81) - t3 + rate[PENDULUM_STATE_ANGLE_RATE] * t1) + t2 * (t4 +
+            rate[PENDULUM_STATE_ANGLE_RATE] * t2);
         const gic_real t6 = GIC_FABS(t2) + GIC_FABS(t1);
-        const gic_real t7 = GIC_FABS(m[13]);
+        const gic_real t7 = GIC_FABS(m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y]);
         const gic_real t8 = t7 * t7;
         const gic_real t9 = R(19.62) + t8 * t6 + (GIC_FABS(-t3) + GIC_FABS(-t4));
-        const gic_real t10 = GIC_FABS(rate[1]);
+        const gic_real t10 = GIC_FABS(rate[PENDULUM_STATE_ANGLE_RATE]);
         const gic_real t11 = t9 + t6 * t10;
         const gic_real t12 = t6 * t11 + (t8 + t10) * R(0.75) + t11 * R(8.660254037844386e-05);
-        const gic_real t13 = rate[1] * R(0.25) + t5;
-        tau[0] = t13;
-        size[0] = t12;
+        const gic_real residual_0 = rate[PENDULUM_STATE_ANGLE_RATE] * R(0.25) + t5;
+        tau[PENDULUM_UNKNOWN_OF_ANGLE] = residual_0;
+        size[PENDULUM_UNKNOWN_OF_ANGLE] = t12;
     }
     return GIC_OK;
 }
@@ -578,7 +695,7 @@ static GIC_COLD GIC_APART int pendulum_check(pendulum *self, gic_real time, cons
     return status;
 }
 
-/* ---- the functions of pendulum.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of pendulum.h --------------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -598,7 +715,8 @@ static int pendulum_locate(pendulum *self, gic_real time, const gic_real *y, gic
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[PENDULUM_STATE_ROOM])
+static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[PENDULUM_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = pendulum_locate(self, time, y, e);
@@ -606,7 +724,8 @@ static int pendulum_evaluate(pendulum *self, gic_real time, const gic_real *y, g
     if (status == GIC_OK)
         status = pendulum_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + PENDULUM_TWIST, PENDULUM_STATES - PENDULUM_TWIST))
+    if (status == GIC_OK && PENDULUM_STATES > PENDULUM_TWIST && !GIC_FINITE(rate + PENDULUM_TWIST, PENDULUM_STATES -
+        PENDULUM_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = pendulum_check(self, time, y, e, rate);
@@ -626,8 +745,9 @@ int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real 
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int pendulum_march(pendulum *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -638,7 +758,7 @@ static int pendulum_march(pendulum *self, gic_real time)
         return status;
     memcpy(before, state, PENDULUM_STATES * sizeof *state);
     for (i = 0; i < PENDULUM_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = pendulum_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, PENDULUM_STATES * sizeof *state);
@@ -776,7 +896,8 @@ static const char *const pendulum_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -869,7 +990,8 @@ const char *pendulum_status_state(const pendulum *self)
 const char *pendulum_status_condition(const pendulum *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < pendulum_model.condition_count ? pendulum_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < pendulum_model.condition_count ? pendulum_model.condition_text[condition] :
+        NULL;
 }
 
 void pendulum_snapshot(const pendulum *self, pendulum *copy)
@@ -882,7 +1004,7 @@ void pendulum_restore(pendulum *self, const pendulum *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
 /* tau = residual of the equations of motion at accelerations acc, body by body: another way than pendulum_dynamics. */
 static GIC_COLD int pendulum_inverse(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
@@ -892,45 +1014,53 @@ static GIC_COLD int pendulum_inverse(const pendulum *self, gic_real time, const 
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[3] * R(-0.5);
-        const gic_real t2 = m[9] * R(-0.5);
-        const gic_real t3 = t1 * (R(9.81) - m[13] * (m[13] * t2) + acc[0] * t1);
-        const gic_real t4 = t3 + t2 * (m[13] * (m[13] * t1) + acc[0] * t2);
-        const gic_real t5 = acc[0] * R(0.25) + t4;
-        tau[0] = t5;
+        /* inertia of rod */
+        const gic_real t1 = m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] * R(-0.5);
+        const gic_real t2 = m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] * R(-0.5);
+        const gic_real t3 = t1 * (R(9.81) - m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] *
+            (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t2) + acc[PENDULUM_UNKNOWN_OF_ANGLE] * t1);
+        const gic_real t4 = t3 + t2 * (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] *
+            (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t1) + acc[PENDULUM_UNKNOWN_OF_ANGLE] * t2);
+        const gic_real residual_0 = acc[PENDULUM_UNKNOWN_OF_ANGLE] * R(0.25) + t4;
+        tau[PENDULUM_UNKNOWN_OF_ANGLE] = residual_0;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int pendulum_energy(const pendulum *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = m[3] * R(-0.5);
-        const gic_real t2 = m[13] * t1;
-        const gic_real t3 = m[9] * R(-0.5);
-        const gic_real t4 = m[13] * t3;
-        const gic_real t5 = t2 * (R(9.81) - m[13] * t4 + rate[1] * t1) + t4 * (m[13] * t2 + rate[1] * t3);
-        const gic_real t6 = m[13] * (rate[1] * R(0.25));
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t1 = m[PENDULUM_MOTION_ROD + PENDULUM_A_XX] * R(-0.5);
+        const gic_real t2 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t1;
+        const gic_real t3 = m[PENDULUM_MOTION_ROD + PENDULUM_A_ZX] * R(-0.5);
+        const gic_real t4 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t3;
+        const gic_real t5 = t2 * (R(9.81) - m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t4 +
+            rate[PENDULUM_STATE_ANGLE_RATE] * t1) + t4 * (m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * t2 +
+            rate[PENDULUM_STATE_ANGLE_RATE] * t3);
+        const gic_real t6 = m[PENDULUM_MOTION_ROD + PENDULUM_OMEGA_Y] * (rate[PENDULUM_STATE_ANGLE_RATE] * R(0.25));
         const gic_real t7 = -(t5 + t6);
         const gic_real t8 = GIC_FABS(-t6) + GIC_FABS(-t5);
-        const gic_real t9 = rate[1];
-        energy[0] = t7;
-        energy[1] = R(0.0);
-        energy[2] = t8;
-        acc[0] = t9;
+        const gic_real t9 = rate[PENDULUM_STATE_ANGLE_RATE];
+        energy[PENDULUM_ENERGY_RATE] = t7;
+        energy[PENDULUM_ENERGY_POWER] = R(0.0);
+        energy[PENDULUM_ENERGY_MAGNITUDES] = t8;
+        acc[PENDULUM_UNKNOWN_OF_ANGLE] = t9;
     }
     return GIC_OK;
 }
 
 GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
 {
-    gic_real e[4], acc[PENDULUM_UNKNOWN_ROOM], unit[PENDULUM_UNKNOWN_ROOM], tau0[PENDULUM_UNKNOWN_ROOM], tau[PENDULUM_UNKNOWN_ROOM];
+    gic_real e[4], acc[PENDULUM_UNKNOWN_ROOM], unit[PENDULUM_UNKNOWN_ROOM], tau0[PENDULUM_UNKNOWN_ROOM],
+        tau[PENDULUM_UNKNOWN_ROOM];
     gic_real M[PENDULUM_UNKNOWN_ROOM][PENDULUM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = pendulum_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -991,7 +1121,7 @@ GIC_COLD int pendulum_self_test(pendulum *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int pendulum_any_setup(void *self)
 {

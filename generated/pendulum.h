@@ -28,12 +28,12 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0x49b44f77
+#define PENDULUM_H 0xb2302ad1
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "pendulum.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "pendulum.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -42,7 +42,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    PENDULUM_ABI = 6,
+    PENDULUM_ABI = 7,
     PENDULUM_FREE_BASE = 0,
     PENDULUM_STATES = 2,
     PENDULUM_SLOW = 2,
@@ -79,7 +79,8 @@ enum {
     PENDULUM_DEPENDENCE_ROOM = 1
 };
 
-/* Where each number stands: vehicle.state[PENDULUM_STATE_...], .input[PENDULUM_INPUT_...], .output[PENDULUM_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[PENDULUM_STATE_...], .input[PENDULUM_INPUT_...],
+ * .output[PENDULUM_OUTPUT_...]. */
 enum {
     PENDULUM_STATE_ANGLE = 0, /* rad */
     PENDULUM_STATE_ANGLE_RATE = 1, /* rad/s */
@@ -99,40 +100,49 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct pendulum {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[PENDULUM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][PENDULUM_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real start[GIC_STARTS][PENDULUM_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[PENDULUM_STATE_ROOM];
     gic_real input[PENDULUM_INPUT_ROOM];
     gic_real output[PENDULUM_OUTPUT_ROOM];
-    gic_real parameter[PENDULUM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (pendulum_model.parameter_geometric) by pendulum_setup_with */
+    gic_real parameter[PENDULUM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (pendulum_model.parameter_geometric) by
+                                                    * pendulum_setup_with */
     gic_real port[PENDULUM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[PENDULUM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[PENDULUM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[PENDULUM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(PENDULUM_STATE_ROOM, PENDULUM_STATES - PENDULUM_SLOW)];
     gic_real scratch[GIC_SCRATCH(PENDULUM_STATE_ROOM, PENDULUM_INPUT_ROOM)];
     gic_real x[PENDULUM_COORDINATE_ROOM], xd[PENDULUM_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } pendulum;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int pendulum_setup(pendulum *self);
 
-/* The same as if the file had these numbers (PENDULUM_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (PENDULUM_PARAMETERS) as values of its tunable parameters; self->parameter
+ * will do. */
 int pendulum_setup_with(pendulum *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: PENDULUM_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: PENDULUM_STATES numbers. rate is
+ * written only on GIC_OK. */
 int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int pendulum_step(pendulum *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -144,19 +154,20 @@ int pendulum_poses(pendulum *self, gic_real *pose);
 /* Present time, s. */
 gic_real pendulum_time(const pendulum *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *pendulum_status_text(int status);
 const char *pendulum_status_subset(const pendulum *self);
 const char *pendulum_status_state(const pendulum *self);
 const char *pendulum_status_condition(const pendulum *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void pendulum_snapshot(const pendulum *self, pendulum *copy);
 void pendulum_restore(pendulum *self, const pendulum *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int pendulum_self_test(pendulum *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

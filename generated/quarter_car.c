@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x70e2d357
+#if QUARTER_CAR_H != 0x828c341b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -109,16 +109,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -138,10 +139,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -163,13 +180,97 @@
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct quarter_car_links {
     const gic_real *known[QUARTER_CAR_KNOWN_ROOM];
-    gic_real x[QUARTER_CAR_DEPENDENCE_ROOM], rate[QUARTER_CAR_DEPENDENCE_ROOM], change[QUARTER_CAR_DEPENDENCE_ROOM], turn[3];
+    gic_real x[QUARTER_CAR_DEPENDENCE_ROOM], rate[QUARTER_CAR_DEPENDENCE_ROOM], change[QUARTER_CAR_DEPENDENCE_ROOM],
+        turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[QUARTER_CAR_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[QUARTER_CAR_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } quarter_car_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef QUARTER_CAR_LAYOUT_NAMES
+#define QUARTER_CAR_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    QUARTER_CAR_C_X = 0,
+    QUARTER_CAR_C_Y = 1,
+    QUARTER_CAR_C_Z = 2,
+    QUARTER_CAR_A_XX = 3,
+    QUARTER_CAR_A_XY = 4,
+    QUARTER_CAR_A_XZ = 5,
+    QUARTER_CAR_A_YX = 6,
+    QUARTER_CAR_A_YY = 7,
+    QUARTER_CAR_A_YZ = 8,
+    QUARTER_CAR_A_ZX = 9,
+    QUARTER_CAR_A_ZY = 10,
+    QUARTER_CAR_A_ZZ = 11,
+    QUARTER_CAR_OMEGA_X = 12,
+    QUARTER_CAR_OMEGA_Y = 13,
+    QUARTER_CAR_OMEGA_Z = 14,
+    QUARTER_CAR_VELOCITY_X = 15,
+    QUARTER_CAR_VELOCITY_Y = 16,
+    QUARTER_CAR_VELOCITY_Z = 17,
+    QUARTER_CAR_ALPHA_X = 18,
+    QUARTER_CAR_ALPHA_Y = 19,
+    QUARTER_CAR_ALPHA_Z = 20,
+    QUARTER_CAR_ACCELERATION_X = 21,
+    QUARTER_CAR_ACCELERATION_Y = 22,
+    QUARTER_CAR_ACCELERATION_Z = 23,
+    QUARTER_CAR_S = 24, /* unit velocities, 6 numbers a coordinate */
+    QUARTER_CAR_I_FIRST_X = 0,
+    QUARTER_CAR_I_FIRST_Y = 1,
+    QUARTER_CAR_I_FIRST_Z = 2,
+    QUARTER_CAR_I_SECOND_XX = 3,
+    QUARTER_CAR_I_SECOND_YY = 4,
+    QUARTER_CAR_I_SECOND_ZZ = 5,
+    QUARTER_CAR_I_SECOND_XY = 6,
+    QUARTER_CAR_I_SECOND_XZ = 7,
+    QUARTER_CAR_I_SECOND_YZ = 8,
+    QUARTER_CAR_I_FORCE_X = 9,
+    QUARTER_CAR_I_FORCE_Y = 10,
+    QUARTER_CAR_I_FORCE_Z = 11,
+    QUARTER_CAR_I_MOMENT_X = 12,
+    QUARTER_CAR_I_MOMENT_Y = 13,
+    QUARTER_CAR_I_MOMENT_Z = 14,
+    QUARTER_CAR_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    QUARTER_CAR_MOTION_CARRIAGE = 0,
+    QUARTER_CAR_MOTION_ARM = 30,
+    QUARTER_CAR_MOTION_WHEEL = 66,
+    QUARTER_CAR_INERTIA_CARRIAGE = 0,
+    QUARTER_CAR_INERTIA_ARM = 23,
+    QUARTER_CAR_INERTIA_WHEEL = 55,
+    QUARTER_CAR_SUBSET_CARRIAGE = 0,
+    QUARTER_CAR_SUBSET_ARM = 1,
+    QUARTER_CAR_SUBSET_WHEEL = 2,
+    QUARTER_CAR_X_BOUNCE = 0,
+    QUARTER_CAR_X_SPRING = 1,
+    QUARTER_CAR_Q_X = 0,
+    QUARTER_CAR_Q_Y = 1,
+    QUARTER_CAR_Q_Z = 2,
+    QUARTER_CAR_Q_P0 = 3,
+    QUARTER_CAR_Q_P1 = 4,
+    QUARTER_CAR_Q_P2 = 5,
+    QUARTER_CAR_Q_P3 = 6,
+    QUARTER_CAR_POSE_GROUND = 0,
+    QUARTER_CAR_POSE_CARRIAGE = 7,
+    QUARTER_CAR_POSE_ARM = 14,
+    QUARTER_CAR_POSE_WHEEL = 21,
+    QUARTER_CAR_UNKNOWN_OF_BOUNCE = 0,
+    QUARTER_CAR_UNKNOWN_OF_SPRING = 1,
+    QUARTER_CAR_ENERGY_RATE = 0,
+    QUARTER_CAR_ENERGY_POWER = 1,
+    QUARTER_CAR_ENERGY_MAGNITUDES = 2,
+    QUARTER_CAR_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real quarter_car_k_carriage[1][1] = {
     { /* carriage */
@@ -180,17 +281,19 @@ static const gic_real quarter_car_k_carriage[1][1] = {
 /* Class 'carriage': 6 unknowns of carriage.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bounce */
     const gic_real *const rate = links->rate;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = rate[0];
-        motion[17] = t1;
-        const gic_real t2 = R(0.687) + x[0];
-        motion[2] = t2;
+        const gic_real velocity_z = rate[0];
+        motion[QUARTER_CAR_VELOCITY_Z] = velocity_z;
+        /* pose, in closed form */
+        const gic_real c_z = R(0.687) + x[0];
+        motion[QUARTER_CAR_C_Z] = c_z;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -201,15 +304,17 @@ static int quarter_car_solve_carriage(quarter_car *self, const gic_real *GIC_RES
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void quarter_car_residual_carriage(const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bounce */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[17] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[17]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[2] - R(0.687) - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[QUARTER_CAR_VELOCITY_Z] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[QUARTER_CAR_VELOCITY_Z]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[QUARTER_CAR_C_Z] - R(0.687) - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
@@ -224,20 +329,23 @@ static const gic_real quarter_car_k_arm[1][1] = {
 /* Class 'arm': 6 unknowns of arm.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring, bounce */
     const gic_real *const rate = links->rate;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.010110666875399996);
-        const gic_real t2 = m0[17];
-        motion[17] = t2;
-        const gic_real t3 = R(-0.21300000000000008) + m0[2];
-        motion[2] = t3;
+        const gic_real velocity_z = m0[QUARTER_CAR_VELOCITY_Z];
+        motion[QUARTER_CAR_VELOCITY_Z] = velocity_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real c_z = R(-0.21300000000000008) + m0[QUARTER_CAR_C_Z];
+        motion[QUARTER_CAR_C_Z] = c_z;
         const gic_real t4 = R(0.004637870464427621) - t1 * t1;
         if (!(t4 > R(0.0)))
             return GIC_ERROR_NEWTON;
@@ -248,52 +356,56 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
         const gic_real t7 = R(0.05607209753299996) * t1 - R(0.038649583990999964) * t5;
         const gic_real t8 = t6 * R(50.90547521989428) + t7 * R(10.049655409199131);
         const gic_real t9 = t6 * R(-10.049655409199131) + t7 * R(50.90547521989428);
-        const gic_real t10 = t7 * R(51.57660077184113) + t6 * R(209.3566321652691);
-        motion[7] = t10;
-        const gic_real t11 = t7 * R(-209.35663216526908) + t6 * R(51.576600771841136);
-        motion[8] = t11;
-        const gic_real t12 = t7 * R(209.3566321652691) + t6 * R(-51.57660077184113);
-        motion[10] = t12;
-        const gic_real t13 = t7 * R(51.576600771841136) + t6 * R(209.35663216526908);
-        motion[11] = t13;
+        const gic_real a_yy = t7 * R(51.57660077184113) + t6 * R(209.3566321652691);
+        motion[QUARTER_CAR_A_YY] = a_yy;
+        const gic_real a_yz = t7 * R(-209.35663216526908) + t6 * R(51.576600771841136);
+        motion[QUARTER_CAR_A_YZ] = a_yz;
+        const gic_real a_zy = t7 * R(209.3566321652691) + t6 * R(-51.57660077184113);
+        motion[QUARTER_CAR_A_ZY] = a_zy;
+        const gic_real a_zz = t7 * R(51.576600771841136) + t6 * R(209.35663216526908);
+        motion[QUARTER_CAR_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t14 = t8 + R(-0.20269199999999993);
         const gic_real t15 = R(-0.19748500000000002) + t9;
-        const gic_real t16 = t11 * R(3.0379110359107786e-06) + t10 * R(0.24689200985615367);
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t16 = a_yz * R(3.0379110359107786e-06) + a_yy * R(0.24689200985615367);
         const gic_real t17 = t8 * t15 - t9 * t14;
-        const gic_real t18 = t13 * R(3.0379110359107786e-06) + t12 * R(0.24689200985615367);
+        const gic_real t18 = a_zz * R(3.0379110359107786e-06) + a_zy * R(0.24689200985615367);
         const gic_real t19 = R(0.307086) + t16;
         const gic_real t20 = R(1.0) / t17;
-        const gic_real t21 = R(23.965) * t19;
-        inertia[25] = t21;
-        const gic_real t22 = x[0] * t20;
-        motion[24] = t22;
-        const gic_real t23 = rate[0] * t22;
-        motion[12] = t23;
-        const gic_real t24 = t18 * t22;
-        const gic_real t25 = t16 * t22;
-        const gic_real t26 = R(0.4469) * t22;
-        if (!(R(-8.91709106665283) * t17 - ahead[0] * GIC_FABS(t23) > R(0.004)))
+        const gic_real along_1_moment_x = R(23.965) * t19;
+        inertia[QUARTER_CAR_I_COORDINATE + 10] = along_1_moment_x;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t20;
+        motion[QUARTER_CAR_S + 0] = s_0_0;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[QUARTER_CAR_OMEGA_X] = omega_x;
+        const gic_real t24 = t18 * s_0_0;
+        const gic_real t25 = t16 * s_0_0;
+        const gic_real t26 = R(0.4469) * s_0_0;
+        if (!(R(-8.91709106665283) * t17 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t27 = t8 * t23;
-        const gic_real t28 = t9 * t23;
+        const gic_real t27 = t8 * omega_x;
+        const gic_real t28 = t9 * omega_x;
         const gic_real t29 = R(23.965) * t24;
-        const gic_real t30 = R(23.965) * t25;
-        inertia[17] = t30;
-        inertia[30] = t30;
-        const gic_real t31 = rate[0] * rate[0] - t27 * t27 - t28 * t28 + (t15 * (t23 * t28) + t14 * (t23 * t27));
-        const gic_real t32 = t19 * t30 + (t26 + (t3 + t18) * t29);
-        inertia[18] = t32;
-        const gic_real t33 = t24 * t29 + (t22 * t26 + t25 * t30);
-        inertia[29] = t33;
-        const gic_real t34 = -t29;
-        inertia[16] = t34;
-        const gic_real t35 = t20 * t31;
-        motion[18] = t35;
-        const gic_real t36 = R(23.965) * (t16 * t35 - t23 * (t18 * t23));
-        inertia[28] = t36;
-        const gic_real t37 = R(23.965) * (t23 * (t16 * t23) + t18 * t35) * t24;
-        const gic_real t38 = t37 + (t22 * (R(0.4469) * t35) + t36 * t25);
-        inertia[21] = t38;
+        const gic_real along_0_force_z = R(23.965) * t25;
+        inertia[QUARTER_CAR_I_COORDINATE + 2] = along_0_force_z;
+        inertia[QUARTER_CAR_I_COORDINATE + 15] = along_0_force_z;
+        const gic_real t31 = rate[0] * rate[0] - t27 * t27 - t28 * t28 + (t15 * (omega_x * t28) + t14 * (omega_x *
+            t27));
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t26 + (c_z + t18) * t29);
+        inertia[QUARTER_CAR_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t24 * t29 + (s_0_0 * t26 + t25 * along_0_force_z);
+        inertia[QUARTER_CAR_I_COORDINATE + 14] = mass_0;
+        const gic_real along_0_force_y = -t29;
+        inertia[QUARTER_CAR_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real alpha_x = t20 * t31;
+        motion[QUARTER_CAR_ALPHA_X] = alpha_x;
+        const gic_real along_1_bias = R(23.965) * (t16 * alpha_x - omega_x * (t18 * omega_x));
+        inertia[QUARTER_CAR_I_COORDINATE + 13] = along_1_bias;
+        const gic_real t37 = R(23.965) * (omega_x * (t16 * omega_x) + t18 * alpha_x) * t24;
+        const gic_real along_0_bias = t37 + (s_0_0 * (R(0.4469) * alpha_x) + along_1_bias * t25);
+        inertia[QUARTER_CAR_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -304,42 +416,52 @@ static int quarter_car_solve_arm(quarter_car *self, const gic_real *GIC_RESTRICT
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void quarter_car_residual_arm(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void quarter_car_residual_arm(const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring, bounce */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + R(0.2403881036540444) * motion[10];
-        const gic_real t2 = motion[2] + t1;
-        const gic_real t3 = R(-0.015515000000000057) + m0[2];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = R(0.01121887479261392) * motion[QUARTER_CAR_A_ZZ] + R(0.2403881036540444) *
+            motion[QUARTER_CAR_A_ZY];
+        const gic_real t2 = motion[QUARTER_CAR_C_Z] + t1;
+        const gic_real t3 = R(-0.015515000000000057) + m0[QUARTER_CAR_C_Z];
         const gic_real t4 = t2 - t3;
-        const gic_real t5 = R(0.01121887479261392) * motion[8] + R(0.2403881036540444) * motion[7];
+        const gic_real t5 = R(0.01121887479261392) * motion[QUARTER_CAR_A_YZ] + R(0.2403881036540444) *
+            motion[QUARTER_CAR_A_YY];
         const gic_real t6 = R(0.307086) + t5 - R(0.509778);
         const gic_real t7 = t4 * t4 + (R(4.633797184000037e-05) + t6 * t6) - x[0] * x[0];
-        const gic_real t8 = (R(0.006807200000000027) + GIC_FABS(t6) + GIC_FABS(t4)) * R(0.25954049989094174) + R(0.06335227878037951);
+        const gic_real t8 = (R(0.006807200000000027) + GIC_FABS(t6) + GIC_FABS(t4)) * R(0.25954049989094174) +
+            R(0.06335227878037951);
         const gic_real t9 = R(2.0) / t8;
-        const gic_real t10 = GIC_FABS((motion[2] - (R(-0.21300000000000008) + m0[2])) * R(3.852963219305648)) + GIC_FABS(R(0.5) * t7 * t9);
-        const gic_real t11 = t10 + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t12 = t11 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t13 = t9 * ((t5 * t4 - t1 * t6) * motion[24] - x[0]);
-        const gic_real t14 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t9));
-        const gic_real t15 = GIC_FABS(t13) / (t14 + R(1e-30)) + GIC_FABS(t9 * (t4 + (t3 - t2))) * R(0.12977024994547087);
-        const gic_real t16 = GIC_FABS(motion[12] - rate[0] * motion[24]) + GIC_FABS(R(3.852963219305648) * (motion[17] - rate[1]));
-        const gic_real t17 = R(3.852963219305648) * GIC_FABS(motion[17]);
-        const gic_real t18 = GIC_FABS(motion[12]);
+        const gic_real t10 = GIC_FABS((motion[QUARTER_CAR_C_Z] - (R(-0.21300000000000008) + m0[QUARTER_CAR_C_Z])) *
+            R(3.852963219305648)) + GIC_FABS(R(0.5) * t7 * t9);
+        const gic_real t11 = t10 + GIC_FABS(motion[QUARTER_CAR_A_ZY] * motion[QUARTER_CAR_A_ZY] +
+            motion[QUARTER_CAR_A_YY] * motion[QUARTER_CAR_A_YY] - R(1.0));
+        const gic_real t12 = t11 + GIC_FABS(-(motion[QUARTER_CAR_A_YZ] + motion[QUARTER_CAR_A_ZY])) +
+            GIC_FABS(motion[QUARTER_CAR_A_YY] - motion[QUARTER_CAR_A_ZZ]);
+        const gic_real t13 = t9 * ((t5 * t4 - t1 * t6) * motion[QUARTER_CAR_S + 0] - x[0]);
+        const gic_real t14 = GIC_FABS(motion[QUARTER_CAR_S + 0]) + GIC_FABS(-(x[0] * t9));
+        const gic_real t15 = GIC_FABS(t13) / (t14 + R(1e-30)) + GIC_FABS(t9 * (t4 + (t3 - t2))) *
+            R(0.12977024994547087);
+        const gic_real t16 = GIC_FABS(motion[QUARTER_CAR_OMEGA_X] - rate[0] * motion[QUARTER_CAR_S + 0]) +
+            GIC_FABS(R(3.852963219305648) * (motion[QUARTER_CAR_VELOCITY_Z] - rate[1]));
+        const gic_real t17 = R(3.852963219305648) * GIC_FABS(motion[QUARTER_CAR_VELOCITY_Z]);
+        const gic_real t18 = GIC_FABS(motion[QUARTER_CAR_OMEGA_X]);
         const gic_real t19 = t14 * GIC_FABS(rate[0]);
         const gic_real t20 = R(7.705926438611296) * GIC_FABS(rate[1]);
         const gic_real t21 = t15 + t16 / (R(1e-30) + (t17 + t18 + t19 + t20));
-        const gic_real t22 = t5 * motion[12];
-        const gic_real t23 = motion[17] + t22 - m0[17];
-        const gic_real t24 = t1 * motion[12];
-        const gic_real t25 = t4 * (t5 * motion[18] - motion[12] * t24) - t6 * (motion[12] * t22 + t1 * motion[18]);
+        const gic_real t22 = t5 * motion[QUARTER_CAR_OMEGA_X];
+        const gic_real t23 = motion[QUARTER_CAR_VELOCITY_Z] + t22 - m0[QUARTER_CAR_VELOCITY_Z];
+        const gic_real t24 = t1 * motion[QUARTER_CAR_OMEGA_X];
+        const gic_real t25 = t4 * (t5 * motion[QUARTER_CAR_ALPHA_X] - motion[QUARTER_CAR_OMEGA_X] * t24) - t6 *
+            (motion[QUARTER_CAR_OMEGA_X] * t22 + t1 * motion[QUARTER_CAR_ALPHA_X]);
         const gic_real t26 = t23 * t23 + t24 * t24 + t25 - rate[0] * rate[0];
-        const gic_real t27 = R(3.852963219305648) * GIC_FABS(m0[17]);
-        const gic_real t28 = t17 * t17 + t18 * t18 + GIC_FABS(motion[18]) + t27 * t27;
+        const gic_real t27 = R(3.852963219305648) * GIC_FABS(m0[QUARTER_CAR_VELOCITY_Z]);
+        const gic_real t28 = t17 * t17 + t18 * t18 + GIC_FABS(motion[QUARTER_CAR_ALPHA_X]) + t27 * t27;
         const gic_real t29 = GIC_FABS(t26 * t9) / (R(1e-30) + (t28 + t19 * t19 + t20 * t20));
         const gic_real t30 = t21 + t29;
         worst[0] = t12;
@@ -356,8 +478,9 @@ static const gic_real quarter_car_k_wheel[1][1] = {
 /* Class 'wheel': 6 unknowns of wheel.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
@@ -365,41 +488,45 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = R(0.49375935710120966) * m1[7];
-        const gic_real t2 = R(0.49375935710120966) * m1[10];
-        const gic_real t3 = R(0.021117699999999906) + m0[2];
-        const gic_real t4 = R(-0.1587710000000001) + m0[2];
-        const gic_real t5 = t1 + R(0.307086);
-        motion[1] = t5;
-        const gic_real t6 = m1[2] + t2;
-        motion[2] = t6;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = R(0.4527638) - t5;
-        const gic_real t11 = t3 - t6;
-        const gic_real t12 = R(0.448437) - t5;
-        const gic_real t13 = t4 - t6;
-        const gic_real t14 = R(-0.1394133303209898) * t7 - R(0.21526024724178433) * t8;
-        const gic_real t15 = rate[0] + rate[1] * t8;
-        motion[17] = t15;
+        const gic_real t1 = R(0.49375935710120966) * m1[QUARTER_CAR_A_YY];
+        const gic_real t2 = R(0.49375935710120966) * m1[QUARTER_CAR_A_ZY];
+        const gic_real t3 = R(0.021117699999999906) + m0[QUARTER_CAR_C_Z];
+        const gic_real t4 = R(-0.1587710000000001) + m0[QUARTER_CAR_C_Z];
+        const gic_real c_y = t1 + R(0.307086);
+        motion[QUARTER_CAR_C_Y] = c_y;
+        const gic_real c_z = m1[QUARTER_CAR_C_Z] + t2;
+        motion[QUARTER_CAR_C_Z] = c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[QUARTER_CAR_S + 0] * t2;
+        const gic_real s_1_5 = m1[QUARTER_CAR_S + 0] * t1;
+        motion[QUARTER_CAR_S + 11] = s_1_5;
+        const gic_real t9 = m1[QUARTER_CAR_OMEGA_X] * (m1[QUARTER_CAR_OMEGA_X] * t1) + m1[QUARTER_CAR_ALPHA_X] * t2;
+        /* pose, in closed form */
+        const gic_real t10 = R(0.4527638) - c_y;
+        const gic_real t11 = t3 - c_z;
+        const gic_real t12 = R(0.448437) - c_y;
+        const gic_real t13 = t4 - c_z;
+        const gic_real t14 = R(-0.1394133303209898) * t7 - R(0.21526024724178433) * s_1_5;
+        const gic_real velocity_z = rate[0] + rate[1] * s_1_5;
+        motion[QUARTER_CAR_VELOCITY_Z] = velocity_z;
         const gic_real t16 = t10 * t10 + (t11 * t11 + R(0.0035428684840000005));
         const gic_real t17 = R(-0.1394133303209898) * t10 + (R(0.21526024724178433) * t11 + R(-0.05753123686771912));
         const gic_real t18 = R(-0.1394133303209898) * t11 - R(0.21526024724178433) * t10;
         const gic_real t19 = R(-0.012812720436325488) - R(0.9665541626242249) * t11;
         const gic_real t20 = R(0.9665541626242249) * t10 - R(0.008298160247365955);
-        const gic_real t21 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t21;
+        const gic_real acceleration_z = m1[QUARTER_CAR_ALPHA_X] * t1 - m1[QUARTER_CAR_OMEGA_X] *
+            (m1[QUARTER_CAR_OMEGA_X] * t2);
+        motion[QUARTER_CAR_ACCELERATION_Z] = acceleration_z;
         const gic_real t22 = rate[1] * t7;
-        const gic_real t23 = t15 - m0[17];
-        const gic_real t24 = -t9;
-        motion[22] = t24;
-        const gic_real t25 = -t7;
-        motion[34] = t25;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t23 = velocity_z - m0[QUARTER_CAR_VELOCITY_Z];
+        const gic_real acceleration_y = -t9;
+        motion[QUARTER_CAR_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[QUARTER_CAR_S + 10] = s_1_4;
         const gic_real t26 = R(0.5) * (R(0.04548219048831004) + t16);
-        const gic_real t27 = -t22;
-        motion[16] = t27;
+        const gic_real velocity_y = -t22;
+        motion[QUARTER_CAR_VELOCITY_Y] = velocity_y;
         const gic_real t28 = R(4.311654514671526e-08) + t17;
         const gic_real t29 = t18 * t18 + (t20 * t20 + t19 * t19);
         const gic_real t30 = t26 - t17 * t28;
@@ -416,8 +543,9 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t37 = R(0.21526024724178433) * t35 + t11 * t36 - t20 * t34;
         const gic_real t38 = R(-0.1394133303209898) * t35 + t10 * t36 - t19 * t34;
         const gic_real t39 = R(0.9665541626242249) * t35 + R(-0.059522000000000005) * t36 - t18 * t34;
-        const gic_real t40 = t37 + (t6 - t3);
-        const gic_real t41 = t38 + (t5 - R(0.4527638));
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t40 = t37 + (c_z - t3);
+        const gic_real t41 = t38 + (c_y - R(0.4527638));
         const gic_real t42 = R(0.21526024724178433) * t38 - R(-0.1394133303209898) * t37;
         const gic_real t43 = R(-0.21475700000000003) * t39 + (t13 * t37 + t12 * t38);
         const gic_real t44 = t39 + R(0.059522000000000005);
@@ -426,8 +554,9 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t47 = t38 * t40 - t37 * t41;
         const gic_real t48 = t39 * t41 - t38 * t44;
         const gic_real t49 = t37 * t44 - t39 * t40;
-        const gic_real t50 = t7 * t41 - t8 * t40;
-        const gic_real t51 = R(0.5) * (t12 * t12 + (t13 * t13 + R(-0.07206227845580002))) - R(0.29106179871846666) * t43;
+        const gic_real t50 = t7 * t41 - s_1_5 * t40;
+        const gic_real t51 = R(0.5) * (t12 * t12 + (t13 * t13 + R(-0.07206227845580002))) - R(0.29106179871846666) *
+            t43;
         const gic_real t52 = R(8.573627050492615) * t43;
         const gic_real t53 = t47 * t46 - t48 * t42;
         const gic_real t54 = t49 * t42 - t47 * t45;
@@ -452,41 +581,50 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t69 = t38 * t65 - t37 * t64;
         const gic_real t70 = t66 + R(0.29106179871846666) * t39;
         const gic_real t71 = t37 * t66 - t39 * t65;
-        const gic_real t72 = t67 + (t5 - R(0.448437));
+        const gic_real t72 = t67 + (c_y - R(0.448437));
         const gic_real t73 = t39 * t64 - t38 * t66;
-        const gic_real t74 = t68 + (t6 - t4);
-        const gic_real t75 = R(-7.5372227832688194) * t69 + (R(-6.332169372123424) * t66 + R(-0.1498258474327685) * t39);
-        motion[3] = t75;
+        const gic_real t74 = t68 + (c_z - t4);
+        const gic_real a_xx = R(-7.5372227832688194) * t69 + (R(-6.332169372123424) * t66 + R(-0.1498258474327685) *
+            t39);
+        motion[QUARTER_CAR_A_XX] = a_xx;
         const gic_real t76 = t70 + R(0.21475700000000003);
-        const gic_real t77 = R(-18.07838873614245) * t71 + (R(2.588574822512031) * t64 + R(-0.608667505195622) * t38);
-        motion[7] = t77;
-        const gic_real t78 = R(-18.07838873614245) * t73 + (R(2.588574822512031) * t65 + R(-0.608667505195622) * t37);
-        motion[10] = t78;
+        const gic_real a_yy = R(-18.07838873614245) * t71 + (R(2.588574822512031) * t64 + R(-0.608667505195622) * t38);
+        motion[QUARTER_CAR_A_YY] = a_yy;
+        const gic_real a_zy = R(-18.07838873614245) * t73 + (R(2.588574822512031) * t65 + R(-0.608667505195622) * t37);
+        motion[QUARTER_CAR_A_ZY] = a_zy;
         const gic_real t79 = t70 * t72 - t67 * t76;
         const gic_real t80 = t68 * t76 - t70 * t74;
         const gic_real t81 = t67 * t74 - t68 * t72;
-        const gic_real t82 = t7 * t72 - t8 * t74;
-        const gic_real t83 = R(-18.07838873614245) * t69 + (R(2.588574822512031) * t66 + R(-0.608667505195622) * t39);
-        motion[4] = t83;
-        const gic_real t84 = R(-7.5372227832688194) * t71 + (R(-6.332169372123424) * t64 + R(-0.1498258474327685) * t38);
-        motion[6] = t84;
+        const gic_real t82 = t7 * t72 - s_1_5 * t74;
+        const gic_real a_xy = R(-18.07838873614245) * t69 + (R(2.588574822512031) * t66 + R(-0.608667505195622) * t39);
+        motion[QUARTER_CAR_A_XY] = a_xy;
+        const gic_real a_yx = R(-7.5372227832688194) * t71 + (R(-6.332169372123424) * t64 + R(-0.1498258474327685) *
+            t38);
+        motion[QUARTER_CAR_A_YX] = a_yx;
         const gic_real t85 = t81 * t55 + (t79 * t54 + t80 * t53);
-        const gic_real t86 = R(-7.5372227832688194) * t73 + (R(-6.332169372123424) * t65 + R(-0.1498258474327685) * t37);
-        motion[9] = t86;
-        const gic_real t87 = R(-4.242021150632485) * t69 + (R(0.21916659821076587) * t66 + R(2.8601928491017183) * t39);
-        motion[5] = t87;
-        const gic_real t88 = R(-4.242021150632485) * t71 + (R(0.21916659821076587) * t64 + R(2.8601928491017183) * t38);
-        motion[8] = t88;
-        const gic_real t89 = R(-4.242021150632485) * t73 + (R(0.21916659821076587) * t65 + R(2.8601928491017183) * t37);
-        motion[11] = t89;
+        const gic_real a_zx = R(-7.5372227832688194) * t73 + (R(-6.332169372123424) * t65 + R(-0.1498258474327685) *
+            t37);
+        motion[QUARTER_CAR_A_ZX] = a_zx;
+        const gic_real a_xz = R(-4.242021150632485) * t69 + (R(0.21916659821076587) * t66 + R(2.8601928491017183) *
+            t39);
+        motion[QUARTER_CAR_A_XZ] = a_xz;
+        const gic_real a_yz = R(-4.242021150632485) * t71 + (R(0.21916659821076587) * t64 + R(2.8601928491017183) *
+            t38);
+        motion[QUARTER_CAR_A_YZ] = a_yz;
+        const gic_real a_zz = R(-4.242021150632485) * t73 + (R(0.21916659821076587) * t65 + R(2.8601928491017183) *
+            t37);
+        motion[QUARTER_CAR_A_ZZ] = a_zz;
         const gic_real t90 = R(1.0) / t85;
-        const gic_real t91 = R(2.8083995) * t77;
-        const gic_real t92 = t86 * (R(0.12192999999999987) * t86) + (R(4.7728205) + t78 * (R(2.8083995) * t78));
-        const gic_real t93 = R(0.12192999999999987) * t75;
-        const gic_real t94 = R(2.8083995) * t83;
-        const gic_real t95 = R(0.12192999999999987) * t84;
-        const gic_real t96 = R(-0.004825999999999997) * t84 + (R(0.09182100000000004) * t88 + R(0.08910630000000008) * t77);
-        const gic_real t97 = R(-0.004825999999999997) * t75 + (R(0.09182100000000004) * t87 + R(0.08910630000000008) * t83);
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t91 = R(2.8083995) * a_yy;
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(2.8083995) * a_zy));
+        const gic_real t93 = R(0.12192999999999987) * a_xx;
+        const gic_real t94 = R(2.8083995) * a_xy;
+        const gic_real t95 = R(0.12192999999999987) * a_yx;
+        const gic_real t96 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + R(0.08910630000000008) *
+            a_yy);
+        const gic_real t97 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + R(0.08910630000000008) *
+            a_xy);
         const gic_real t98 = (t81 * t45 - t80 * t42) * t90;
         const gic_real t99 = (t80 * t46 - t79 * t45) * t90;
         const gic_real t100 = (t79 * t42 - t81 * t46) * t90;
@@ -496,100 +634,102 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
         const gic_real t104 = t54 * t90;
         const gic_real t105 = t55 * t90;
         const gic_real t106 = t53 * t90;
-        const gic_real t107 = t84 * t95 + (R(4.7728205) + t77 * t91);
-        const gic_real t108 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t89 + R(0.08910630000000008) * t78);
-        const gic_real t109 = t14 * t101 + (t104 * t82 + t98 * t50);
-        motion[32] = t109;
-        const gic_real t110 = t14 * t102 + (t105 * t82 + t99 * t50);
-        motion[30] = t110;
-        const gic_real t111 = t14 * t103 + (t106 * t82 + t100 * t50);
-        motion[31] = t111;
-        const gic_real t112 = t75 * t93 + (R(4.7728205) + t83 * t94);
-        const gic_real t113 = t78 * t94 + t86 * t93;
-        const gic_real t114 = t77 * t94 + t84 * t93;
-        const gic_real t115 = rate[1] * t109;
-        motion[14] = t115;
-        const gic_real t116 = t78 * t91 + t86 * t95;
-        const gic_real t117 = rate[1] * t110;
-        motion[12] = t117;
-        const gic_real t118 = t109 * t97 - t7 - t110 * t108;
-        const gic_real t119 = rate[1] * t111;
-        motion[13] = t119;
-        const gic_real t120 = t111 * t108 - t109 * t96;
-        const gic_real t121 = t39 * t115 - t37 * t117;
-        const gic_real t122 = t70 * t115 - t68 * t117;
-        const gic_real t123 = t68 * t119 - t67 * t115;
-        const gic_real t124 = t67 * t117 - t70 * t119;
-        const gic_real t125 = t37 * t119 - t38 * t115;
-        const gic_real t126 = t38 * t117 - t39 * t119;
+        const gic_real t107 = a_yx * t95 + (R(4.7728205) + a_yy * t91);
+        const gic_real t108 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz +
+            R(0.08910630000000008) * a_zy);
+        const gic_real s_1_2 = t14 * t101 + (t104 * t82 + t98 * t50);
+        motion[QUARTER_CAR_S + 8] = s_1_2;
+        const gic_real s_1_0 = t14 * t102 + (t105 * t82 + t99 * t50);
+        motion[QUARTER_CAR_S + 6] = s_1_0;
+        const gic_real s_1_1 = t14 * t103 + (t106 * t82 + t100 * t50);
+        motion[QUARTER_CAR_S + 7] = s_1_1;
+        const gic_real t112 = a_xx * t93 + (R(4.7728205) + a_xy * t94);
+        const gic_real t113 = a_zy * t94 + a_zx * t93;
+        const gic_real t114 = a_yy * t94 + a_yx * t93;
+        const gic_real omega_z = rate[1] * s_1_2;
+        motion[QUARTER_CAR_OMEGA_Z] = omega_z;
+        const gic_real t116 = a_zy * t91 + a_zx * t95;
+        const gic_real omega_x = rate[1] * s_1_0;
+        motion[QUARTER_CAR_OMEGA_X] = omega_x;
+        const gic_real t118 = s_1_2 * t97 - t7 - s_1_0 * t108;
+        const gic_real omega_y = rate[1] * s_1_1;
+        motion[QUARTER_CAR_OMEGA_Y] = omega_y;
+        const gic_real t120 = s_1_1 * t108 - s_1_2 * t96;
+        const gic_real t121 = t39 * omega_z - t37 * omega_x;
+        const gic_real t122 = t70 * omega_z - t68 * omega_x;
+        const gic_real t123 = t68 * omega_y - t67 * omega_z;
+        const gic_real t124 = t67 * omega_x - t70 * omega_y;
+        const gic_real t125 = t37 * omega_y - t38 * omega_z;
+        const gic_real t126 = t38 * omega_x - t39 * omega_y;
         const gic_real t127 = t121 - t22;
         const gic_real t128 = t122 - t22;
-        const gic_real t129 = t117 * t113 + (t115 * t92 + t119 * t116);
+        const gic_real t129 = omega_x * t113 + (omega_z * t92 + omega_y * t116);
         const gic_real t130 = t124 + t23;
-        const gic_real t131 = t74 * (t117 * t122 - t119 * t123) + t72 * (t115 * t123 - t117 * t124);
-        const gic_real t132 = t9 * t72 - t21 * t74 - t123 * t123 - t130 * t130;
+        const gic_real t131 = t74 * (omega_x * t122 - omega_y * t123) + t72 * (omega_z * t123 - omega_x * t124);
+        const gic_real t132 = t9 * t72 - acceleration_z * t74 - t123 * t123 - t130 * t130;
         const gic_real t133 = t23 + t126;
-        const gic_real t134 = t119 * t126 - t115 * t121;
-        const gic_real t135 = t117 * t121 - t119 * t125;
-        const gic_real t136 = t115 * t125 - t117 * t126;
-        const gic_real t137 = t9 * t41 - t21 * t40 - t125 * t125 - t133 * t133;
-        const gic_real t138 = t117 * t114 + (t115 * t116 + t119 * t107);
-        const gic_real t139 = t117 * t112 + (t115 * t113 + t119 * t114);
-        const gic_real t140 = t132 - t128 * t128 - t76 * (t119 * t124 - t115 * t122);
-        const gic_real t141 = R(-0.1394133303209898) * t9 - R(0.21526024724178433) * t21 - R(0.21526024724178433) * t135 - (R(-0.1394133303209898) * t136 + R(0.9665541626242249) * t134);
+        const gic_real t134 = omega_y * t126 - omega_z * t121;
+        const gic_real t135 = omega_x * t121 - omega_y * t125;
+        const gic_real t136 = omega_z * t125 - omega_x * t126;
+        const gic_real t137 = t9 * t41 - acceleration_z * t40 - t125 * t125 - t133 * t133;
+        const gic_real t138 = omega_x * t114 + (omega_z * t116 + omega_y * t107);
+        const gic_real t139 = omega_x * t112 + (omega_z * t113 + omega_y * t114);
+        const gic_real t140 = t132 - t128 * t128 - t76 * (omega_y * t124 - omega_z * t122);
+        const gic_real t141 = R(-0.1394133303209898) * t9 - R(0.21526024724178433) * acceleration_z -
+            R(0.21526024724178433) * t135 - (R(-0.1394133303209898) * t136 + R(0.9665541626242249) * t134);
         const gic_real t142 = t137 - t127 * t127 - t44 * t134 - (t40 * t135 + t41 * t136);
-        const gic_real t143 = t115 * t97 - t117 * t108;
-        const gic_real t144 = t119 * t108 - t115 * t96;
-        const gic_real t145 = t117 * t96 - t119 * t97;
+        const gic_real t143 = omega_z * t97 - omega_x * t108;
+        const gic_real t144 = omega_y * t108 - omega_z * t96;
+        const gic_real t145 = omega_x * t96 - omega_y * t97;
         const gic_real t146 = t140 - t131;
-        const gic_real t147 = t8 + t110 * t96 - t111 * t97;
-        const gic_real t148 = t110 * t112 + (t109 * t113 + t111 * t114);
-        const gic_real t149 = t110 * t114 + (t109 * t116 + t111 * t107);
-        const gic_real t150 = t99 * t142 + (t105 * t146 + t102 * t141);
-        motion[18] = t150;
-        const gic_real t151 = t100 * t142 + (t106 * t146 + t103 * t141);
-        motion[19] = t151;
-        const gic_real t152 = t98 * t142 + (t104 * t146 + t101 * t141);
-        motion[20] = t152;
-        const gic_real t153 = t110 * t113 + (t109 * t92 + t111 * t116);
-        const gic_real t154 = R(90.555) * t120;
-        inertia[22] = t154;
-        const gic_real t155 = ahead[0] * (GIC_FABS(t115) + (GIC_FABS(t117) + GIC_FABS(t119)));
-        const gic_real t156 = t150 * t96 + (t21 + t117 * t143 - t119 * t144);
-        const gic_real t157 = t5 + t96;
-        const gic_real t158 = t152 * t97 + (t115 * t144 - t9 - t117 * t145);
-        const gic_real t159 = t152 * t92 + (t117 * t138 - t119 * t139) + (t151 * t116 + t150 * t113);
+        const gic_real t147 = s_1_5 + s_1_0 * t96 - s_1_1 * t97;
+        const gic_real t148 = s_1_0 * t112 + (s_1_2 * t113 + s_1_1 * t114);
+        const gic_real t149 = s_1_0 * t114 + (s_1_2 * t116 + s_1_1 * t107);
+        const gic_real alpha_x = t99 * t142 + (t105 * t146 + t102 * t141);
+        motion[QUARTER_CAR_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t100 * t142 + (t106 * t146 + t103 * t141);
+        motion[QUARTER_CAR_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t98 * t142 + (t104 * t146 + t101 * t141);
+        motion[QUARTER_CAR_ALPHA_Z] = alpha_z;
+        const gic_real t153 = s_1_0 * t113 + (s_1_2 * t92 + s_1_1 * t116);
+        const gic_real along_1_force_x = R(90.555) * t120;
+        inertia[QUARTER_CAR_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t155 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real t156 = alpha_x * t96 + (acceleration_z + omega_x * t143 - omega_y * t144);
+        const gic_real t157 = c_y + t96;
+        const gic_real t158 = alpha_z * t97 + (omega_z * t144 - t9 - omega_x * t145);
+        const gic_real t159 = alpha_z * t92 + (omega_x * t138 - omega_y * t139) + (alpha_y * t116 + alpha_x * t113);
         if (!(R(-334.7683100636245) * t85 - t155 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t160 = t152 * t116 + (t115 * t139 - t117 * t129) + (t151 * t107 + t150 * t114);
-        const gic_real t161 = t151 * t108 + (t119 * t145 - t115 * t143) - t152 * t96;
-        const gic_real t162 = t152 * t113 + (t119 * t129 - t115 * t138) + (t151 * t114 + t150 * t112);
-        const gic_real t163 = R(90.555) * (t156 - t151 * t97);
-        inertia[21] = t163;
-        const gic_real t164 = R(90.555) * t118;
-        inertia[23] = t164;
-        const gic_real t165 = R(90.555) * t147;
-        inertia[24] = t165;
-        inertia[30] = t165;
-        const gic_real t166 = t6 + t108;
-        const gic_real t167 = t109 * t153 + t111 * t149 + (t110 * t148 + t120 * t154);
+        const gic_real t160 = alpha_z * t116 + (omega_z * t139 - omega_x * t129) + (alpha_y * t107 + alpha_x * t114);
+        const gic_real t161 = alpha_y * t108 + (omega_y * t145 - omega_z * t143) - alpha_z * t96;
+        const gic_real t162 = alpha_z * t113 + (omega_y * t129 - omega_z * t138) + (alpha_y * t114 + alpha_x * t112);
+        const gic_real along_0_bias = R(90.555) * (t156 - alpha_y * t97);
+        inertia[QUARTER_CAR_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_force_y = R(90.555) * t118;
+        inertia[QUARTER_CAR_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t147;
+        inertia[QUARTER_CAR_I_COORDINATE + 9] = along_1_force_z;
+        inertia[QUARTER_CAR_I_COORDINATE + 15] = along_1_force_z;
+        const gic_real t166 = c_z + t108;
+        const gic_real t167 = s_1_2 * t153 + s_1_1 * t149 + (s_1_0 * t148 + t120 * along_1_force_x);
         const gic_real t168 = R(-0.035559999999999994) + t97;
-        const gic_real t169 = t148 + t157 * t165 - t166 * t164;
-        inertia[25] = t169;
-        const gic_real t170 = R(90.555) * t157;
-        inertia[18] = t170;
-        const gic_real t171 = t149 + t166 * t154 - t168 * t165;
-        inertia[26] = t171;
-        const gic_real t172 = t163 * t147 + R(90.555) * (t158 - t150 * t108) * t118;
-        const gic_real t173 = R(90.555) * t161 * t120 + (t110 * t162 + (t109 * t159 + t111 * t160));
-        const gic_real t174 = t168 * t164 + (t153 - t157 * t154);
-        inertia[27] = t174;
-        const gic_real t175 = t167 + (t147 * t165 + t118 * t164);
-        inertia[31] = t175;
-        const gic_real t176 = -(R(90.555) * t168);
-        inertia[19] = t176;
-        const gic_real t177 = t172 + t173;
-        inertia[28] = t177;
+        const gic_real along_1_moment_x = t148 + t157 * along_1_force_z - t166 * along_1_force_y;
+        inertia[QUARTER_CAR_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_0_moment_x = R(90.555) * t157;
+        inertia[QUARTER_CAR_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_1_moment_y = t149 + t166 * along_1_force_x - t168 * along_1_force_z;
+        inertia[QUARTER_CAR_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real t172 = along_0_bias * t147 + R(90.555) * (t158 - alpha_x * t108) * t118;
+        const gic_real t173 = R(90.555) * t161 * t120 + (s_1_0 * t162 + (s_1_2 * t159 + s_1_1 * t160));
+        const gic_real along_1_moment_z = t168 * along_1_force_y + (t153 - t157 * along_1_force_x);
+        inertia[QUARTER_CAR_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real mass_2 = t167 + (t147 * along_1_force_z + t118 * along_1_force_y);
+        inertia[QUARTER_CAR_I_COORDINATE + 16] = mass_2;
+        const gic_real along_0_moment_y = -(R(90.555) * t168);
+        inertia[QUARTER_CAR_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_1_bias = t172 + t173;
+        inertia[QUARTER_CAR_I_COORDINATE + 13] = along_1_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -600,99 +740,142 @@ static int quarter_car_solve_wheel(quarter_car *self, const gic_real *GIC_RESTRI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k, const quarter_car_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void quarter_car_residual_wheel(const gic_real *GIC_RESTRICT k,
+    const quarter_car_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* carriage */
     const gic_real *const m1 = links->known[1]; /* arm */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.49375935710120966) * m1[7];
-        const gic_real t2 = R(0.49375935710120966) * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + R(0.307086)))) + GIC_FABS(R(2.928075656552032) * (motion[2] - (m1[2] + t2)));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (R(0.03459480000000004) * motion[10] + R(-0.1402588) * motion[9]);
-        const gic_real t5 = motion[2] + t4;
-        const gic_real t6 = R(-0.1587710000000001) + m0[2];
+        const gic_real t1 = R(0.49375935710120966) * m1[QUARTER_CAR_A_YY];
+        const gic_real t2 = R(0.49375935710120966) * m1[QUARTER_CAR_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[QUARTER_CAR_C_Y] - (t1 + R(0.307086)))) +
+            GIC_FABS(R(2.928075656552032) * (motion[QUARTER_CAR_C_Z] - (m1[QUARTER_CAR_C_Z] + t2)));
+        const gic_real t4 = R(0.10177780000000003) * motion[QUARTER_CAR_A_ZZ] + (R(0.03459480000000004) *
+            motion[QUARTER_CAR_A_ZY] + R(-0.1402588) * motion[QUARTER_CAR_A_ZX]);
+        const gic_real t5 = motion[QUARTER_CAR_C_Z] + t4;
+        const gic_real t6 = R(-0.1587710000000001) + m0[QUARTER_CAR_C_Z];
         const gic_real t7 = t5 - t6;
-        const gic_real t8 = R(0.10177780000000003) * motion[8] + (R(0.03459480000000004) * motion[7] + R(-0.1402588) * motion[6]);
-        const gic_real t9 = motion[1] + t8 - R(0.448437);
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (R(0.03459480000000004) * motion[4] + R(-0.1402588) * motion[3]);
+        const gic_real t8 = R(0.10177780000000003) * motion[QUARTER_CAR_A_YZ] + (R(0.03459480000000004) *
+            motion[QUARTER_CAR_A_YY] + R(-0.1402588) * motion[QUARTER_CAR_A_YX]);
+        const gic_real t9 = motion[QUARTER_CAR_C_Y] + t8 - R(0.448437);
+        const gic_real t10 = R(0.10177780000000003) * motion[QUARTER_CAR_A_XZ] + (R(0.03459480000000004) *
+            motion[QUARTER_CAR_A_XY] + R(-0.1402588) * motion[QUARTER_CAR_A_XX]);
         const gic_real t11 = R(-0.035559999999999994) + t10 - R(-0.250317);
         const gic_real t12 = t7 * t7 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t7)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (R(-0.07099299999999997) * motion[10] + R(-0.017475199999999996) * motion[9]);
-        const gic_real t16 = motion[2] + t15;
-        const gic_real t17 = R(0.021117699999999906) + m0[2];
+        const gic_real t15 = R(0.33360360000000006) * motion[QUARTER_CAR_A_ZZ] + (R(-0.07099299999999997) *
+            motion[QUARTER_CAR_A_ZY] + R(-0.017475199999999996) * motion[QUARTER_CAR_A_ZX]);
+        const gic_real t16 = motion[QUARTER_CAR_C_Z] + t15;
+        const gic_real t17 = R(0.021117699999999906) + m0[QUARTER_CAR_C_Z];
         const gic_real t18 = t16 - t17;
-        const gic_real t19 = R(0.33360360000000006) * motion[8] + (R(-0.07099299999999997) * motion[7] + R(-0.017475199999999996) * motion[6]);
-        const gic_real t20 = motion[1] + t19 - R(0.4527638);
-        const gic_real t21 = R(0.33360360000000006) * motion[5] + (R(-0.07099299999999997) * motion[4] + R(-0.017475199999999996) * motion[3]);
+        const gic_real t19 = R(0.33360360000000006) * motion[QUARTER_CAR_A_YZ] + (R(-0.07099299999999997) *
+            motion[QUARTER_CAR_A_YY] + R(-0.017475199999999996) * motion[QUARTER_CAR_A_YX]);
+        const gic_real t20 = motion[QUARTER_CAR_C_Y] + t19 - R(0.4527638);
+        const gic_real t21 = R(0.33360360000000006) * motion[QUARTER_CAR_A_XZ] + (R(-0.07099299999999997) *
+            motion[QUARTER_CAR_A_XY] + R(-0.017475199999999996) * motion[QUARTER_CAR_A_XX]);
         const gic_real t22 = R(-0.035559999999999994) + t21 - R(-0.095082);
         const gic_real t23 = t18 * t18 + (t20 * t20 + t22 * t22) - R(0.07115456010869);
         const gic_real t24 = R(0.3415212300824065) * (GIC_FABS(t22) + GIC_FABS(t20) + GIC_FABS(t18));
         const gic_real t25 = R(2.0) / (t24 + R(0.08973613759331868));
         const gic_real t26 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t23 * t25);
-        const gic_real t27 = R(0.21526024724178433) * t18 + (R(-0.1394133303209898) * t20 + R(0.9665541626242249) * t22) - R(4.311654514671526e-08);
-        const gic_real t28 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t29 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t27 = R(0.21526024724178433) * t18 + (R(-0.1394133303209898) * t20 + R(0.9665541626242249) *
+            t22) - R(4.311654514671526e-08);
+        const gic_real t28 = motion[QUARTER_CAR_A_ZX] * motion[QUARTER_CAR_A_ZX] + (motion[QUARTER_CAR_A_YX] *
+            motion[QUARTER_CAR_A_YX] + motion[QUARTER_CAR_A_XX] * motion[QUARTER_CAR_A_XX]) - R(1.0);
+        const gic_real t29 = motion[QUARTER_CAR_A_ZY] * motion[QUARTER_CAR_A_ZY] + (motion[QUARTER_CAR_A_YY] *
+            motion[QUARTER_CAR_A_YY] + motion[QUARTER_CAR_A_XY] * motion[QUARTER_CAR_A_XY]) - R(1.0);
         const gic_real t30 = t26 + GIC_FABS(t27 * R(2.559750693852431)) + GIC_FABS(t28) + GIC_FABS(t29);
-        const gic_real t31 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t32 = t30 + t31 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t33 = t32 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t34 = t33 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t31 = GIC_FABS(motion[QUARTER_CAR_A_ZX] * motion[QUARTER_CAR_A_ZY] + (motion[QUARTER_CAR_A_YX] *
+            motion[QUARTER_CAR_A_YY] + motion[QUARTER_CAR_A_XX] * motion[QUARTER_CAR_A_XY]));
+        const gic_real t32 = t30 + t31 + GIC_FABS(motion[QUARTER_CAR_A_YX] * motion[QUARTER_CAR_A_ZY] -
+            motion[QUARTER_CAR_A_YY] * motion[QUARTER_CAR_A_ZX] - motion[QUARTER_CAR_A_XZ]);
+        const gic_real t33 = t32 + GIC_FABS(motion[QUARTER_CAR_A_XY] * motion[QUARTER_CAR_A_ZX] -
+            motion[QUARTER_CAR_A_XX] * motion[QUARTER_CAR_A_ZY] - motion[QUARTER_CAR_A_YZ]);
+        const gic_real t34 = t33 + GIC_FABS(motion[QUARTER_CAR_A_XX] * motion[QUARTER_CAR_A_YY] -
+            motion[QUARTER_CAR_A_XY] * motion[QUARTER_CAR_A_YX] - motion[QUARTER_CAR_A_ZZ]);
         const gic_real t35 = GIC_FABS(t14 * (t7 + (t6 - t5))) + GIC_FABS(t25 * (t18 + (t17 - t16)));
-        const gic_real t36 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
-        const gic_real t37 = (t8 * t7 - t4 * t9) * motion[30] + (t4 * t11 - t10 * t7) * motion[31];
-        const gic_real t38 = t37 + (t10 * t9 - t8 * t11) * motion[32] + t9 * motion[34];
-        const gic_real t39 = (t19 * t18 - t15 * t20) * motion[30] + (t15 * t22 - t21 * t18) * motion[31];
-        const gic_real t40 = t39 + (t21 * t20 - t19 * t22) * motion[32] + t20 * motion[34];
-        const gic_real t41 = t36 + GIC_FABS(t14 * (t38 + t7 * motion[35])) + GIC_FABS(t25 * (t40 + t18 * motion[35]));
-        const gic_real t42 = (R(0.21526024724178433) * t19 - R(-0.1394133303209898) * t15) * motion[30] + (R(0.9665541626242249) * t15 - R(0.21526024724178433) * t21) * motion[31];
-        const gic_real t43 = t42 + (R(-0.1394133303209898) * t21 - R(0.9665541626242249) * t19) * motion[32] + R(-0.1394133303209898) * motion[34];
-        const gic_real t44 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t45 = t44 + GIC_FABS(m1[24]);
-        const gic_real t46 = (t41 + GIC_FABS(R(2.559750693852431) * (t43 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t45);
-        const gic_real t47 = GIC_FABS(motion[12] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[1] * motion[31]);
-        const gic_real t48 = t47 + GIC_FABS(motion[14] - rate[1] * motion[32]) + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34]));
-        const gic_real t49 = t48 + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[0] - rate[1] * motion[35]));
-        const gic_real t50 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t51 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t36 = GIC_FABS(R(2.928075656552032) * (m1[QUARTER_CAR_S + 0] * t2 +
+            motion[QUARTER_CAR_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[QUARTER_CAR_S + 11] -
+            m1[QUARTER_CAR_S + 0] * t1));
+        const gic_real t37 = (t8 * t7 - t4 * t9) * motion[QUARTER_CAR_S + 6] + (t4 * t11 - t10 * t7) *
+            motion[QUARTER_CAR_S + 7];
+        const gic_real t38 = t37 + (t10 * t9 - t8 * t11) * motion[QUARTER_CAR_S + 8] + t9 * motion[QUARTER_CAR_S + 10];
+        const gic_real t39 = (t19 * t18 - t15 * t20) * motion[QUARTER_CAR_S + 6] + (t15 * t22 - t21 * t18) *
+            motion[QUARTER_CAR_S + 7];
+        const gic_real t40 = t39 + (t21 * t20 - t19 * t22) * motion[QUARTER_CAR_S + 8] + t20 *
+            motion[QUARTER_CAR_S + 10];
+        const gic_real t41 = t36 + GIC_FABS(t14 * (t38 + t7 * motion[QUARTER_CAR_S + 11])) + GIC_FABS(t25 * (t40 + t18 *
+            motion[QUARTER_CAR_S + 11]));
+        const gic_real t42 = (R(0.21526024724178433) * t19 - R(-0.1394133303209898) * t15) * motion[QUARTER_CAR_S + 6] +
+            (R(0.9665541626242249) * t15 - R(0.21526024724178433) * t21) * motion[QUARTER_CAR_S + 7];
+        const gic_real t43 = t42 + (R(-0.1394133303209898) * t21 - R(0.9665541626242249) * t19) *
+            motion[QUARTER_CAR_S + 8] + R(-0.1394133303209898) * motion[QUARTER_CAR_S + 10];
+        const gic_real t44 = R(2.928075656552032) * (GIC_FABS(motion[QUARTER_CAR_S + 10]) +
+            GIC_FABS(motion[QUARTER_CAR_S + 11])) + (GIC_FABS(motion[QUARTER_CAR_S + 6]) +
+            GIC_FABS(motion[QUARTER_CAR_S + 7]) + GIC_FABS(motion[QUARTER_CAR_S + 8]));
+        const gic_real t45 = t44 + GIC_FABS(m1[QUARTER_CAR_S + 0]);
+        const gic_real t46 = (t41 + GIC_FABS(R(2.559750693852431) * (t43 + R(0.21526024724178433) *
+            motion[QUARTER_CAR_S + 11]))) / (R(1e-30) + t45);
+        const gic_real t47 = GIC_FABS(motion[QUARTER_CAR_OMEGA_X] - rate[1] * motion[QUARTER_CAR_S + 6]) +
+            GIC_FABS(motion[QUARTER_CAR_OMEGA_Y] - rate[1] * motion[QUARTER_CAR_S + 7]);
+        const gic_real t48 = t47 + GIC_FABS(motion[QUARTER_CAR_OMEGA_Z] - rate[1] * motion[QUARTER_CAR_S + 8]) +
+            GIC_FABS(R(2.928075656552032) * (motion[QUARTER_CAR_VELOCITY_Y] - rate[1] * motion[QUARTER_CAR_S + 10]));
+        const gic_real t49 = t48 + GIC_FABS(R(2.928075656552032) * (motion[QUARTER_CAR_VELOCITY_Z] - rate[0] - rate[1] *
+            motion[QUARTER_CAR_S + 11]));
+        const gic_real t50 = R(2.928075656552032) * (GIC_FABS(motion[QUARTER_CAR_VELOCITY_Y]) +
+            GIC_FABS(motion[QUARTER_CAR_VELOCITY_Z]));
+        const gic_real t51 = GIC_FABS(motion[QUARTER_CAR_OMEGA_X]) + GIC_FABS(motion[QUARTER_CAR_OMEGA_Y]) +
+            GIC_FABS(motion[QUARTER_CAR_OMEGA_Z]);
         const gic_real t52 = R(8.784226969656096) * GIC_FABS(rate[0]);
         const gic_real t53 = t45 * GIC_FABS(rate[1]);
         const gic_real t54 = t35 * R(0.11384041002746884) + t46 + t49 / (R(1e-30) + (t50 + t51 + t52 + t53));
-        const gic_real t55 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t56 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t57 = t8 * motion[12] - t10 * motion[13];
-        const gic_real t58 = motion[17] + t57 - m0[17];
-        const gic_real t59 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t60 = motion[16] + t59;
-        const gic_real t61 = t4 * motion[13] - t8 * motion[14];
-        const gic_real t62 = motion[12] * t59 - motion[13] * t61 + (t8 * motion[18] - t10 * motion[19]);
-        const gic_real t63 = motion[14] * t61 - motion[12] * t57 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t64 = motion[13] * t57 - motion[14] * t59 + (t4 * motion[19] - t8 * motion[20]);
-        const gic_real t65 = t7 * (motion[23] + t62) + (t9 * (motion[22] + t63) + t11 * t64);
+        const gic_real t55 = R(2.928075656552032) * (m1[QUARTER_CAR_OMEGA_X] * (m1[QUARTER_CAR_OMEGA_X] * t1) +
+            m1[QUARTER_CAR_ALPHA_X] * t2 + motion[QUARTER_CAR_ACCELERATION_Y]);
+        const gic_real t56 = R(2.928075656552032) * (motion[QUARTER_CAR_ACCELERATION_Z] - (m1[QUARTER_CAR_ALPHA_X] *
+            t1 - m1[QUARTER_CAR_OMEGA_X] * (m1[QUARTER_CAR_OMEGA_X] * t2)));
+        const gic_real t57 = t8 * motion[QUARTER_CAR_OMEGA_X] - t10 * motion[QUARTER_CAR_OMEGA_Y];
+        const gic_real t58 = motion[QUARTER_CAR_VELOCITY_Z] + t57 - m0[QUARTER_CAR_VELOCITY_Z];
+        const gic_real t59 = t10 * motion[QUARTER_CAR_OMEGA_Z] - t4 * motion[QUARTER_CAR_OMEGA_X];
+        const gic_real t60 = motion[QUARTER_CAR_VELOCITY_Y] + t59;
+        const gic_real t61 = t4 * motion[QUARTER_CAR_OMEGA_Y] - t8 * motion[QUARTER_CAR_OMEGA_Z];
+        const gic_real t62 = motion[QUARTER_CAR_OMEGA_X] * t59 - motion[QUARTER_CAR_OMEGA_Y] * t61 + (t8 *
+            motion[QUARTER_CAR_ALPHA_X] - t10 * motion[QUARTER_CAR_ALPHA_Y]);
+        const gic_real t63 = motion[QUARTER_CAR_OMEGA_Z] * t61 - motion[QUARTER_CAR_OMEGA_X] * t57 + (t10 *
+            motion[QUARTER_CAR_ALPHA_Z] - t4 * motion[QUARTER_CAR_ALPHA_X]);
+        const gic_real t64 = motion[QUARTER_CAR_OMEGA_Y] * t57 - motion[QUARTER_CAR_OMEGA_Z] * t59 + (t4 *
+            motion[QUARTER_CAR_ALPHA_Y] - t8 * motion[QUARTER_CAR_ALPHA_Z]);
+        const gic_real t65 = t7 * (motion[QUARTER_CAR_ACCELERATION_Z] + t62) + (t9 *
+            (motion[QUARTER_CAR_ACCELERATION_Y] + t63) + t11 * t64);
         const gic_real t66 = t58 * t58 + (t60 * t60 + t61 * t61) + t65;
         const gic_real t67 = GIC_FABS(t55) + GIC_FABS(t56) + GIC_FABS(t66 * t14);
-        const gic_real t68 = t19 * motion[12] - t21 * motion[13];
-        const gic_real t69 = motion[17] + t68 - m0[17];
-        const gic_real t70 = t21 * motion[14] - t15 * motion[12];
-        const gic_real t71 = motion[16] + t70;
-        const gic_real t72 = t15 * motion[13] - t19 * motion[14];
-        const gic_real t73 = motion[12] * t70 - motion[13] * t72 + (t19 * motion[18] - t21 * motion[19]);
-        const gic_real t74 = motion[23] + t73;
-        const gic_real t75 = motion[14] * t72 - motion[12] * t68 + (t21 * motion[20] - t15 * motion[18]);
-        const gic_real t76 = motion[22] + t75;
-        const gic_real t77 = motion[13] * t68 - motion[14] * t70 + (t15 * motion[19] - t19 * motion[20]);
+        const gic_real t68 = t19 * motion[QUARTER_CAR_OMEGA_X] - t21 * motion[QUARTER_CAR_OMEGA_Y];
+        const gic_real t69 = motion[QUARTER_CAR_VELOCITY_Z] + t68 - m0[QUARTER_CAR_VELOCITY_Z];
+        const gic_real t70 = t21 * motion[QUARTER_CAR_OMEGA_Z] - t15 * motion[QUARTER_CAR_OMEGA_X];
+        const gic_real t71 = motion[QUARTER_CAR_VELOCITY_Y] + t70;
+        const gic_real t72 = t15 * motion[QUARTER_CAR_OMEGA_Y] - t19 * motion[QUARTER_CAR_OMEGA_Z];
+        const gic_real t73 = motion[QUARTER_CAR_OMEGA_X] * t70 - motion[QUARTER_CAR_OMEGA_Y] * t72 + (t19 *
+            motion[QUARTER_CAR_ALPHA_X] - t21 * motion[QUARTER_CAR_ALPHA_Y]);
+        const gic_real t74 = motion[QUARTER_CAR_ACCELERATION_Z] + t73;
+        const gic_real t75 = motion[QUARTER_CAR_OMEGA_Z] * t72 - motion[QUARTER_CAR_OMEGA_X] * t68 + (t21 *
+            motion[QUARTER_CAR_ALPHA_Z] - t15 * motion[QUARTER_CAR_ALPHA_X]);
+        const gic_real t76 = motion[QUARTER_CAR_ACCELERATION_Y] + t75;
+        const gic_real t77 = motion[QUARTER_CAR_OMEGA_Y] * t68 - motion[QUARTER_CAR_OMEGA_Z] * t70 + (t15 *
+            motion[QUARTER_CAR_ALPHA_Y] - t19 * motion[QUARTER_CAR_ALPHA_Z]);
         const gic_real t78 = t69 * t69 + (t71 * t71 + t72 * t72) + (t18 * t74 + (t20 * t76 + t22 * t77));
-        const gic_real t79 = (R(0.21526024724178433) * t74 + (R(-0.1394133303209898) * t76 + R(0.9665541626242249) * t77)) * R(2.559750693852431);
-        const gic_real t80 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t81 = R(2.928075656552032) * GIC_FABS(m0[17]);
+        const gic_real t79 = (R(0.21526024724178433) * t74 + (R(-0.1394133303209898) * t76 + R(0.9665541626242249) *
+            t77)) * R(2.559750693852431);
+        const gic_real t80 = R(2.928075656552032) * (GIC_FABS(motion[QUARTER_CAR_ACCELERATION_Y]) +
+            GIC_FABS(motion[QUARTER_CAR_ACCELERATION_Z])) + (GIC_FABS(motion[QUARTER_CAR_ALPHA_X]) +
+            GIC_FABS(motion[QUARTER_CAR_ALPHA_Y]) + GIC_FABS(motion[QUARTER_CAR_ALPHA_Z]));
+        const gic_real t81 = R(2.928075656552032) * GIC_FABS(m0[QUARTER_CAR_VELOCITY_Z]);
         const gic_real t82 = t50 * t50 + t51 * t51 + t80 + t81 * t81;
-        const gic_real t83 = R(2.928075656552032) * GIC_FABS(m1[17]);
-        const gic_real t84 = GIC_FABS(m1[12]);
-        const gic_real t85 = t82 + (t83 * t83 + t84 * t84 + GIC_FABS(m1[18]));
+        const gic_real t83 = R(2.928075656552032) * GIC_FABS(m1[QUARTER_CAR_VELOCITY_Z]);
+        const gic_real t84 = GIC_FABS(m1[QUARTER_CAR_OMEGA_X]);
+        const gic_real t85 = t82 + (t83 * t83 + t84 * t84 + GIC_FABS(m1[QUARTER_CAR_ALPHA_X]));
         const gic_real t86 = (t67 + GIC_FABS(t78 * t25) + GIC_FABS(t79)) / (R(1e-30) + (t85 + t52 * t52 + t53 * t53));
         const gic_real t87 = t54 + t86;
         worst[0] = t34;
@@ -719,54 +902,59 @@ static int quarter_car_recover_piece(quarter_car *self, quarter_car_links *links
     (void)xd;
     (void)status;
     /* stage 1: carriage */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[QUARTER_CAR_X_BOUNCE]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* bounce */
-        links->rate[0] = xd[0];
-        status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, start + 2, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[QUARTER_CAR_X_BOUNCE];
+        links->rate[0] = xd[QUARTER_CAR_X_BOUNCE];
+        status = quarter_car_solve_carriage(self, quarter_car_k_carriage[0], links, start + 2, self->motion +
+            QUARTER_CAR_MOTION_CARRIAGE, self->inertia + QUARTER_CAR_INERTIA_CARRIAGE);
         if (status != GIC_OK) {
-            self->head.subset = 0;
+            self->head.subset = QUARTER_CAR_SUBSET_CARRIAGE;
             return status;
         }
     }
     /* stage 2: arm */
-    if (links->again && links->same[1] && links->same[0]) {
+    if (links->again && links->same[QUARTER_CAR_X_SPRING] && links->same[QUARTER_CAR_X_BOUNCE]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* carriage */
-        links->x[0] = start[1]; /* spring */
-        links->rate[0] = xd[1];
-        links->x[1] = start[0]; /* bounce */
-        links->rate[1] = xd[0];
-        status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, start + 2, self->motion + 30, self->inertia + 23);
+        links->known[0] = self->motion + QUARTER_CAR_MOTION_CARRIAGE; /* carriage */
+        links->x[0] = start[QUARTER_CAR_X_SPRING];
+        links->rate[0] = xd[QUARTER_CAR_X_SPRING];
+        links->x[1] = start[QUARTER_CAR_X_BOUNCE];
+        links->rate[1] = xd[QUARTER_CAR_X_BOUNCE];
+        status = quarter_car_solve_arm(self, quarter_car_k_arm[0], links, start + 2, self->motion +
+            QUARTER_CAR_MOTION_ARM, self->inertia + QUARTER_CAR_INERTIA_ARM);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = QUARTER_CAR_SUBSET_ARM;
             return status;
         }
     }
     /* stage 3: wheel */
-    if (links->again && links->same[0] && links->same[1]) {
+    if (links->again && links->same[QUARTER_CAR_X_BOUNCE] && links->same[QUARTER_CAR_X_SPRING]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* carriage */
-        links->known[1] = self->motion + 30; /* arm */
-        links->x[0] = start[0]; /* bounce */
-        links->rate[0] = xd[0];
-        links->x[1] = start[1]; /* spring */
-        links->rate[1] = xd[1];
-        status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, start + 2, self->motion + 66, self->inertia + 55);
+        links->known[0] = self->motion + QUARTER_CAR_MOTION_CARRIAGE; /* carriage */
+        links->known[1] = self->motion + QUARTER_CAR_MOTION_ARM; /* arm */
+        links->x[0] = start[QUARTER_CAR_X_BOUNCE];
+        links->rate[0] = xd[QUARTER_CAR_X_BOUNCE];
+        links->x[1] = start[QUARTER_CAR_X_SPRING];
+        links->rate[1] = xd[QUARTER_CAR_X_SPRING];
+        status = quarter_car_solve_wheel(self, quarter_car_k_wheel[0], links, start + 2, self->motion +
+            QUARTER_CAR_MOTION_WHEEL, self->inertia + QUARTER_CAR_INERTIA_WHEEL);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = QUARTER_CAR_SUBSET_WHEEL;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
-static int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, const gic_real *way, int far, int32_t *last)
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
+static int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, const gic_real *way, int far,
+    int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
@@ -788,13 +976,11 @@ static int quarter_car_recover_way(quarter_car *self, quarter_car_links *links, 
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (QUARTER_CAR_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -855,8 +1041,8 @@ static void quarter_car_gather(quarter_car *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 0, 2 * sizeof *x); /* bounce to spring */
-    memcpy(xd + 0, y + 2, 2 * sizeof *xd);
+    memcpy(x + QUARTER_CAR_X_BOUNCE, y + QUARTER_CAR_STATE_BOUNCE, 2 * sizeof *x); /* bounce to spring */
+    memcpy(xd + QUARTER_CAR_X_BOUNCE, y + QUARTER_CAR_STATE_BOUNCE_RATE, 2 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
@@ -900,7 +1086,8 @@ static GIC_COLD int quarter_car_about(quarter_car *self, int status, int32_t sub
 
 /* Applied forces, composite inertia, and elimination of 2 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -910,36 +1097,63 @@ static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, cons
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[52] + n[86];
-        const gic_real t2 = n[53] + n[85];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[QUARTER_CAR_INERTIA_ARM + QUARTER_CAR_I_COORDINATE + 14] +
+            n[QUARTER_CAR_INERTIA_WHEEL + QUARTER_CAR_I_COORDINATE + 16];
+        const gic_real t2 = n[QUARTER_CAR_INERTIA_ARM + QUARTER_CAR_I_COORDINATE + 15] +
+            n[QUARTER_CAR_INERTIA_WHEEL + QUARTER_CAR_I_COORDINATE + 15];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t3 = R(640.1100000000001) * t1 - t2 * t2;
         if (!(t3 - t1 * R(0.00064011) > R(0.0)))
-            return quarter_car_about(self, GIC_ERROR_MASS, 1, 1);
+            return quarter_car_about(self, GIC_ERROR_MASS, QUARTER_CAR_SUBSET_ARM, QUARTER_CAR_STATE_SPRING);
         const gic_real t4 = R(1.0) / t3;
-        const gic_real t5 = m[71] * R(0.09182100000000004) + (m[70] * R(0.12319000000000002) + m[69] * R(-0.004825999999999997));
-        const gic_real t6 = m[77] * R(0.09182100000000004) + (m[76] * R(0.12319000000000002) + m[75] * R(-0.004825999999999997));
-        const gic_real t7 = m[74] * R(0.09182100000000004) + (m[73] * R(0.12319000000000002) + m[72] * R(-0.004825999999999997));
+        /* wheel tire */
+        const gic_real t5 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997));
+        const gic_real t6 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997));
+        const gic_real t7 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997));
         gic_real road8[3];
-        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t5, m[67] + t7, road8))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t5,
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t7, road8))
             return GIC_ERROR_ROAD;
-        const gic_real t9 = (m[82] + (m[80] * t5 - m[78] * t6)) * road8[2];
-        const gic_real t10 = t9 + (m[79] * t6 - m[80] * t7) * road8[1];
-        const gic_real t11 = road8[0] + R(0.4699) - (m[68] + t6);
+        const gic_real t9 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t5 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t6)) * road8[2];
+        const gic_real t10 = t9 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t6 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t7) * road8[1];
+        const gic_real t11 = road8[0] + R(0.4699) - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t6);
         const gic_real t12 = GIC_MIN(GIC_MAX(t11 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t13 = (t10 - (m[83] + (m[78] * t7 - m[79] * t5))) * ((R(3.0) - (t12 + t12)) * (t12 * t12) * R(500.0));
+        const gic_real t13 = (t10 - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t5))) * ((R(3.0) - (t12 + t12)) * (t12 * t12) *
+            R(500.0));
         const gic_real t14 = GIC_MAX(t13 + t11 * R(283000.0), R(0.0));
-        const gic_real t15 = t14 - (n[51] + n[76]) - R(6279.479100000001);
-        const gic_real t16 = m[101] * t14 + (m[96] * (t7 * t14) - m[97] * (t5 * t14));
-        const gic_real t17 = t16 - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8)) - (n[44] + n[83]);
-        const gic_real t18 = t17 - (n[40] + n[79]) * R(9.81);
-        const gic_real t19 = xd[0];
-        const gic_real t20 = t4 * (t1 * t15 - t2 * t18);
-        const gic_real t21 = xd[1];
-        const gic_real t22 = t4 * (R(640.1100000000001) * t18 - t2 * t15);
-        rate[0] = t19;
-        rate[2] = t20;
-        rate[1] = t21;
-        rate[3] = t22;
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
+        const gic_real t15 = t14 - (n[QUARTER_CAR_INERTIA_ARM + QUARTER_CAR_I_COORDINATE + 13] +
+            n[QUARTER_CAR_INERTIA_WHEEL + QUARTER_CAR_I_COORDINATE + 6]) - R(6279.479100000001);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t16 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] * t14 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * (t7 * t14) -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * (t5 * t14));
+        const gic_real t17 = t16 - ((x[QUARTER_CAR_X_SPRING] - R(0.31658)) * R(167070.9) + xd[QUARTER_CAR_X_SPRING] *
+            R(17490.8)) - (n[QUARTER_CAR_INERTIA_ARM + QUARTER_CAR_I_COORDINATE + 6] +
+            n[QUARTER_CAR_INERTIA_WHEEL + QUARTER_CAR_I_COORDINATE + 13]);
+        const gic_real t18 = t17 - (n[QUARTER_CAR_INERTIA_ARM + QUARTER_CAR_I_COORDINATE + 2] +
+            n[QUARTER_CAR_INERTIA_WHEEL + QUARTER_CAR_I_COORDINATE + 9]) * R(9.81);
+        const gic_real rate_of_bounce = xd[QUARTER_CAR_X_BOUNCE];
+        /* accelerations */
+        const gic_real rate_of_bounce_rate = t4 * (t1 * t15 - t2 * t18);
+        const gic_real rate_of_spring = xd[QUARTER_CAR_X_SPRING];
+        const gic_real rate_of_spring_rate = t4 * (R(640.1100000000001) * t18 - t2 * t15);
+        rate[QUARTER_CAR_STATE_BOUNCE] = rate_of_bounce;
+        rate[QUARTER_CAR_STATE_BOUNCE_RATE] = rate_of_bounce_rate;
+        rate[QUARTER_CAR_STATE_SPRING] = rate_of_spring;
+        rate[QUARTER_CAR_STATE_SPRING_RATE] = rate_of_spring_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -951,8 +1165,8 @@ static GIC_APART int quarter_car_dynamics(quarter_car *self, gic_real time, cons
     return GIC_OK;
 }
 
-static int quarter_car_measure(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int quarter_car_measure(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -960,94 +1174,137 @@ static int quarter_car_measure(const quarter_car *self, gic_real time, const gic
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)out;
     (void)lambda;
     {
-        const gic_real t1 = m[71] * R(0.09182100000000004);
-        const gic_real t2 = m[69] * R(-0.004825999999999997);
-        const gic_real t3 = t1 + (m[70] * R(0.12319000000000002) + t2);
-        const gic_real t4 = R(-0.035559999999999994) + t3;
-        const gic_real t5 = m[74] * R(0.09182100000000004);
-        const gic_real t6 = m[72] * R(-0.004825999999999997);
-        const gic_real t7 = t5 + (m[73] * R(0.12319000000000002) + t6);
-        const gic_real t8 = m[67] + t7;
-        const gic_real t9 = m[77] * R(0.09182100000000004);
-        const gic_real t10 = m[75] * R(-0.004825999999999997);
-        const gic_real t11 = t9 + (m[76] * R(0.12319000000000002) + t10);
-        const gic_real t12 = m[68] + t11;
-        const gic_real t13 = x[1] - R(0.31658);
+        /* wheel tire */
+        const gic_real t1 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004);
+        const gic_real t2 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997);
+        const gic_real t3 = t1 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) + t2);
+        const gic_real output_wheel_x = R(-0.035559999999999994) + t3;
+        const gic_real t5 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004);
+        const gic_real t6 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997);
+        const gic_real t7 = t5 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) + t6);
+        const gic_real output_wheel_y = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t7;
+        const gic_real t9 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004);
+        const gic_real t10 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997);
+        const gic_real t11 = t9 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) + t10);
+        const gic_real output_wheel_z = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t11;
+        /* force spring */
+        const gic_real t13 = x[QUARTER_CAR_X_SPRING] - R(0.31658);
         const gic_real t14 = t13 * R(167070.9);
-        const gic_real t15 = xd[1] * R(17490.8);
+        const gic_real t15 = xd[QUARTER_CAR_X_SPRING] * R(17490.8);
         gic_real road16[3];
-        if (!quarter_car_road_height(self, time, t4, t8, road16))
+        if (!quarter_car_road_height(self, time, output_wheel_x, output_wheel_y, road16))
             return GIC_ERROR_ROAD;
-        const gic_real t17 = (m[82] + (m[80] * t3 - m[78] * t11)) * road16[2];
-        const gic_real t18 = t17 + (m[79] * t11 - m[80] * t7) * road16[1];
-        const gic_real t19 = m[83] + (m[78] * t7 - m[79] * t3);
-        const gic_real t20 = t18 - t19;
-        const gic_real t21 = road16[0] + R(0.4699) - t12;
-        const gic_real t22 = GIC_MIN(GIC_MAX(t21 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t23 = t20 * ((R(3.0) - (t22 + t22)) * (t22 * t22) * R(500.0));
-        const gic_real t24 = GIC_MAX(t23 + t21 * R(283000.0), R(0.0));
-        const gic_real t25 = m[47] + m[42] * (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
-        const gic_real t26 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t27 = m[42] * t26;
-        const gic_real t28 = m[42] * (m[42] * R(0.4469)) + R(23.965) * (t25 * t25 + t27 * t27);
-        const gic_real t29 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t30 = m[74] * R(4.7728205);
-        const gic_real t31 = m[73] * R(7.58122);
-        const gic_real t32 = m[72] * R(4.8947505);
-        const gic_real t33 = m[77] * t30 + (m[76] * t31 + m[75] * t32);
-        const gic_real t34 = m[71] * R(4.7728205);
-        const gic_real t35 = m[70] * R(7.58122);
-        const gic_real t36 = m[69] * R(4.8947505);
-        const gic_real t37 = m[77] * t34 + (m[76] * t35 + m[75] * t36);
-        const gic_real t38 = m[80] * (m[80] * t29 + (m[79] * t33 + m[78] * t37));
-        const gic_real t39 = m[79] * (m[74] * t30 + (m[73] * t31 + m[72] * t32));
-        const gic_real t40 = m[74] * t34 + (m[73] * t35 + m[72] * t36);
-        const gic_real t41 = m[78] * (m[71] * t34 + (m[70] * t35 + m[69] * t36));
-        const gic_real t42 = m[79] * (m[80] * t33 + (t39 + m[78] * t40)) + m[78] * (m[80] * t37 + (m[79] * t40 + t41));
-        const gic_real t43 = t5 + (t6 + m[73] * R(0.08910630000000008));
-        const gic_real t44 = t1 + (t2 + m[70] * R(0.08910630000000008));
-        const gic_real t45 = m[83] + (m[78] * t43 - m[79] * t44);
-        const gic_real t46 = t9 + (t10 + m[76] * R(0.08910630000000008));
-        const gic_real t47 = m[82] + (m[80] * t44 - m[78] * t46);
-        const gic_real t48 = m[79] * t46 - m[80] * t43;
+        const gic_real t17 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t3 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t11)) * road16[2];
+        const gic_real t18 = t17 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t11 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t7) * road16[1];
+        const gic_real t19 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t3);
+        const gic_real output_tire_deflection_rate = t18 - t19;
+        const gic_real output_tire_deflection = road16[0] + R(0.4699) - output_wheel_z;
+        const gic_real t22 = GIC_MIN(GIC_MAX(output_tire_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t23 = output_tire_deflection_rate * ((R(3.0) - (t22 + t22)) * (t22 * t22) * R(500.0));
+        const gic_real output_tire_fz = GIC_MAX(t23 + output_tire_deflection * R(283000.0), R(0.0));
+        /* output energy */
+        const gic_real t25 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_VELOCITY_Z] +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] *
+            R(3.0379110359107786e-06) + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] * R(0.24689200985615367));
+        const gic_real t26 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] * R(0.24689200985615367);
+        const gic_real t27 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t26;
+        const gic_real t28 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * R(0.4469)) + R(23.965) * (t25 * t25 + t27 * t27);
+        const gic_real t29 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(4.7728205)) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] *
+            R(7.58122)) + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(4.8947505)));
+        const gic_real t30 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(4.7728205);
+        const gic_real t31 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(7.58122);
+        const gic_real t32 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(4.8947505);
+        const gic_real t33 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t30 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t31 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t32);
+        const gic_real t34 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(4.7728205);
+        const gic_real t35 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(7.58122);
+        const gic_real t36 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(4.8947505);
+        const gic_real t37 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t34 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t35 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t36);
+        const gic_real t38 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t29 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t33 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t37));
+        const gic_real t39 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t30 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] *
+            t31 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * t32));
+        const gic_real t40 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t34 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t35 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t36);
+        const gic_real t41 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * t34 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] *
+            t35 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * t36));
+        const gic_real t42 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t33 + (t39 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t40)) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] *
+            t37 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t40 + t41));
+        const gic_real t43 = t5 + (t6 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.08910630000000008));
+        const gic_real t44 = t1 + (t2 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.08910630000000008));
+        const gic_real t45 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t43 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t44);
+        const gic_real t46 = t9 + (t10 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.08910630000000008));
+        const gic_real t47 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t44 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t46);
+        const gic_real t48 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t46 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t43;
         const gic_real t49 = R(90.555) * (t45 * t45 + (t47 * t47 + t48 * t48));
-        const gic_real t50 = m[17] * m[17] * R(262.795) + R(0.5) * t28 + R(0.5) * (t38 + t42 + t49);
-        const gic_real t51 = t13 * t14 * R(0.5) - m[2] * R(-5156.0379) - (m[32] + t26) * R(-235.09665);
-        const gic_real t52 = m[2];
-        const gic_real t53 = R(-9.81) + (R(9.81) + rate[2]);
-        const gic_real t54 = x[0];
-        const gic_real t55 = xd[0];
-        const gic_real t56 = rate[2];
-        const gic_real t57 = x[1];
-        const gic_real t58 = xd[1];
-        const gic_real t59 = rate[3];
-        const gic_real t60 = -(t14 + t15);
-        const gic_real t61 = road16[0];
-        const gic_real t62 = t51 - (m[68] + t46) * R(-888.3445500000001);
-        const gic_real t63 = t19 * t24 - t58 * t15;
-        out[0] = R(0.0);
-        out[1] = R(0.0);
-        out[2] = t52;
-        out[3] = R(0.0);
-        out[4] = R(0.0);
-        out[5] = t53;
-        out[6] = t4;
-        out[7] = t8;
-        out[8] = t12;
-        out[9] = t54;
-        out[10] = t55;
-        out[11] = t56;
-        out[12] = t57;
-        out[13] = t58;
-        out[14] = t59;
-        out[15] = t60;
-        out[16] = t24;
-        out[17] = t21;
-        out[18] = t20;
-        out[19] = t61;
-        out[20] = t50;
-        out[21] = t62;
-        out[22] = t63;
+        const gic_real output_energy_kinetic = m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_VELOCITY_Z] *
+            m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_VELOCITY_Z] * R(262.795) + R(0.5) * t28 + R(0.5) * (t38 + t42 +
+            t49);
+        const gic_real t51 = t13 * t14 * R(0.5) - m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_C_Z] * R(-5156.0379) -
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_C_Z] + t26) * R(-235.09665);
+        const gic_real output_carriage_z = m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_C_Z];
+        /* output carriage_acceleration */
+        const gic_real output_carriage_acceleration_z = R(-9.81) + (R(9.81) + rate[QUARTER_CAR_STATE_BOUNCE_RATE]);
+        const gic_real output_bounce_value = x[QUARTER_CAR_X_BOUNCE];
+        const gic_real output_bounce_rate = xd[QUARTER_CAR_X_BOUNCE];
+        const gic_real output_bounce_acceleration = rate[QUARTER_CAR_STATE_BOUNCE_RATE];
+        const gic_real output_spring_value = x[QUARTER_CAR_X_SPRING];
+        const gic_real output_spring_rate = xd[QUARTER_CAR_X_SPRING];
+        const gic_real output_spring_acceleration = rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real force_spring = -(t14 + t15);
+        const gic_real output_tire_height = road16[0];
+        const gic_real output_energy_potential = t51 - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t46) *
+            R(-888.3445500000001);
+        const gic_real output_energy_power = t19 * output_tire_fz - output_spring_rate * t15;
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_X] = R(0.0);
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_Y] = R(0.0);
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_Z] = output_carriage_z;
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_ACCELERATION_X] = R(0.0);
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_ACCELERATION_Y] = R(0.0);
+        out[QUARTER_CAR_OUTPUT_CARRIAGE_ACCELERATION_Z] = output_carriage_acceleration_z;
+        out[QUARTER_CAR_OUTPUT_WHEEL_X] = output_wheel_x;
+        out[QUARTER_CAR_OUTPUT_WHEEL_Y] = output_wheel_y;
+        out[QUARTER_CAR_OUTPUT_WHEEL_Z] = output_wheel_z;
+        out[QUARTER_CAR_OUTPUT_BOUNCE_VALUE] = output_bounce_value;
+        out[QUARTER_CAR_OUTPUT_BOUNCE_RATE] = output_bounce_rate;
+        out[QUARTER_CAR_OUTPUT_BOUNCE_ACCELERATION] = output_bounce_acceleration;
+        out[QUARTER_CAR_OUTPUT_SPRING_VALUE] = output_spring_value;
+        out[QUARTER_CAR_OUTPUT_SPRING_RATE] = output_spring_rate;
+        out[QUARTER_CAR_OUTPUT_SPRING_ACCELERATION] = output_spring_acceleration;
+        out[QUARTER_CAR_OUTPUT_FORCE] = force_spring;
+        out[QUARTER_CAR_OUTPUT_TIRE_FZ] = output_tire_fz;
+        out[QUARTER_CAR_OUTPUT_TIRE_DEFLECTION] = output_tire_deflection;
+        out[QUARTER_CAR_OUTPUT_TIRE_DEFLECTION_RATE] = output_tire_deflection_rate;
+        out[QUARTER_CAR_OUTPUT_TIRE_HEIGHT] = output_tire_height;
+        out[QUARTER_CAR_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[QUARTER_CAR_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[QUARTER_CAR_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -1057,9 +1314,12 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
     const gic_real *const m = self->motion;
     (void)y, (void)e, (void)m, (void)pose;
     {
-        const gic_real t1 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t2 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t3 = m[37] + m[41];
+        /* pose of arm */
+        const gic_real t1 = R(1.0) + (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] - (R(1.0) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY]));
+        const gic_real t2 = R(1.0) + (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] - (R(1.0) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ]));
+        const gic_real t3 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ];
         const gic_real t4 = R(1.0) + (R(1.0) - t3);
         const gic_real t5 = R(1.0) + (R(1.0) + t3);
         const gic_real t6 = GIC_MAX(t4, t5);
@@ -1067,47 +1327,70 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
         const gic_real t8 = t1 - t7;
         const gic_real t9 = t2 - t6;
         const gic_real t10 = t4 - t5;
-        const gic_real t11 = m[40] - m[38];
+        const gic_real t11 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] -
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ];
         const gic_real t12 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? R(0.0) : (t10 > GIC_R(0) ? t11 : t5)));
         const gic_real t13 = R(0.5) / GIC_SQRT(GIC_MAX(t1, t7));
         const gic_real t14 = t12 * t13;
         const gic_real t15 = (t8 > GIC_R(0) ? R(0.0) : (t9 > GIC_R(0) ? R(0.0) : (t10 > GIC_R(0) ? t4 : t11)));
         const gic_real t16 = t15 * t13;
-        const gic_real t17 = m[38] + m[40];
+        const gic_real t17 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY];
         const gic_real t18 = (t10 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t19 = (t8 > GIC_R(0) ? t17 : (t9 > GIC_R(0) ? t2 : t18)) * t13;
         const gic_real t20 = (t8 > GIC_R(0) ? t1 : (t9 > GIC_R(0) ? t17 : t18)) * t13;
-        const gic_real t21 = R(-0.035559999999999994) + (m[71] * R(0.09182100000000004) + (m[70] * R(0.08910630000000008) + m[69] * R(-0.004825999999999997)));
-        const gic_real t22 = m[67] + (m[74] * R(0.09182100000000004) + (m[73] * R(0.08910630000000008) + m[72] * R(-0.004825999999999997)));
-        const gic_real t23 = m[68] + (m[77] * R(0.09182100000000004) + (m[76] * R(0.08910630000000008) + m[75] * R(-0.004825999999999997)));
-        const gic_real t24 = R(1.0) + (m[77] - (m[69] + m[73]));
-        const gic_real t25 = R(1.0) + (m[73] - (m[69] + m[77]));
-        const gic_real t26 = m[73] + m[77];
-        const gic_real t27 = R(1.0) + (m[69] - t26);
-        const gic_real t28 = R(1.0) + (m[69] + t26);
+        /* pose of wheel */
+        const gic_real t21 = R(-0.035559999999999994) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] *
+            R(0.09182100000000004) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.08910630000000008) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997)));
+        const gic_real t22 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.08910630000000008) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997)));
+        const gic_real t23 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.08910630000000008) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t24 = R(1.0) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] -
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY]));
+        const gic_real t25 = R(1.0) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] -
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ]));
+        const gic_real t26 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ];
+        const gic_real t27 = R(1.0) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] - t26);
+        const gic_real t28 = R(1.0) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] + t26);
         const gic_real t29 = GIC_MAX(t27, t28);
         const gic_real t30 = GIC_MAX(t25, t29);
         const gic_real t31 = t24 - t30;
-        const gic_real t32 = m[72] - m[70];
+        const gic_real t32 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY];
         const gic_real t33 = t25 - t29;
-        const gic_real t34 = m[71] - m[75];
+        const gic_real t34 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX];
         const gic_real t35 = t27 - t28;
-        const gic_real t36 = m[76] - m[74];
+        const gic_real t36 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ];
         const gic_real t37 = (t31 > GIC_R(0) ? t32 : (t33 > GIC_R(0) ? t34 : (t35 > GIC_R(0) ? t36 : t28)));
         const gic_real t38 = R(0.5) / GIC_SQRT(GIC_MAX(t24, t30));
         const gic_real t39 = t37 * t38;
-        const gic_real t40 = m[71] + m[75];
-        const gic_real t41 = m[70] + m[72];
+        const gic_real t40 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX];
+        const gic_real t41 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX];
         const gic_real t42 = (t31 > GIC_R(0) ? t40 : (t33 > GIC_R(0) ? t41 : (t35 > GIC_R(0) ? t27 : t36)));
         const gic_real t43 = t42 * t38;
-        const gic_real t44 = m[74] + m[76];
+        const gic_real t44 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY];
         const gic_real t45 = (t31 > GIC_R(0) ? t44 : (t33 > GIC_R(0) ? t25 : (t35 > GIC_R(0) ? t41 : t34)));
         const gic_real t46 = t45 * t38;
         const gic_real t47 = (t31 > GIC_R(0) ? t24 : (t33 > GIC_R(0) ? t44 : (t35 > GIC_R(0) ? t40 : t32)));
         const gic_real t48 = t47 * t38;
-        const gic_real t49 = m[2];
-        const gic_real t50 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
-        const gic_real t51 = m[32] + (m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367));
+        const gic_real t49 = m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_C_Z];
+        const gic_real t50 = R(0.307086) + (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] * R(0.24689200985615367));
+        const gic_real t51 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_C_Z] +
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] * R(0.24689200985615367));
         const gic_real t52 = (t14 > GIC_R(0) ? t14 : -t14);
         const gic_real t53 = (t14 > GIC_R(0) ? t16 : -t16);
         const gic_real t54 = (t14 > GIC_R(0) ? t19 : -t19);
@@ -1116,41 +1399,41 @@ static void quarter_car_place(const quarter_car *self, const gic_real *y, const 
         const gic_real t57 = (t39 > GIC_R(0) ? t43 : -t43);
         const gic_real t58 = (t39 > GIC_R(0) ? t46 : -t46);
         const gic_real t59 = (t39 > GIC_R(0) ? t48 : -t48);
-        pose[0] = R(0.0);
-        pose[1] = R(0.0);
-        pose[2] = R(0.0);
-        pose[3] = R(1.0);
-        pose[4] = R(0.0);
-        pose[5] = R(0.0);
-        pose[6] = R(0.0);
-        pose[7] = R(0.0);
-        pose[8] = R(0.0);
-        pose[9] = t49;
-        pose[10] = R(1.0);
-        pose[11] = R(0.0);
-        pose[12] = R(0.0);
-        pose[13] = R(0.0);
-        pose[14] = R(0.0);
-        pose[15] = t50;
-        pose[16] = t51;
-        pose[17] = t52;
-        pose[18] = t53;
-        pose[19] = t54;
-        pose[20] = t55;
-        pose[21] = t21;
-        pose[22] = t22;
-        pose[23] = t23;
-        pose[24] = t56;
-        pose[25] = t57;
-        pose[26] = t58;
-        pose[27] = t59;
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_X] = R(0.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_Y] = R(0.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_Z] = R(0.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_P0] = R(1.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_P1] = R(0.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_P2] = R(0.0);
+        pose[QUARTER_CAR_POSE_GROUND + QUARTER_CAR_Q_P3] = R(0.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_X] = R(0.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_Y] = R(0.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_Z] = t49;
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_P0] = R(1.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_P1] = R(0.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_P2] = R(0.0);
+        pose[QUARTER_CAR_POSE_CARRIAGE + QUARTER_CAR_Q_P3] = R(0.0);
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_X] = R(0.0);
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_Y] = t50;
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_Z] = t51;
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_P0] = t52;
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_P1] = t53;
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_P2] = t54;
+        pose[QUARTER_CAR_POSE_ARM + QUARTER_CAR_Q_P3] = t55;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_X] = t21;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_Y] = t22;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_Z] = t23;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_P0] = t56;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_P1] = t57;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_P2] = t58;
+        pose[QUARTER_CAR_POSE_WHEEL + QUARTER_CAR_Q_P3] = t59;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int quarter_car_residual(const quarter_car *self, gic_real largest[2])
 {
     quarter_car_links links;
@@ -1159,152 +1442,235 @@ static GIC_COLD GIC_APART int quarter_car_residual(const quarter_car *self, gic_
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[QUARTER_CAR_X_BOUNCE];
+    links.rate[0] = self->xd[QUARTER_CAR_X_BOUNCE];
+    quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + QUARTER_CAR_MOTION_CARRIAGE, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(0.687)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 0;
+        bad = QUARTER_CAR_SUBSET_CARRIAGE;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    quarter_car_residual_arm(quarter_car_k_arm[0], &links, self->motion + 30, one);
+    links.known[0] = self->motion + QUARTER_CAR_MOTION_CARRIAGE; /* carriage */
+    links.x[0] = self->x[QUARTER_CAR_X_SPRING];
+    links.rate[0] = self->xd[QUARTER_CAR_X_SPRING];
+    links.x[1] = self->x[QUARTER_CAR_X_BOUNCE];
+    links.rate[1] = self->xd[QUARTER_CAR_X_BOUNCE];
+    quarter_car_residual_arm(quarter_car_k_arm[0], &links, self->motion + QUARTER_CAR_MOTION_ARM, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4399509254502427)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = QUARTER_CAR_SUBSET_ARM;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, self->motion + 66, one);
+    links.known[0] = self->motion + QUARTER_CAR_MOTION_CARRIAGE; /* carriage */
+    links.known[1] = self->motion + QUARTER_CAR_MOTION_ARM; /* arm */
+    links.x[0] = self->x[QUARTER_CAR_X_BOUNCE];
+    links.rate[0] = self->xd[QUARTER_CAR_X_BOUNCE];
+    links.x[1] = self->x[QUARTER_CAR_X_SPRING];
+    links.rate[1] = self->xd[QUARTER_CAR_X_SPRING];
+    quarter_car_residual_wheel(quarter_car_k_wheel[0], &links, self->motion + QUARTER_CAR_MOTION_WHEEL, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(2.5299010149033596)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = QUARTER_CAR_SUBSET_WHEEL;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than quarter_car_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int quarter_car_balance(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than quarter_car_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int quarter_car_balance(const quarter_car *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t2 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t3 = m[48] * t1 - m[42] * (m[42] * t2);
-        const gic_real t4 = (rate[2] + (R(9.81) + t3 + rate[3] * (m[54] * t1))) * R(23.965);
-        const gic_real t5 = m[71] * R(0.09182100000000004);
-        const gic_real t6 = m[69] * R(-0.004825999999999997);
-        const gic_real t7 = t5 + (t6 + m[70] * R(0.08910630000000008));
-        const gic_real t8 = m[77] * R(0.09182100000000004);
-        const gic_real t9 = m[75] * R(-0.004825999999999997);
-        const gic_real t10 = t8 + (t9 + m[76] * R(0.08910630000000008));
-        const gic_real t11 = m[80] * t7 - m[78] * t10;
-        const gic_real t12 = m[74] * R(0.09182100000000004);
-        const gic_real t13 = m[72] * R(-0.004825999999999997);
-        const gic_real t14 = t12 + (t13 + m[73] * R(0.08910630000000008));
-        const gic_real t15 = m[79] * t10 - m[80] * t14;
-        const gic_real t16 = m[78] * t11 - m[79] * t15 + (m[84] * t14 - m[85] * t7);
-        const gic_real t17 = m[89] + t16;
-        const gic_real t18 = rate[2] + (R(9.81) + t17) + rate[3] * (m[101] + (m[96] * t14 - m[97] * t7));
+        /* inertia of arm */
+        const gic_real t1 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] * R(0.24689200985615367);
+        const gic_real t2 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] * R(0.24689200985615367);
+        const gic_real t3 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] * t1 -
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t2);
+        const gic_real t4 = (rate[QUARTER_CAR_STATE_BOUNCE_RATE] + (R(9.81) + t3 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t1))) * R(23.965);
+        /* wheel tire */
+        const gic_real t5 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004);
+        const gic_real t6 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel */
+        const gic_real t7 = t5 + (t6 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.08910630000000008));
+        const gic_real t8 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004);
+        const gic_real t9 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997);
+        const gic_real t10 = t8 + (t9 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.08910630000000008));
+        const gic_real t11 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t10;
+        const gic_real t12 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004);
+        const gic_real t13 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997);
+        const gic_real t14 = t12 + (t13 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.08910630000000008));
+        const gic_real t15 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t10 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t14;
+        const gic_real t16 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t11 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t15 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t14 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t7);
+        const gic_real t17 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Z] + t16;
+        const gic_real t18 = rate[QUARTER_CAR_STATE_BOUNCE_RATE] + (R(9.81) + t17) +
+            rate[QUARTER_CAR_STATE_SPRING_RATE] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * t14 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] *
+            t7));
         const gic_real t19 = t18 * R(90.555);
-        const gic_real t20 = t5 + (m[70] * R(0.12319000000000002) + t6);
-        const gic_real t21 = t8 + (m[76] * R(0.12319000000000002) + t9);
-        const gic_real t22 = t12 + (m[73] * R(0.12319000000000002) + t13);
+        const gic_real t20 = t5 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) + t6);
+        const gic_real t21 = t8 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) + t9);
+        const gic_real t22 = t12 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) + t13);
         gic_real road23[3];
-        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t20, m[67] + t22, road23))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t20,
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t22, road23))
             return GIC_ERROR_ROAD;
-        const gic_real t24 = (m[82] + (m[80] * t20 - m[78] * t21)) * road23[2];
-        const gic_real t25 = t24 + (m[79] * t21 - m[80] * t22) * road23[1];
-        const gic_real t26 = m[68] + t21;
+        const gic_real t24 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t20 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t21)) * road23[2];
+        const gic_real t25 = t24 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t21 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t22) * road23[1];
+        const gic_real t26 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t21;
         const gic_real t27 = road23[0] + R(0.4699) - t26;
         const gic_real t28 = GIC_MIN(GIC_MAX(t27 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t29 = (t25 - (m[83] + (m[78] * t22 - m[79] * t20))) * ((R(3.0) - (t28 + t28)) * (t28 * t28) * R(500.0));
+        const gic_real t29 = (t25 - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t22 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t20))) * ((R(3.0) - (t28 + t28)) * (t28 * t28) *
+            R(500.0));
         const gic_real t30 = GIC_MAX(t29 + t27 * R(283000.0), R(0.0));
-        const gic_real t31 = GIC_FABS(rate[2]);
-        const gic_real t32 = GIC_FABS(m[42]);
+        const gic_real t31 = GIC_FABS(rate[QUARTER_CAR_STATE_BOUNCE_RATE]);
+        const gic_real t32 = GIC_FABS(m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X]);
         const gic_real t33 = t32 * t32;
-        const gic_real t34 = t33 * (GIC_FABS(m[32] + t2) + GIC_FABS(R(0.307086) + t1));
-        const gic_real t35 = m[42] * (m[42] * t1) + m[48] * t2;
+        const gic_real t34 = t33 * (GIC_FABS(m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_C_Z] + t2) + GIC_FABS(R(0.307086) +
+            t1));
+        const gic_real t35 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t1) + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] *
+            t2;
         const gic_real t36 = R(19.62) + t34 + (GIC_FABS(t3) + GIC_FABS(-t35));
-        const gic_real t37 = GIC_FABS(rate[3]);
-        const gic_real t38 = GIC_FABS(m[54]);
+        const gic_real t37 = GIC_FABS(rate[QUARTER_CAR_STATE_SPRING_RATE]);
+        const gic_real t38 = GIC_FABS(m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0]);
         const gic_real t39 = t37 * t38;
         const gic_real t40 = GIC_FABS(t2) + GIC_FABS(t1);
         const gic_real t41 = t31 + (t36 + t39 * t40);
         const gic_real t42 = R(23.965) * t41;
-        const gic_real t43 = t40 * t42 + (t33 + GIC_FABS(m[48]) + t39) * R(1.7876);
+        const gic_real t43 = t40 * t42 + (t33 + GIC_FABS(m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X]) + t39) *
+            R(1.7876);
         const gic_real t44 = (R(0.4699) + (GIC_FABS(t26) + GIC_FABS(road23[0]))) * R(283000.0);
         const gic_real t45 = GIC_FABS(t29) + GIC_FABS(t44);
-        const gic_real t46 = GIC_FABS(m[80]) + GIC_FABS(m[79]) + GIC_FABS(m[78]);
+        const gic_real t46 = GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X]);
         const gic_real t47 = t46 * t46;
-        const gic_real t48 = GIC_FABS(m[68] + t10) + GIC_FABS(m[67] + t14) + GIC_FABS(R(-0.035559999999999994) + t7);
-        const gic_real t49 = m[78] * t14 - m[79] * t7;
-        const gic_real t50 = m[80] * t15 - m[78] * t49 + (m[86] * t7 - m[84] * t10);
-        const gic_real t51 = m[88] + t50;
-        const gic_real t52 = m[79] * t49 - m[80] * t11 + (m[85] * t10 - m[86] * t14);
+        const gic_real t48 = GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t10) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t14) + GIC_FABS(R(-0.035559999999999994) + t7);
+        const gic_real t49 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t14 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t7;
+        const gic_real t50 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t15 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t49 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t10);
+        const gic_real t51 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Y] + t50;
+        const gic_real t52 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t49 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t11 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t10 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t14);
         const gic_real t53 = R(19.62) + t47 * t48 + (GIC_FABS(t17) + GIC_FABS(t51) + GIC_FABS(t52));
         const gic_real t54 = GIC_FABS(t10) + GIC_FABS(t14) + GIC_FABS(t7);
-        const gic_real t55 = GIC_FABS(m[98]) + GIC_FABS(m[97]) + GIC_FABS(m[96]);
+        const gic_real t55 = GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6]);
         const gic_real t56 = t37 * t55;
-        const gic_real t57 = GIC_FABS(m[101]) + GIC_FABS(m[100]);
+        const gic_real t57 = GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10]);
         const gic_real t58 = R(90.555) * (t31 + t53 + t54 * t56 + t37 * t57);
         const gic_real t59 = t45 + t58;
         const gic_real t60 = t45 * (GIC_FABS(t21) + GIC_FABS(t22) + GIC_FABS(t20));
-        const gic_real t61 = t47 + (GIC_FABS(m[86]) + GIC_FABS(m[85]) + GIC_FABS(m[84]));
+        const gic_real t61 = t47 + (GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y]) +
+            GIC_FABS(m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X]));
         const gic_real t62 = t60 + (t54 * t58 + (t61 + t56) * R(17.248790999999997));
         const gic_real t63 = t59 + t62 * R(0.00022912732637616755);
         const gic_real t64 = R(525.59) * (R(19.62) + t31) + (t42 + t43 * R(0.00036614536740732094)) + t63;
-        const gic_real t65 = t2 * ((t35 + rate[3] * (m[54] * t2)) * R(23.965)) + t1 * t4;
-        const gic_real t66 = t51 + rate[3] * (m[100] + (m[98] * t7 - m[96] * t10));
+        const gic_real t65 = t2 * ((t35 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t2)) * R(23.965)) + t1 * t4;
+        const gic_real t66 = t51 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10] + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * t10));
         const gic_real t67 = t66 * R(90.555);
-        const gic_real t68 = m[74] * R(4.7728205);
-        const gic_real t69 = m[73] * R(7.58122);
-        const gic_real t70 = m[72] * R(4.8947505);
-        const gic_real t71 = m[77] * t68 + (m[76] * t69 + m[75] * t70);
-        const gic_real t72 = m[74] * t68 + (m[73] * t69 + m[72] * t70);
-        const gic_real t73 = m[71] * R(4.7728205);
-        const gic_real t74 = m[70] * R(7.58122);
-        const gic_real t75 = m[69] * R(4.8947505);
-        const gic_real t76 = m[74] * t73 + (m[73] * t74 + m[72] * t75);
-        const gic_real t77 = m[80] * t71 + (m[79] * t72 + m[78] * t76);
-        const gic_real t78 = m[77] * t73 + (m[76] * t74 + m[75] * t75);
-        const gic_real t79 = m[71] * t73 + (m[70] * t74 + m[69] * t75);
-        const gic_real t80 = m[80] * t78 + (m[79] * t76 + m[78] * t79);
-        const gic_real t81 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t82 = m[86] + m[98] * rate[3];
-        const gic_real t83 = m[85] + m[97] * rate[3];
-        const gic_real t84 = m[84] + m[96] * rate[3];
-        const gic_real t85 = m[78] * t77 - m[79] * t80 + (t81 * t82 + (t71 * t83 + t78 * t84));
-        const gic_real t86 = (t52 + rate[3] * (m[97] * t10 - m[98] * t14)) * R(90.555);
-        const gic_real t87 = m[80] * t81 + (m[79] * t71 + m[78] * t78);
-        const gic_real t88 = m[80] * t80 - m[78] * t87 + (t71 * t82 + (t72 * t83 + t76 * t84));
-        const gic_real t89 = m[79] * t87 - m[80] * t77 + (t78 * t82 + (t76 * t83 + t79 * t84));
-        const gic_real t90 = m[97] * (t88 + (t10 * t86 - t7 * t19)) + m[96] * (t89 + (t14 * t19 - t10 * t67));
-        const gic_real t91 = m[98] * (t85 + (t7 * t67 - t14 * t86)) + t90;
-        const gic_real t92 = m[54] * (R(0.4469) * (m[48] + m[54] * rate[3]) + t65) + (m[101] * t19 + m[100] * t67 + t91);
-        const gic_real t93 = m[101] * t30 + (m[96] * (t22 * t30) - m[97] * (t20 * t30));
-        const gic_real t94 = (x[1] - R(0.31658)) * R(167070.9);
-        const gic_real t95 = xd[1] * R(17490.8);
-        const gic_real t96 = GIC_FABS(t95) + GIC_FABS(t94) + R(167070.9) * (R(0.31658) + GIC_FABS(x[1]));
-        const gic_real t97 = t96 + t38 * (t43 + t41 * R(0.0006545214587773269)) + t55 * (t62 + t59 * R(4.364385583403788e-05));
-        const gic_real t98 = (R(9.81) + rate[2]) * R(525.59) + t4 + t19 - t30;
-        const gic_real t99 = t92 - (t93 - (t94 + t95));
+        const gic_real t68 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(4.7728205);
+        const gic_real t69 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(7.58122);
+        const gic_real t70 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(4.8947505);
+        const gic_real t71 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t68 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t69 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t70);
+        const gic_real t72 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t68 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t69 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t70);
+        const gic_real t73 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(4.7728205);
+        const gic_real t74 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(7.58122);
+        const gic_real t75 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(4.8947505);
+        const gic_real t76 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t73 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t74 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t75);
+        const gic_real t77 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t71 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t72 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t76);
+        const gic_real t78 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t73 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t74 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t75);
+        const gic_real t79 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * t73 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * t74 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] *
+            t75);
+        const gic_real t80 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t78 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t76 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t79);
+        const gic_real t81 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(4.7728205)) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] *
+            R(7.58122)) + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(4.8947505)));
+        const gic_real t82 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t83 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t84 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t85 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t77 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t80 + (t81 * t82 + (t71 * t83 + t78 * t84));
+        const gic_real t86 = (t52 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * t10 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] *
+            t14)) * R(90.555);
+        const gic_real t87 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t81 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t71 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t78);
+        const gic_real t88 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t80 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t87 + (t71 * t82 + (t72 * t83 + t76 * t84));
+        const gic_real t89 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t87 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t77 + (t78 * t82 + (t76 * t83 + t79 * t84));
+        const gic_real t90 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * (t88 + (t10 * t86 - t7 * t19)) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * (t89 + (t14 * t19 - t10 * t67));
+        const gic_real t91 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * (t85 + (t7 * t67 - t14 * t86)) + t90;
+        const gic_real t92 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * (R(0.4469) *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] *
+            rate[QUARTER_CAR_STATE_SPRING_RATE]) + t65) + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] * t19 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10] * t67 + t91);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t93 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] * t30 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * (t22 * t30) -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * (t20 * t30));
+        /* force spring */
+        const gic_real t94 = (x[QUARTER_CAR_X_SPRING] - R(0.31658)) * R(167070.9);
+        const gic_real t95 = xd[QUARTER_CAR_X_SPRING] * R(17490.8);
+        const gic_real t96 = GIC_FABS(t95) + GIC_FABS(t94) + R(167070.9) * (R(0.31658) +
+            GIC_FABS(x[QUARTER_CAR_X_SPRING]));
+        const gic_real t97 = t96 + t38 * (t43 + t41 * R(0.0006545214587773269)) + t55 * (t62 + t59 *
+            R(4.364385583403788e-05));
+        const gic_real residual_0 = (R(9.81) + rate[QUARTER_CAR_STATE_BOUNCE_RATE]) * R(525.59) + t4 + t19 - t30;
+        const gic_real residual_1 = t92 - (t93 - (t94 + t95));
         const gic_real t100 = t97 + t57 * t63;
-        tau[0] = t98;
-        size[0] = t64;
-        tau[1] = t99;
-        size[1] = t100;
+        tau[QUARTER_CAR_UNKNOWN_OF_BOUNCE] = residual_0;
+        size[QUARTER_CAR_UNKNOWN_OF_BOUNCE] = t64;
+        tau[QUARTER_CAR_UNKNOWN_OF_SPRING] = residual_1;
+        size[QUARTER_CAR_UNKNOWN_OF_SPRING] = t100;
     }
     return GIC_OK;
 }
@@ -1341,7 +1707,7 @@ static GIC_COLD GIC_APART int quarter_car_check(quarter_car *self, gic_real time
     return status;
 }
 
-/* ---- the functions of quarter_car.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of quarter_car.h ------------------------------------------------------------------------------ */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -1361,7 +1727,8 @@ static int quarter_car_locate(quarter_car *self, gic_real time, const gic_real *
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[QUARTER_CAR_STATE_ROOM])
+static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[QUARTER_CAR_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = quarter_car_locate(self, time, y, e);
@@ -1369,7 +1736,8 @@ static int quarter_car_evaluate(quarter_car *self, gic_real time, const gic_real
     if (status == GIC_OK)
         status = quarter_car_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + QUARTER_CAR_TWIST, QUARTER_CAR_STATES - QUARTER_CAR_TWIST))
+    if (status == GIC_OK && QUARTER_CAR_STATES > QUARTER_CAR_TWIST && !GIC_FINITE(rate + QUARTER_CAR_TWIST,
+        QUARTER_CAR_STATES - QUARTER_CAR_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = quarter_car_check(self, time, y, e, rate);
@@ -1389,8 +1757,9 @@ int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int quarter_car_march(quarter_car *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -1401,7 +1770,7 @@ static int quarter_car_march(quarter_car *self, gic_real time)
         return status;
     memcpy(before, state, QUARTER_CAR_STATES * sizeof *state);
     for (i = 0; i < QUARTER_CAR_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = quarter_car_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, QUARTER_CAR_STATES * sizeof *state);
@@ -1562,7 +1931,8 @@ static const char *const quarter_car_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -1657,7 +2027,8 @@ const char *quarter_car_status_state(const quarter_car *self)
 const char *quarter_car_status_condition(const quarter_car *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < quarter_car_model.condition_count ? quarter_car_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < quarter_car_model.condition_count ?
+        quarter_car_model.condition_text[condition] : NULL;
 }
 
 void quarter_car_snapshot(const quarter_car *self, quarter_car *copy)
@@ -1670,9 +2041,10 @@ void quarter_car_restore(quarter_car *self, const quarter_car *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
-/* tau = residual of the equations of motion at accelerations acc, body by body: another way than quarter_car_dynamics. */
+/* tau = residual of the equations of motion at accelerations acc, body by body: another way than
+ * quarter_car_dynamics. */
 static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *acc, gic_real *tau)
 {
@@ -1680,164 +2052,296 @@ static GIC_COLD int quarter_car_inverse(const quarter_car *self, gic_real time, 
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t2 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t3 = R(9.81) + (m[48] * t1 - m[42] * (m[42] * t2)) + acc[1] * (m[54] * t1);
-        const gic_real t4 = (acc[0] + t3) * R(23.965);
-        const gic_real t5 = m[71] * R(0.09182100000000004);
-        const gic_real t6 = m[69] * R(-0.004825999999999997);
-        const gic_real t7 = t5 + (t6 + m[70] * R(0.08910630000000008));
-        const gic_real t8 = m[77] * R(0.09182100000000004);
-        const gic_real t9 = m[75] * R(-0.004825999999999997);
-        const gic_real t10 = t8 + (t9 + m[76] * R(0.08910630000000008));
-        const gic_real t11 = m[80] * t7 - m[78] * t10;
-        const gic_real t12 = m[74] * R(0.09182100000000004);
-        const gic_real t13 = m[72] * R(-0.004825999999999997);
-        const gic_real t14 = t12 + (t13 + m[73] * R(0.08910630000000008));
-        const gic_real t15 = m[79] * t10 - m[80] * t14;
-        const gic_real t16 = m[78] * t11 - m[79] * t15 + (m[84] * t14 - m[85] * t7);
-        const gic_real t17 = acc[0] + (R(9.81) + (m[89] + t16)) + acc[1] * (m[101] + (m[96] * t14 - m[97] * t7));
+        /* inertia of arm */
+        const gic_real t1 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] * R(0.24689200985615367);
+        const gic_real t2 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] * R(0.24689200985615367);
+        const gic_real t3 = R(9.81) + (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] * t1 -
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t2)) +
+            acc[QUARTER_CAR_UNKNOWN_OF_SPRING] * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t1);
+        const gic_real t4 = (acc[QUARTER_CAR_UNKNOWN_OF_BOUNCE] + t3) * R(23.965);
+        /* wheel tire */
+        const gic_real t5 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004);
+        const gic_real t6 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997);
+        /* inertia of wheel */
+        const gic_real t7 = t5 + (t6 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.08910630000000008));
+        const gic_real t8 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004);
+        const gic_real t9 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997);
+        const gic_real t10 = t8 + (t9 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.08910630000000008));
+        const gic_real t11 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t10;
+        const gic_real t12 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004);
+        const gic_real t13 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997);
+        const gic_real t14 = t12 + (t13 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.08910630000000008));
+        const gic_real t15 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t10 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t14;
+        const gic_real t16 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t11 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t15 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t14 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t7);
+        const gic_real t17 = acc[QUARTER_CAR_UNKNOWN_OF_BOUNCE] + (R(9.81) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Z] + t16)) + acc[QUARTER_CAR_UNKNOWN_OF_SPRING] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * t14 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * t7));
         const gic_real t18 = t17 * R(90.555);
-        const gic_real t19 = t5 + (m[70] * R(0.12319000000000002) + t6);
-        const gic_real t20 = t8 + (m[76] * R(0.12319000000000002) + t9);
-        const gic_real t21 = t12 + (m[73] * R(0.12319000000000002) + t13);
+        const gic_real t19 = t5 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) + t6);
+        const gic_real t20 = t8 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) + t9);
+        const gic_real t21 = t12 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) + t13);
         gic_real road22[3];
-        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t19, m[67] + t21, road22))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t19,
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t21, road22))
             return GIC_ERROR_ROAD;
-        const gic_real t23 = (m[82] + (m[80] * t19 - m[78] * t20)) * road22[2];
-        const gic_real t24 = t23 + (m[79] * t20 - m[80] * t21) * road22[1];
-        const gic_real t25 = road22[0] + R(0.4699) - (m[68] + t20);
+        const gic_real t23 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t19 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t20)) * road22[2];
+        const gic_real t24 = t23 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t20 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t21) * road22[1];
+        const gic_real t25 = road22[0] + R(0.4699) - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t20);
         const gic_real t26 = GIC_MIN(GIC_MAX(t25 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t27 = (t24 - (m[83] + (m[78] * t21 - m[79] * t19))) * ((R(3.0) - (t26 + t26)) * (t26 * t26) * R(500.0));
+        const gic_real t27 = (t24 - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t21 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t19))) * ((R(3.0) - (t26 + t26)) * (t26 * t26) *
+            R(500.0));
         const gic_real t28 = GIC_MAX(t27 + t25 * R(283000.0), R(0.0));
-        const gic_real t29 = m[42] * (m[42] * t1) + m[48] * t2 + acc[1] * (m[54] * t2);
-        const gic_real t30 = R(0.4469) * (m[48] + m[54] * acc[1]) + (t2 * (t29 * R(23.965)) + t1 * t4);
-        const gic_real t31 = m[78] * t14 - m[79] * t7;
-        const gic_real t32 = m[80] * t15 - m[78] * t31 + (m[86] * t7 - m[84] * t10);
-        const gic_real t33 = m[88] + t32 + acc[1] * (m[100] + (m[98] * t7 - m[96] * t10));
+        const gic_real t29 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t1) + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] *
+            t2 + acc[QUARTER_CAR_UNKNOWN_OF_SPRING] * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t2);
+        const gic_real t30 = R(0.4469) * (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * acc[QUARTER_CAR_UNKNOWN_OF_SPRING]) + (t2 * (t29 *
+            R(23.965)) + t1 * t4);
+        const gic_real t31 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t14 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t7;
+        const gic_real t32 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t15 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t31 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t7 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t10);
+        const gic_real t33 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Y] + t32 +
+            acc[QUARTER_CAR_UNKNOWN_OF_SPRING] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * t7 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] *
+            t10));
         const gic_real t34 = t33 * R(90.555);
-        const gic_real t35 = m[74] * R(4.7728205);
-        const gic_real t36 = m[73] * R(7.58122);
-        const gic_real t37 = m[72] * R(4.8947505);
-        const gic_real t38 = m[77] * t35 + (m[76] * t36 + m[75] * t37);
-        const gic_real t39 = m[74] * t35 + (m[73] * t36 + m[72] * t37);
-        const gic_real t40 = m[71] * R(4.7728205);
-        const gic_real t41 = m[70] * R(7.58122);
-        const gic_real t42 = m[69] * R(4.8947505);
-        const gic_real t43 = m[74] * t40 + (m[73] * t41 + m[72] * t42);
-        const gic_real t44 = m[80] * t38 + (m[79] * t39 + m[78] * t43);
-        const gic_real t45 = m[77] * t40 + (m[76] * t41 + m[75] * t42);
-        const gic_real t46 = m[71] * t40 + (m[70] * t41 + m[69] * t42);
-        const gic_real t47 = m[80] * t45 + (m[79] * t43 + m[78] * t46);
-        const gic_real t48 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t49 = m[86] + m[98] * acc[1];
-        const gic_real t50 = m[85] + m[97] * acc[1];
-        const gic_real t51 = m[84] + m[96] * acc[1];
-        const gic_real t52 = m[78] * t44 - m[79] * t47 + (t48 * t49 + (t38 * t50 + t45 * t51));
-        const gic_real t53 = m[79] * t31 - m[80] * t11 + (m[85] * t10 - m[86] * t14);
-        const gic_real t54 = (t53 + acc[1] * (m[97] * t10 - m[98] * t14)) * R(90.555);
-        const gic_real t55 = m[80] * t48 + (m[79] * t38 + m[78] * t45);
-        const gic_real t56 = m[80] * t47 - m[78] * t55 + (t38 * t49 + (t39 * t50 + t43 * t51));
-        const gic_real t57 = m[79] * t55 - m[80] * t44 + (t45 * t49 + (t43 * t50 + t46 * t51));
-        const gic_real t58 = m[97] * (t56 + (t10 * t54 - t7 * t18)) + m[96] * (t57 + (t14 * t18 - t10 * t34));
-        const gic_real t59 = m[98] * (t52 + (t7 * t34 - t14 * t54)) + t58;
-        const gic_real t60 = m[54] * t30 + (m[101] * t18 + m[100] * t34 + t59);
-        const gic_real t61 = m[101] * t28 + (m[96] * (t21 * t28) - m[97] * (t19 * t28));
-        const gic_real t62 = t60 - (t61 - ((x[1] - R(0.31658)) * R(167070.9) + xd[1] * R(17490.8)));
-        const gic_real t63 = (R(9.81) + acc[0]) * R(525.59) + t4 + t18 - t28;
-        tau[0] = t63;
-        tau[1] = t62;
+        const gic_real t35 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(4.7728205);
+        const gic_real t36 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(7.58122);
+        const gic_real t37 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(4.8947505);
+        const gic_real t38 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t35 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t36 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t37);
+        const gic_real t39 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t35 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t36 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t37);
+        const gic_real t40 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(4.7728205);
+        const gic_real t41 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(7.58122);
+        const gic_real t42 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(4.8947505);
+        const gic_real t43 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t40 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t41 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t42);
+        const gic_real t44 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t38 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t39 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t43);
+        const gic_real t45 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t40 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t41 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t42);
+        const gic_real t46 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * t40 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * t41 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] *
+            t42);
+        const gic_real t47 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t45 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t43 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t46);
+        const gic_real t48 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(4.7728205)) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] *
+            R(7.58122)) + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(4.8947505)));
+        const gic_real t49 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * acc[QUARTER_CAR_UNKNOWN_OF_SPRING];
+        const gic_real t50 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * acc[QUARTER_CAR_UNKNOWN_OF_SPRING];
+        const gic_real t51 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * acc[QUARTER_CAR_UNKNOWN_OF_SPRING];
+        const gic_real t52 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t44 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t47 + (t48 * t49 + (t38 * t50 + t45 * t51));
+        const gic_real t53 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t31 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t11 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t10 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t14);
+        const gic_real t54 = (t53 + acc[QUARTER_CAR_UNKNOWN_OF_SPRING] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * t10 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] *
+            t14)) * R(90.555);
+        const gic_real t55 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t48 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t38 +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t45);
+        const gic_real t56 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t47 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t55 + (t38 * t49 + (t39 * t50 + t43 * t51));
+        const gic_real t57 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t55 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t44 + (t45 * t49 + (t43 * t50 + t46 * t51));
+        const gic_real t58 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * (t56 + (t10 * t54 - t7 * t18)) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * (t57 + (t14 * t18 - t10 * t34));
+        const gic_real t59 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * (t52 + (t7 * t34 - t14 * t54)) + t58;
+        const gic_real t60 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t30 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] * t18 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10] *
+            t34 + t59);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t61 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] * t28 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * (t21 * t28) -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * (t19 * t28));
+        const gic_real residual_1 = t60 - (t61 - ((x[QUARTER_CAR_X_SPRING] - R(0.31658)) * R(167070.9) +
+            xd[QUARTER_CAR_X_SPRING] * R(17490.8)));
+        const gic_real residual_0 = (R(9.81) + acc[QUARTER_CAR_UNKNOWN_OF_BOUNCE]) * R(525.59) + t4 + t18 - t28;
+        tau[QUARTER_CAR_UNKNOWN_OF_BOUNCE] = residual_0;
+        tau[QUARTER_CAR_UNKNOWN_OF_SPRING] = residual_1;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int quarter_car_energy(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[1] * ((x[1] - R(0.31658)) * R(167070.9));
-        const gic_real t2 = m[17] * (R(9.81) + rate[2]) * R(525.59);
-        const gic_real t3 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t4 = m[42] * t3;
-        const gic_real t5 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t6 = m[42] * t5;
-        const gic_real t7 = R(9.81) + (m[48] * t3 - m[42] * t6) + rate[3] * (m[54] * t3);
-        const gic_real t8 = m[42] * t4 + m[48] * t5 + rate[3] * (m[54] * t5);
-        const gic_real t9 = ((m[47] + t4) * (rate[2] + t7) + t6 * t8) * R(23.965);
-        const gic_real t10 = m[42] * (R(0.4469) * (m[48] + m[54] * rate[3]));
-        const gic_real t11 = m[74] * R(0.09182100000000004);
-        const gic_real t12 = m[72] * R(-0.004825999999999997);
-        const gic_real t13 = t11 + (t12 + m[73] * R(0.08910630000000008));
-        const gic_real t14 = m[71] * R(0.09182100000000004);
-        const gic_real t15 = m[69] * R(-0.004825999999999997);
-        const gic_real t16 = t14 + (t15 + m[70] * R(0.08910630000000008));
-        const gic_real t17 = m[78] * t13 - m[79] * t16;
-        const gic_real t18 = m[77] * R(0.09182100000000004);
-        const gic_real t19 = m[75] * R(-0.004825999999999997);
-        const gic_real t20 = t18 + (t19 + m[76] * R(0.08910630000000008));
-        const gic_real t21 = m[80] * t16 - m[78] * t20;
-        const gic_real t22 = m[79] * t20 - m[80] * t13;
-        const gic_real t23 = m[78] * t21 - m[79] * t22 + (m[84] * t13 - m[85] * t16);
-        const gic_real t24 = rate[2] + (R(9.81) + (m[89] + t23)) + rate[3] * (m[101] + (m[96] * t13 - m[97] * t16));
-        const gic_real t25 = m[80] * t22 - m[78] * t17 + (m[86] * t16 - m[84] * t20);
-        const gic_real t26 = m[88] + t25 + rate[3] * (m[100] + (m[98] * t16 - m[96] * t20));
-        const gic_real t27 = m[79] * t17 - m[80] * t21 + (m[85] * t20 - m[86] * t13);
-        const gic_real t28 = t22 * (t27 + rate[3] * (m[97] * t20 - m[98] * t13));
-        const gic_real t29 = (m[83] + t17) * t24 + ((m[82] + t21) * t26 + t28);
+        /* force spring */
+        const gic_real t1 = xd[QUARTER_CAR_X_SPRING] * ((x[QUARTER_CAR_X_SPRING] - R(0.31658)) * R(167070.9));
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t2 = m[QUARTER_CAR_MOTION_CARRIAGE + QUARTER_CAR_VELOCITY_Z] * (R(9.81) +
+            rate[QUARTER_CAR_STATE_BOUNCE_RATE]) * R(525.59);
+        const gic_real t3 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_YY] * R(0.24689200985615367);
+        const gic_real t4 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t3;
+        const gic_real t5 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZZ] * R(3.0379110359107786e-06) +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_A_ZY] * R(0.24689200985615367);
+        const gic_real t6 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t5;
+        const gic_real t7 = R(9.81) + (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] * t3 -
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t6) + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t3);
+        const gic_real t8 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * t4 +
+            m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] * t5 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] * t5);
+        const gic_real t9 = ((m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_VELOCITY_Z] + t4) *
+            (rate[QUARTER_CAR_STATE_BOUNCE_RATE] + t7) + t6 * t8) * R(23.965);
+        const gic_real t10 = m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_OMEGA_X] * (R(0.4469) *
+            (m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_ALPHA_X] + m[QUARTER_CAR_MOTION_ARM + QUARTER_CAR_S + 0] *
+            rate[QUARTER_CAR_STATE_SPRING_RATE]));
+        /* wheel tire */
+        const gic_real t11 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004);
+        const gic_real t12 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997);
+        const gic_real t13 = t11 + (t12 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.08910630000000008));
+        const gic_real t14 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004);
+        const gic_real t15 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997);
+        const gic_real t16 = t14 + (t15 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.08910630000000008));
+        const gic_real t17 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t13 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t16;
+        const gic_real t18 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004);
+        const gic_real t19 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997);
+        const gic_real t20 = t18 + (t19 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.08910630000000008));
+        const gic_real t21 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t16 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t20;
+        const gic_real t22 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t20 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t13;
+        const gic_real t23 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t21 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t22 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t13 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t16);
+        const gic_real t24 = rate[QUARTER_CAR_STATE_BOUNCE_RATE] + (R(9.81) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Z] + t23)) + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 11] + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * t13 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * t16));
+        const gic_real t25 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t22 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t17 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t16 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] * t20);
+        const gic_real t26 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ACCELERATION_Y] + t25 +
+            rate[QUARTER_CAR_STATE_SPRING_RATE] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 10] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * t16 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] *
+            t20));
+        const gic_real t27 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t17 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t21 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] * t20 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] * t13);
+        const gic_real t28 = t22 * (t27 + rate[QUARTER_CAR_STATE_SPRING_RATE] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * t20 - m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] *
+            t13));
+        const gic_real t29 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] + t17) * t24 +
+            ((m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] + t21) * t26 + t28);
         const gic_real t30 = t29 * R(90.555);
-        const gic_real t31 = m[77] * (m[77] * R(4.7728205)) + (m[76] * (m[76] * R(7.58122)) + m[75] * (m[75] * R(4.8947505)));
-        const gic_real t32 = m[86] + m[98] * rate[3];
-        const gic_real t33 = m[74] * R(4.7728205);
-        const gic_real t34 = m[73] * R(7.58122);
-        const gic_real t35 = m[72] * R(4.8947505);
-        const gic_real t36 = m[77] * t33 + (m[76] * t34 + m[75] * t35);
-        const gic_real t37 = m[85] + m[97] * rate[3];
-        const gic_real t38 = m[71] * R(4.7728205);
-        const gic_real t39 = m[70] * R(7.58122);
-        const gic_real t40 = m[69] * R(4.8947505);
-        const gic_real t41 = m[77] * t38 + (m[76] * t39 + m[75] * t40);
-        const gic_real t42 = m[84] + m[96] * rate[3];
-        const gic_real t43 = m[80] * (t31 * t32 + (t36 * t37 + t41 * t42));
-        const gic_real t44 = (m[74] * t33 + (m[73] * t34 + m[72] * t35)) * t37;
-        const gic_real t45 = m[74] * t38 + (m[73] * t39 + m[72] * t40);
-        const gic_real t46 = (m[71] * t38 + (m[70] * t39 + m[69] * t40)) * t42;
-        const gic_real t47 = m[79] * (t36 * t32 + (t44 + t45 * t42)) + m[78] * (t41 * t32 + (t45 * t37 + t46));
+        const gic_real t31 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(4.7728205)) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] *
+            R(7.58122)) + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(4.8947505)));
+        const gic_real t32 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Z] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 8] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t33 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(4.7728205);
+        const gic_real t34 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(7.58122);
+        const gic_real t35 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(4.8947505);
+        const gic_real t36 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t33 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t34 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t35);
+        const gic_real t37 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_Y] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 7] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t38 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(4.7728205);
+        const gic_real t39 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(7.58122);
+        const gic_real t40 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(4.8947505);
+        const gic_real t41 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * t38 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * t39 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] *
+            t40);
+        const gic_real t42 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_ALPHA_X] +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_S + 6] * rate[QUARTER_CAR_STATE_SPRING_RATE];
+        const gic_real t43 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * (t31 * t32 + (t36 * t37 + t41 * t42));
+        const gic_real t44 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t33 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t34 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t35)) * t37;
+        const gic_real t45 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * t38 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * t39 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] *
+            t40);
+        const gic_real t46 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * t38 +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * t39 + m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] *
+            t40)) * t42;
+        const gic_real t47 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * (t36 * t32 + (t44 + t45 * t42)) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * (t41 * t32 + (t45 * t37 + t46));
         const gic_real t48 = t43 + t47;
-        const gic_real t49 = t11 + (m[73] * R(0.12319000000000002) + t12);
-        const gic_real t50 = t14 + (m[70] * R(0.12319000000000002) + t15);
-        const gic_real t51 = m[83] + (m[78] * t49 - m[79] * t50);
-        const gic_real t52 = t18 + (m[76] * R(0.12319000000000002) + t19);
+        const gic_real t49 = t11 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) + t12);
+        const gic_real t50 = t14 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) + t15);
+        const gic_real t51 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t49 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t50);
+        const gic_real t52 = t18 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) + t19);
         gic_real road53[3];
-        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t50, m[67] + t49, road53))
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t50,
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t49, road53))
             return GIC_ERROR_ROAD;
-        const gic_real t54 = (m[82] + (m[80] * t50 - m[78] * t52)) * road53[2];
-        const gic_real t55 = t54 + (m[79] * t52 - m[80] * t49) * road53[1];
-        const gic_real t56 = road53[0] + R(0.4699) - (m[68] + t52);
+        const gic_real t54 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t50 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t52)) * road53[2];
+        const gic_real t55 = t54 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t52 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t49) * road53[1];
+        const gic_real t56 = road53[0] + R(0.4699) - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t52);
         const gic_real t57 = GIC_MIN(GIC_MAX(t56 * R(100.0), R(0.0)), R(1.0));
         const gic_real t58 = (t55 - t51) * ((R(3.0) - (t57 + t57)) * (t57 * t57) * R(500.0));
-        const gic_real t59 = t51 * GIC_MAX(t58 + t56 * R(283000.0), R(0.0)) - xd[1] * (xd[1] * R(17490.8));
+        const gic_real t59 = t51 * GIC_MAX(t58 + t56 * R(283000.0), R(0.0)) - xd[QUARTER_CAR_X_SPRING] *
+            (xd[QUARTER_CAR_X_SPRING] * R(17490.8));
         const gic_real t60 = GIC_FABS(t2) + (GIC_FABS(t10) + GIC_FABS(t9)) + (GIC_FABS(t48) + GIC_FABS(t30));
         const gic_real t61 = t1 + (t2 + (t9 + t10) + (t30 + t48));
         const gic_real t62 = t60 + (GIC_FABS(t59) + GIC_FABS(t1));
-        const gic_real t63 = rate[2];
-        const gic_real t64 = rate[3];
-        energy[0] = t61;
-        energy[1] = t59;
-        energy[2] = t62;
-        acc[0] = t63;
-        acc[1] = t64;
+        const gic_real t63 = rate[QUARTER_CAR_STATE_BOUNCE_RATE];
+        const gic_real t64 = rate[QUARTER_CAR_STATE_SPRING_RATE];
+        energy[QUARTER_CAR_ENERGY_RATE] = t61;
+        energy[QUARTER_CAR_ENERGY_POWER] = t59;
+        energy[QUARTER_CAR_ENERGY_MAGNITUDES] = t62;
+        acc[QUARTER_CAR_UNKNOWN_OF_BOUNCE] = t63;
+        acc[QUARTER_CAR_UNKNOWN_OF_SPRING] = t64;
     }
     return GIC_OK;
 }
 
 GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
 {
-    gic_real e[4], acc[QUARTER_CAR_UNKNOWN_ROOM], unit[QUARTER_CAR_UNKNOWN_ROOM], tau0[QUARTER_CAR_UNKNOWN_ROOM], tau[QUARTER_CAR_UNKNOWN_ROOM];
+    gic_real e[4], acc[QUARTER_CAR_UNKNOWN_ROOM], unit[QUARTER_CAR_UNKNOWN_ROOM], tau0[QUARTER_CAR_UNKNOWN_ROOM],
+        tau[QUARTER_CAR_UNKNOWN_ROOM];
     gic_real M[QUARTER_CAR_UNKNOWN_ROOM][QUARTER_CAR_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = quarter_car_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -1898,7 +2402,7 @@ GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int quarter_car_any_setup(void *self)
 {

@@ -47,12 +47,12 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x70e2d357
+#define QUARTER_CAR_H 0x828c341b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "quarter_car.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "quarter_car.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -61,7 +61,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    QUARTER_CAR_ABI = 6,
+    QUARTER_CAR_ABI = 7,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_SLOW = 4,
@@ -98,7 +98,8 @@ enum {
     QUARTER_CAR_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[QUARTER_CAR_STATE_...], .input[QUARTER_CAR_INPUT_...], .output[QUARTER_CAR_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[QUARTER_CAR_STATE_...], .input[QUARTER_CAR_INPUT_...],
+ * .output[QUARTER_CAR_OUTPUT_...]. */
 enum {
     QUARTER_CAR_STATE_BOUNCE = 0, /* m */
     QUARTER_CAR_STATE_SPRING = 1, /* m */
@@ -131,40 +132,50 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct quarter_car {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][QUARTER_CAR_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][QUARTER_CAR_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[QUARTER_CAR_STATE_ROOM];
     gic_real input[QUARTER_CAR_INPUT_ROOM];
     gic_real output[QUARTER_CAR_OUTPUT_ROOM];
-    gic_real parameter[QUARTER_CAR_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (quarter_car_model.parameter_geometric) by quarter_car_setup_with */
+    gic_real parameter[QUARTER_CAR_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (quarter_car_model.parameter_geometric) by
+                                                    * quarter_car_setup_with */
     gic_real port[QUARTER_CAR_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[QUARTER_CAR_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[QUARTER_CAR_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[QUARTER_CAR_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_STATES - QUARTER_CAR_SLOW)];
     gic_real scratch[GIC_SCRATCH(QUARTER_CAR_STATE_ROOM, QUARTER_CAR_INPUT_ROOM)];
     gic_real x[QUARTER_CAR_COORDINATE_ROOM], xd[QUARTER_CAR_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
+        last recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } quarter_car;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int quarter_car_setup(quarter_car *self);
 
-/* The same as if the file had these numbers (QUARTER_CAR_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (QUARTER_CAR_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int quarter_car_setup_with(quarter_car *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: QUARTER_CAR_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: QUARTER_CAR_STATES numbers. rate is
+ * written only on GIC_OK. */
 int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int quarter_car_step(quarter_car *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -176,19 +187,20 @@ int quarter_car_poses(quarter_car *self, gic_real *pose);
 /* Present time, s. */
 gic_real quarter_car_time(const quarter_car *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *quarter_car_status_text(int status);
 const char *quarter_car_status_subset(const quarter_car *self);
 const char *quarter_car_status_state(const quarter_car *self);
 const char *quarter_car_status_condition(const quarter_car *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void quarter_car_snapshot(const quarter_car *self, quarter_car *copy);
 void quarter_car_restore(quarter_car *self, const quarter_car *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int quarter_car_self_test(quarter_car *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -67,7 +67,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x633cbac1
+#if SOLID_AXLE_H != 0xb41f1bb5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -128,16 +128,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -157,10 +158,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -182,13 +199,122 @@
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct solid_axle_links {
     const gic_real *known[SOLID_AXLE_KNOWN_ROOM];
-    gic_real x[SOLID_AXLE_DEPENDENCE_ROOM], rate[SOLID_AXLE_DEPENDENCE_ROOM], change[SOLID_AXLE_DEPENDENCE_ROOM], turn[3];
+    gic_real x[SOLID_AXLE_DEPENDENCE_ROOM], rate[SOLID_AXLE_DEPENDENCE_ROOM], change[SOLID_AXLE_DEPENDENCE_ROOM],
+        turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[SOLID_AXLE_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[SOLID_AXLE_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } solid_axle_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef SOLID_AXLE_LAYOUT_NAMES
+#define SOLID_AXLE_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    SOLID_AXLE_C_X = 0,
+    SOLID_AXLE_C_Y = 1,
+    SOLID_AXLE_C_Z = 2,
+    SOLID_AXLE_A_XX = 3,
+    SOLID_AXLE_A_XY = 4,
+    SOLID_AXLE_A_XZ = 5,
+    SOLID_AXLE_A_YX = 6,
+    SOLID_AXLE_A_YY = 7,
+    SOLID_AXLE_A_YZ = 8,
+    SOLID_AXLE_A_ZX = 9,
+    SOLID_AXLE_A_ZY = 10,
+    SOLID_AXLE_A_ZZ = 11,
+    SOLID_AXLE_OMEGA_X = 12,
+    SOLID_AXLE_OMEGA_Y = 13,
+    SOLID_AXLE_OMEGA_Z = 14,
+    SOLID_AXLE_VELOCITY_X = 15,
+    SOLID_AXLE_VELOCITY_Y = 16,
+    SOLID_AXLE_VELOCITY_Z = 17,
+    SOLID_AXLE_ALPHA_X = 18,
+    SOLID_AXLE_ALPHA_Y = 19,
+    SOLID_AXLE_ALPHA_Z = 20,
+    SOLID_AXLE_ACCELERATION_X = 21,
+    SOLID_AXLE_ACCELERATION_Y = 22,
+    SOLID_AXLE_ACCELERATION_Z = 23,
+    SOLID_AXLE_S = 24, /* unit velocities, 6 numbers a coordinate */
+    SOLID_AXLE_I_FIRST_X = 0,
+    SOLID_AXLE_I_FIRST_Y = 1,
+    SOLID_AXLE_I_FIRST_Z = 2,
+    SOLID_AXLE_I_SECOND_XX = 3,
+    SOLID_AXLE_I_SECOND_YY = 4,
+    SOLID_AXLE_I_SECOND_ZZ = 5,
+    SOLID_AXLE_I_SECOND_XY = 6,
+    SOLID_AXLE_I_SECOND_XZ = 7,
+    SOLID_AXLE_I_SECOND_YZ = 8,
+    SOLID_AXLE_I_FORCE_X = 9,
+    SOLID_AXLE_I_FORCE_Y = 10,
+    SOLID_AXLE_I_FORCE_Z = 11,
+    SOLID_AXLE_I_MOMENT_X = 12,
+    SOLID_AXLE_I_MOMENT_Y = 13,
+    SOLID_AXLE_I_MOMENT_Z = 14,
+    SOLID_AXLE_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    SOLID_AXLE_MOTION_RACK = 0,
+    SOLID_AXLE_MOTION_LCA_F_L = 30,
+    SOLID_AXLE_MOTION_LCA_F_R = 60,
+    SOLID_AXLE_MOTION_WHEEL_F_L = 126,
+    SOLID_AXLE_MOTION_WHEEL_F_R = 162,
+    SOLID_AXLE_MOTION_AXLE = 90,
+    SOLID_AXLE_INERTIA_RACK = 0,
+    SOLID_AXLE_INERTIA_LCA_F_L = 23,
+    SOLID_AXLE_INERTIA_LCA_F_R = 46,
+    SOLID_AXLE_INERTIA_AXLE = 69,
+    SOLID_AXLE_INERTIA_WHEEL_F_L = 101,
+    SOLID_AXLE_INERTIA_WHEEL_F_R = 133,
+    SOLID_AXLE_SUBSET_CHASSIS = 0,
+    SOLID_AXLE_SUBSET_RACK = 1,
+    SOLID_AXLE_SUBSET_LCA_F_L = 2,
+    SOLID_AXLE_SUBSET_LCA_F_R = 3,
+    SOLID_AXLE_SUBSET_AXLE = 4,
+    SOLID_AXLE_SUBSET_WHEEL_F_L = 5,
+    SOLID_AXLE_SUBSET_WHEEL_F_R = 6,
+    SOLID_AXLE_X_SPRING_F_L = 0,
+    SOLID_AXLE_X_SPRING_F_R = 1,
+    SOLID_AXLE_X_SPRING_R_L = 2,
+    SOLID_AXLE_X_SPRING_R_R = 3,
+    SOLID_AXLE_X_RACK = 4,
+    SOLID_AXLE_Q_X = 0,
+    SOLID_AXLE_Q_Y = 1,
+    SOLID_AXLE_Q_Z = 2,
+    SOLID_AXLE_Q_P0 = 3,
+    SOLID_AXLE_Q_P1 = 4,
+    SOLID_AXLE_Q_P2 = 5,
+    SOLID_AXLE_Q_P3 = 6,
+    SOLID_AXLE_POSE_CHASSIS = 0,
+    SOLID_AXLE_POSE_RACK = 7,
+    SOLID_AXLE_POSE_LCA_F_L = 14,
+    SOLID_AXLE_POSE_LCA_F_R = 21,
+    SOLID_AXLE_POSE_WHEEL_F_L = 28,
+    SOLID_AXLE_POSE_WHEEL_F_R = 35,
+    SOLID_AXLE_POSE_AXLE = 42,
+    SOLID_AXLE_UNKNOWN_ALPHA_X = 0,
+    SOLID_AXLE_UNKNOWN_ALPHA_Y = 1,
+    SOLID_AXLE_UNKNOWN_ALPHA_Z = 2,
+    SOLID_AXLE_UNKNOWN_ACCELERATION_X = 3,
+    SOLID_AXLE_UNKNOWN_ACCELERATION_Y = 4,
+    SOLID_AXLE_UNKNOWN_ACCELERATION_Z = 5,
+    SOLID_AXLE_UNKNOWN_OF_SPRING_F_L = 6,
+    SOLID_AXLE_UNKNOWN_OF_SPRING_F_R = 7,
+    SOLID_AXLE_UNKNOWN_OF_SPRING_R_L = 8,
+    SOLID_AXLE_UNKNOWN_OF_SPRING_R_R = 9,
+    SOLID_AXLE_UNKNOWN_OF_RACK = 10,
+    SOLID_AXLE_ENERGY_RATE = 0,
+    SOLID_AXLE_ENERGY_POWER = 1,
+    SOLID_AXLE_ENERGY_MAGNITUDES = 2,
+    SOLID_AXLE_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real solid_axle_k_rack[1][1] = {
     { /* rack */
@@ -199,48 +325,50 @@ static const gic_real solid_axle_k_rack[1][1] = {
 /* Class 'rack': 6 unknowns of rack.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[SOLID_AXLE_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[SOLID_AXLE_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[SOLID_AXLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[SOLID_AXLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[SOLID_AXLE_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[SOLID_AXLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[SOLID_AXLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[SOLID_AXLE_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[SOLID_AXLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[SOLID_AXLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[SOLID_AXLE_I_FORCE_Y] = inertia_force_y;
+        inertia[SOLID_AXLE_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[SOLID_AXLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[SOLID_AXLE_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -251,20 +379,36 @@ static int solid_axle_solve_rack(solid_axle *self, const gic_real *GIC_RESTRICT 
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void solid_axle_residual_rack(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void solid_axle_residual_rack(const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[SOLID_AXLE_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[SOLID_AXLE_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[SOLID_AXLE_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  0.0386496 * sign
+ *    1  spring_f_l.b
+ *    2  (arm_f_l.side_b_z * 0.0112189 + 0.970969 * spring_f_l.point_b_y) * 215.616
+ *    3  -arm_f_l.third_b_y * 215.616
+ *    4  arm_f_l.side_b_z * 215.616
+ *    5  arm_f_l.third_b_y * 215.616
+ *    6  arm_f_l.point_a_y - spring_f_l.point_a_y
+ *    7  lca_f_l.com_y
+ *    8  arm_f_l.point_a_y
+ *    9  scale of the determinant
+ *   10  spring_f_l.point_b_y
+ *   11  spring_f_l.point_a_y
+ */
 static const gic_real solid_axle_k_lca_f_l[2][12] = {
     { /* lca_f_l */
         R(-0.038649583990999964), R(0.05607209753299996), R(50.90547521989428), R(51.57660077184113),
@@ -281,15 +425,17 @@ static const gic_real solid_axle_k_lca_f_l[2][12] = {
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
+        /* pose, in closed form */
         const gic_real t1 = R(0.5) * (R(0.1582643473416399) - x[0] * x[0]) - R(0.01011066687539999);
         const gic_real t2 = R(0.004637870464427621) - t1 * t1;
         if (!(t2 > R(0.0)))
@@ -301,100 +447,105 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
         const gic_real t5 = t3 * k[0] + k[1] * t1;
         const gic_real t6 = t4 * k[2] + t5 * R(10.049655409199131);
         const gic_real t7 = t4 * R(-10.049655409199131) + t5 * k[2];
-        const gic_real t8 = t5 * k[3] + t4 * R(209.3566321652691);
-        motion[7] = t8;
-        const gic_real t9 = t5 * R(-209.35663216526908) + t4 * k[4];
-        motion[8] = t9;
-        const gic_real t10 = t5 * R(209.3566321652691) + t4 * k[5];
-        motion[10] = t10;
-        const gic_real t11 = t5 * k[4] + t4 * R(209.35663216526908);
-        motion[11] = t11;
+        const gic_real a_yy = t5 * k[3] + t4 * R(209.3566321652691);
+        motion[SOLID_AXLE_A_YY] = a_yy;
+        const gic_real a_yz = t5 * R(-209.35663216526908) + t4 * k[4];
+        motion[SOLID_AXLE_A_YZ] = a_yz;
+        const gic_real a_zy = t5 * R(209.3566321652691) + t4 * k[5];
+        motion[SOLID_AXLE_A_ZY] = a_zy;
+        const gic_real a_zz = t5 * k[4] + t4 * R(209.35663216526908);
+        motion[SOLID_AXLE_A_ZZ] = a_zz;
+        /* derivative of the constraint equations, and its factors */
         const gic_real t12 = t6 + k[6];
         const gic_real t13 = t7 - R(0.19748500000000002);
-        const gic_real t14 = t9 * R(3.0379110359107786e-06) + t8 * k[7];
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t14 = a_yz * R(3.0379110359107786e-06) + a_yy * k[7];
         const gic_real t15 = t6 * t13 - t7 * t12;
-        const gic_real t16 = t11 * R(3.0379110359107786e-06) + t10 * k[7];
-        const gic_real t17 = t9 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t11 * (t11 * R(0.4469));
+        const gic_real t16 = a_zz * R(3.0379110359107786e-06) + a_zy * k[7];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_zz * (a_zz * R(0.4469));
         const gic_real t19 = k[8] + t14;
-        const gic_real t20 = R(0.4469) + t9 * t17;
+        const gic_real t20 = R(0.4469) + a_yz * t17;
         const gic_real t21 = R(1.0) / t15;
         const gic_real t22 = turn[1] * t16 - turn[2] * t19;
-        const gic_real t23 = t11 * t17;
-        const gic_real t24 = R(23.965) * t19;
-        inertia[1] = t24;
-        const gic_real t25 = R(23.965) * t16;
-        inertia[2] = t25;
-        const gic_real t26 = -(t19 * R(40.476046225));
-        inertia[6] = t26;
-        const gic_real t27 = -(t16 * R(40.476046225));
-        inertia[7] = t27;
+        const gic_real t23 = a_zz * t17;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[SOLID_AXLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[SOLID_AXLE_I_FIRST_Z] = inertia_first_z;
+        const gic_real inertia_second_xy = -(t19 * R(40.476046225));
+        inertia[SOLID_AXLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = -(t16 * R(40.476046225));
+        inertia[SOLID_AXLE_I_SECOND_XZ] = inertia_second_xz;
         const gic_real t28 = turn[2] * t18 + turn[1] * t23;
         const gic_real t29 = turn[2] * t23 + turn[1] * t20;
-        const gic_real t30 = t19 * t24;
-        const gic_real t31 = t16 * t25;
-        const gic_real t32 = t23 - t16 * t24;
-        inertia[8] = t32;
-        const gic_real t33 = x[0] * t21;
-        motion[24] = t33;
-        const gic_real t34 = t30 + (t18 + R(68.36262541240713));
-        inertia[5] = t34;
-        const gic_real t35 = t30 + (R(0.4469) + t31);
-        inertia[3] = t35;
-        const gic_real t36 = rate[0] * t33;
-        motion[12] = t36;
-        const gic_real t37 = t16 * t33;
-        const gic_real t38 = t14 * t33;
-        const gic_real t39 = R(0.4469) * t33;
-        const gic_real t40 = t31 + (t20 + R(68.36262541240713));
-        inertia[4] = t40;
-        if (!(k[9] * t15 - ahead[0] * GIC_FABS(t36) > R(0.004)))
+        const gic_real t30 = t19 * inertia_first_y;
+        const gic_real t31 = t16 * inertia_first_z;
+        const gic_real inertia_second_yz = t23 - t16 * inertia_first_y;
+        inertia[SOLID_AXLE_I_SECOND_YZ] = inertia_second_yz;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real s_0_0 = x[0] * t21;
+        motion[SOLID_AXLE_S + 0] = s_0_0;
+        const gic_real inertia_second_zz = t30 + (t18 + R(68.36262541240713));
+        inertia[SOLID_AXLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xx = t30 + (R(0.4469) + t31);
+        inertia[SOLID_AXLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real omega_x = rate[0] * s_0_0;
+        motion[SOLID_AXLE_OMEGA_X] = omega_x;
+        const gic_real t37 = t16 * s_0_0;
+        const gic_real t38 = t14 * s_0_0;
+        const gic_real t39 = R(0.4469) * s_0_0;
+        const gic_real inertia_second_yy = t31 + (t20 + R(68.36262541240713));
+        inertia[SOLID_AXLE_I_SECOND_YY] = inertia_second_yy;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        if (!(k[9] * t15 - ahead[0] * GIC_FABS(omega_x) > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t41 = t6 * t36;
-        const gic_real t42 = t7 * t36;
-        const gic_real t43 = t16 * t36;
-        const gic_real t44 = t14 * t36;
-        const gic_real t45 = turn[2] * t36;
-        const gic_real t46 = turn[1] * t36;
-        const gic_real t47 = turn[0] + t36;
+        const gic_real t41 = t6 * omega_x;
+        const gic_real t42 = t7 * omega_x;
+        const gic_real t43 = t16 * omega_x;
+        const gic_real t44 = t14 * omega_x;
+        const gic_real t45 = turn[2] * omega_x;
+        const gic_real t46 = turn[1] * omega_x;
+        const gic_real t47 = turn[0] + omega_x;
         const gic_real t48 = R(23.965) * t37;
-        const gic_real t49 = R(23.965) * t38;
-        inertia[17] = t49;
-        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (t36 * t42) + t12 * (t36 * t41));
+        const gic_real along_0_force_z = R(23.965) * t38;
+        inertia[SOLID_AXLE_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real t50 = rate[0] * rate[0] - t41 * t41 - t42 * t42 + (t13 * (omega_x * t42) + t12 * (omega_x *
+            t41));
         const gic_real t51 = t44 + (turn[0] * t19 - R(1.688965) * turn[1] + t44);
         const gic_real t52 = R(1.688965) * turn[2] - turn[0] * t16 - t43 - t43;
         const gic_real t53 = R(0.4469) * t47;
-        const gic_real t54 = t19 * t49 + (t39 + t16 * t48);
-        inertia[18] = t54;
-        const gic_real t55 = t37 * t48 + (t33 * t39 + t38 * t49);
-        inertia[22] = t55;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (t39 + t16 * t48);
+        inertia[SOLID_AXLE_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real mass_0 = t37 * t48 + (s_0_0 * t39 + t38 * along_0_force_z);
+        inertia[SOLID_AXLE_I_COORDINATE + 7] = mass_0;
         const gic_real t56 = turn[2] * t53 + (t20 * t45 - t23 * t46 - t28 * t47);
-        const gic_real t57 = t21 * t50;
-        motion[18] = t57;
+        const gic_real alpha_x = t21 * t50;
+        motion[SOLID_AXLE_ALPHA_X] = alpha_x;
         const gic_real t58 = t29 * t47 + (t23 * t45 - t18 * t46) - turn[1] * t53;
-        const gic_real t59 = turn[2] * t22 - t36 * t44 - turn[0] * t51 - t16 * t57;
-        const gic_real t60 = t14 * t57 + (turn[0] * t52 - (turn[1] * t22 + t36 * t43));
-        const gic_real t61 = R(23.965) * (turn[1] * t51 - turn[2] * t52);
-        inertia[9] = t61;
-        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * t57;
-        const gic_real t63 = -(R(40.476046225) * t38);
-        inertia[19] = t63;
-        const gic_real t64 = -(R(40.476046225) * t37);
-        inertia[20] = t64;
-        const gic_real t65 = -t48;
-        inertia[16] = t65;
-        const gic_real t66 = R(23.965) * t59;
-        inertia[10] = t66;
-        const gic_real t67 = R(40.476046225) * t59 + (t58 - t19 * t61);
-        inertia[14] = t67;
-        const gic_real t68 = R(23.965) * t60;
-        inertia[11] = t68;
-        const gic_real t69 = t16 * t61 + t56 - R(40.476046225) * t60;
-        inertia[13] = t69;
-        const gic_real t70 = t62 + t19 * t68 - t16 * t66;
-        inertia[12] = t70;
-        const gic_real t71 = t33 * t62 + t68 * t38 - t66 * t37;
-        inertia[21] = t71;
+        const gic_real t59 = turn[2] * t22 - omega_x * t44 - turn[0] * t51 - t16 * alpha_x;
+        const gic_real t60 = t14 * alpha_x + (turn[0] * t52 - (turn[1] * t22 + omega_x * t43));
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t51 - turn[2] * t52);
+        inertia[SOLID_AXLE_I_FORCE_X] = inertia_force_x;
+        const gic_real t62 = turn[1] * t28 - turn[2] * t29 + R(0.4469) * alpha_x;
+        const gic_real along_0_moment_y = -(R(40.476046225) * t38);
+        inertia[SOLID_AXLE_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(R(40.476046225) * t37);
+        inertia[SOLID_AXLE_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t48;
+        inertia[SOLID_AXLE_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real inertia_force_y = R(23.965) * t59;
+        inertia[SOLID_AXLE_I_FORCE_Y] = inertia_force_y;
+        const gic_real inertia_moment_z = R(40.476046225) * t59 + (t58 - t19 * inertia_force_x);
+        inertia[SOLID_AXLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_force_z = R(23.965) * t60;
+        inertia[SOLID_AXLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + t56 - R(40.476046225) * t60;
+        inertia[SOLID_AXLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_x = t62 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[SOLID_AXLE_I_MOMENT_X] = inertia_moment_x;
+        const gic_real along_0_bias = s_0_0 * t62 + inertia_force_z * t38 - inertia_force_y * t37;
+        inertia[SOLID_AXLE_I_COORDINATE + 6] = along_0_bias;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -405,32 +556,38 @@ static int solid_axle_solve_lca_f_l(solid_axle *self, const gic_real *GIC_RESTRI
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void solid_axle_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = R(0.01121887479261392) * motion[11] + k[10] * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = R(0.01121887479261392) * motion[SOLID_AXLE_A_ZZ] + k[10] * motion[SOLID_AXLE_A_ZY];
         const gic_real t2 = t1 - R(0.19748500000000002);
-        const gic_real t3 = R(0.01121887479261392) * motion[8] + k[10] * motion[7];
+        const gic_real t3 = R(0.01121887479261392) * motion[SOLID_AXLE_A_YZ] + k[10] * motion[SOLID_AXLE_A_YY];
         const gic_real t4 = k[8] + t3 - k[11];
         const gic_real t5 = t2 * t2 + (R(4.633797183999867e-05) + t4 * t4) - x[0] * x[0];
-        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) + R(0.06335227878037952);
+        const gic_real t6 = (R(0.006807199999999902) + GIC_FABS(t4) + GIC_FABS(t2)) * R(0.25954049989094174) +
+            R(0.06335227878037952);
         const gic_real t7 = R(2.0) / t6;
-        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
-        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[24] - x[0]);
-        const gic_real t11 = GIC_FABS(motion[24]) + GIC_FABS(-(x[0] * t7));
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t8 = GIC_FABS(R(0.5) * t5 * t7) + GIC_FABS(motion[SOLID_AXLE_A_ZY] * motion[SOLID_AXLE_A_ZY] +
+            motion[SOLID_AXLE_A_YY] * motion[SOLID_AXLE_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[SOLID_AXLE_A_YZ] + motion[SOLID_AXLE_A_ZY])) +
+            GIC_FABS(motion[SOLID_AXLE_A_YY] - motion[SOLID_AXLE_A_ZZ]);
+        const gic_real t10 = t7 * ((t3 * t2 - t1 * t4) * motion[SOLID_AXLE_S + 0] - x[0]);
+        const gic_real t11 = GIC_FABS(motion[SOLID_AXLE_S + 0]) + GIC_FABS(-(x[0] * t7));
+        const gic_real t12 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - rate[0] * motion[24]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t3 * motion[12];
-        const gic_real t16 = t1 * motion[12];
-        const gic_real t17 = t2 * (t3 * motion[18] - motion[12] * t16) - t4 * (motion[12] * t15 + t1 * motion[18]);
+        const gic_real t14 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X] - rate[0] * motion[SOLID_AXLE_S + 0]) / (R(1e-30) +
+            (t12 + t13));
+        const gic_real t15 = t3 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t16 = t1 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t17 = t2 * (t3 * motion[SOLID_AXLE_ALPHA_X] - motion[SOLID_AXLE_OMEGA_X] * t16) - t4 *
+            (motion[SOLID_AXLE_OMEGA_X] * t15 + t1 * motion[SOLID_AXLE_ALPHA_X]);
         const gic_real t18 = t15 * t15 + t16 * t16 + t17 - rate[0] * rate[0];
-        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[18]) + t13 * t13);
+        const gic_real t19 = R(1e-30) + (t12 * t12 + GIC_FABS(motion[SOLID_AXLE_ALPHA_X]) + t13 * t13);
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + GIC_FABS(t18 * t7) / t19;
         worst[0] = t9;
         worst[1] = t20;
@@ -446,11 +603,11 @@ static const gic_real solid_axle_k_axle[1][1] = {
 /* Class 'axle': 6 unknowns of axle.
  * start: pose 7 numbers a body, S from 7, factors from 19. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
+static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT old, gic_real *GIC_RESTRICT start,
     gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_r_l, spring_r_r */
     const gic_real *const rate = links->rate;
     const gic_real *const change = links->change;
     const gic_real *const turn = links->turn;
@@ -467,6 +624,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
     if (!links->cold) {
         /* predict: the old pose moved by its unit velocities times the change of the coordinates */
         {
+            /* constraint equations at the poses, and their derivative */
             const gic_real t1 = change[0] * s[3] + change[1] * s[9];
             const gic_real t2 = change[0] * s[4] + change[1] * s[10];
             const gic_real t3 = change[0] * s[5] + change[1] * s[11];
@@ -476,57 +634,60 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t7 = R(0.5) * t6;
             const gic_real t8 = change[0] * s[0] + change[1] * s[6];
             const gic_real t9 = R(0.5) * t8;
-            const gic_real t10 = q[3] - (q[6] * t5 + (q[5] * t7 + q[4] * t9));
-            const gic_real t11 = q[6] + (q[5] * t9 - q[4] * t7 + q[3] * t5);
-            const gic_real t12 = q[5] + (q[4] * t5 - q[6] * t9 + q[3] * t7);
-            const gic_real t13 = q[4] + (q[6] * t7 - q[5] * t5 + q[3] * t9);
+            const gic_real t10 = q[SOLID_AXLE_Q_P0] - (q[SOLID_AXLE_Q_P3] * t5 + (q[SOLID_AXLE_Q_P2] * t7 +
+                q[SOLID_AXLE_Q_P1] * t9));
+            const gic_real t11 = q[SOLID_AXLE_Q_P3] + (q[SOLID_AXLE_Q_P2] * t9 - q[SOLID_AXLE_Q_P1] * t7 +
+                q[SOLID_AXLE_Q_P0] * t5);
+            const gic_real t12 = q[SOLID_AXLE_Q_P2] + (q[SOLID_AXLE_Q_P1] * t5 - q[SOLID_AXLE_Q_P3] * t9 +
+                q[SOLID_AXLE_Q_P0] * t7);
+            const gic_real t13 = q[SOLID_AXLE_Q_P1] + (q[SOLID_AXLE_Q_P3] * t7 - q[SOLID_AXLE_Q_P2] * t5 +
+                q[SOLID_AXLE_Q_P0] * t9);
             const gic_real t14 = t11 * t11 + (t12 * t12 + t13 * t13) + t10 * t10;
             const gic_real t15 = R(1.5) - R(0.5) * t14;
             const gic_real t16 = (t3 * t3 + (t2 * t2 + t1 * t1)) * R(2.184837229626393);
             const gic_real t17 = t4 * t4 + (t6 * t6 + t8 * t8) + t16;
-            const gic_real t18 = q[0] + t1;
-            const gic_real t19 = q[1] + t2;
-            const gic_real t20 = q[2] + t3;
+            const gic_real t18 = q[SOLID_AXLE_Q_X] + t1;
+            const gic_real t19 = q[SOLID_AXLE_Q_Y] + t2;
+            const gic_real t20 = q[SOLID_AXLE_Q_Z] + t3;
             const gic_real t21 = t10 * t15;
             const gic_real t22 = t13 * t15;
             const gic_real t23 = t12 * t15;
             const gic_real t24 = t11 * t15;
-            q[0] = t18;
-            q[1] = t19;
-            q[2] = t20;
-            q[3] = t21;
-            q[4] = t22;
-            q[5] = t23;
-            q[6] = t24;
+            q[SOLID_AXLE_Q_X] = t18;
+            q[SOLID_AXLE_Q_Y] = t19;
+            q[SOLID_AXLE_Q_Z] = t20;
+            q[SOLID_AXLE_Q_P0] = t21;
+            q[SOLID_AXLE_Q_P1] = t22;
+            q[SOLID_AXLE_Q_P2] = t23;
+            q[SOLID_AXLE_Q_P3] = t24;
             reach = t17;
         }
-        /* correct with the old factors until what a further correction would change, about step times reach, is rounding;
-         * not at all where the prediction, which is off by about the square of the way, is that good */
-        for (i = 0; i < GIC_CHORDS && (i || R(4.0) * reach * reach > enough); ++i) {
+        /* correct with the old factors until what a further correction would change is rounding */
+        for (i = 0; i < GIC_CHORDS && (i || !GIC_PREDICTED(reach, enough)); ++i) {
             {
-                const gic_real t1 = q[5] + q[5];
-                const gic_real t2 = q[4] + q[4];
-                const gic_real t3 = q[6] + q[6];
-                const gic_real t4 = q[2] - R(0.18600000000000005);
-                const gic_real t5 = q[1] - R(-0.45);
-                const gic_real t6 = q[0] - R(-1.05);
-                const gic_real t7 = q[6] * t1;
-                const gic_real t8 = q[3] * t2;
-                const gic_real t9 = q[4] * t2;
-                const gic_real t10 = q[5] * t1;
-                const gic_real t11 = q[4] * t3;
-                const gic_real t12 = q[3] * t1;
+                const gic_real t1 = q[SOLID_AXLE_Q_P2] + q[SOLID_AXLE_Q_P2];
+                const gic_real t2 = q[SOLID_AXLE_Q_P1] + q[SOLID_AXLE_Q_P1];
+                const gic_real t3 = q[SOLID_AXLE_Q_P3] + q[SOLID_AXLE_Q_P3];
+                const gic_real t4 = q[SOLID_AXLE_Q_Z] - R(0.18600000000000005);
+                const gic_real t5 = q[SOLID_AXLE_Q_Y] - R(-0.45);
+                const gic_real t6 = q[SOLID_AXLE_Q_X] - R(-1.05);
+                const gic_real t7 = q[SOLID_AXLE_Q_P3] * t1;
+                const gic_real t8 = q[SOLID_AXLE_Q_P0] * t2;
+                const gic_real t9 = q[SOLID_AXLE_Q_P1] * t2;
+                const gic_real t10 = q[SOLID_AXLE_Q_P2] * t1;
+                const gic_real t11 = q[SOLID_AXLE_Q_P1] * t3;
+                const gic_real t12 = q[SOLID_AXLE_Q_P0] * t1;
                 const gic_real t13 = t4 * t4 + (t5 * t5 + t6 * t6) - R(0.43540000000000006);
                 const gic_real t14 = t7 + t8;
                 const gic_real t15 = R(1.0) - (t9 + t10);
                 const gic_real t16 = t11 - t12;
-                const gic_real t17 = q[6] * t3;
-                const gic_real t18 = q[5] * t2;
-                const gic_real t19 = q[3] * t3;
+                const gic_real t17 = q[SOLID_AXLE_Q_P3] * t3;
+                const gic_real t18 = q[SOLID_AXLE_Q_P2] * t2;
+                const gic_real t19 = q[SOLID_AXLE_Q_P0] * t3;
                 const gic_real t20 = t7 - t8;
                 const gic_real t21 = R(-0.38) * t14;
                 const gic_real t22 = R(0.62) * t14;
-                const gic_real t23 = q[2] + R(0.24) * t14 - R(0.18600000000000005);
+                const gic_real t23 = q[SOLID_AXLE_Q_Z] + R(0.24) * t14 - R(0.18600000000000005);
                 const gic_real t24 = R(0.020000000000000018) * t16;
                 const gic_real t25 = R(-0.09999999999999987) * t16;
                 const gic_real t26 = R(1.0) - (t9 + t17);
@@ -537,40 +698,42 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
                 const gic_real t31 = R(-0.16999999999999998) * t20;
                 const gic_real t32 = R(1.0) - (t10 + t17);
                 const gic_real t33 = t18 - t19;
-                const gic_real t34 = q[2] + (t27 + (t21 + t24)) - R(-0.05399999999999999);
-                const gic_real t35 = q[2] + (t27 + (t24 + t22)) - R(-0.05399999999999999);
-                const gic_real t36 = q[2] + (t28 + (t22 + t25)) - R(0.30600000000000005);
-                const gic_real t37 = q[2] + (t28 + (t21 + t25)) - R(0.30600000000000005);
+                const gic_real t34 = q[SOLID_AXLE_Q_Z] + (t27 + (t21 + t24)) - R(-0.05399999999999999);
+                const gic_real t35 = q[SOLID_AXLE_Q_Z] + (t27 + (t24 + t22)) - R(-0.05399999999999999);
+                const gic_real t36 = q[SOLID_AXLE_Q_Z] + (t28 + (t22 + t25)) - R(0.30600000000000005);
+                const gic_real t37 = q[SOLID_AXLE_Q_Z] + (t28 + (t21 + t25)) - R(0.30600000000000005);
                 const gic_real t38 = R(-0.38) * t26;
                 const gic_real t39 = R(0.020000000000000018) * t29;
                 const gic_real t40 = R(0.62) * t26;
                 const gic_real t41 = R(-0.09999999999999987) * t29;
-                const gic_real t42 = q[1] + R(0.24) * t26 - R(0.45);
+                const gic_real t42 = q[SOLID_AXLE_Q_Y] + R(0.24) * t26 - R(0.45);
                 const gic_real t43 = t11 + t12;
                 const gic_real t44 = R(-0.38) * t33;
-                const gic_real t45 = q[1] + (t30 + (t38 + t39)) - R(-0.45);
-                const gic_real t46 = q[1] + (t30 + (t39 + t40)) - R(0.45);
-                const gic_real t47 = q[1] + (t31 + (t40 + t41)) - R(0.45);
-                const gic_real t48 = q[1] + (t31 + (t38 + t41)) - R(-0.45);
+                const gic_real t45 = q[SOLID_AXLE_Q_Y] + (t30 + (t38 + t39)) - R(-0.45);
+                const gic_real t46 = q[SOLID_AXLE_Q_Y] + (t30 + (t39 + t40)) - R(0.45);
+                const gic_real t47 = q[SOLID_AXLE_Q_Y] + (t31 + (t40 + t41)) - R(0.45);
+                const gic_real t48 = q[SOLID_AXLE_Q_Y] + (t31 + (t38 + t41)) - R(-0.45);
                 const gic_real t49 = R(0.020000000000000018) * t32;
                 const gic_real t50 = R(0.62) * t33;
                 const gic_real t51 = R(-0.27) * t43;
                 const gic_real t52 = R(-0.09999999999999987) * t32;
                 const gic_real t53 = R(-0.16999999999999998) * t43;
-                const gic_real t54 = q[0] + R(0.24) * t33 - R(-1.05);
+                const gic_real t54 = q[SOLID_AXLE_Q_X] + R(0.24) * t33 - R(-1.05);
                 const gic_real t55 = t13 * R(0.5);
-                const gic_real t56 = q[0] + (t51 + (t44 + t49)) - R(-0.9);
-                const gic_real t57 = q[0] + (t51 + (t49 + t50)) - R(-0.9);
-                const gic_real t58 = q[0] + (t53 + (t50 + t52)) - R(-1.75);
-                const gic_real t59 = q[0] + (t53 + (t44 + t52)) - R(-1.75);
+                const gic_real t56 = q[SOLID_AXLE_Q_X] + (t51 + (t44 + t49)) - R(-0.9);
+                const gic_real t57 = q[SOLID_AXLE_Q_X] + (t51 + (t49 + t50)) - R(-0.9);
+                const gic_real t58 = q[SOLID_AXLE_Q_X] + (t53 + (t50 + t52)) - R(-1.75);
+                const gic_real t59 = q[SOLID_AXLE_Q_X] + (t53 + (t44 + t52)) - R(-1.75);
                 const gic_real t60 = t23 * t23 + (t42 * t42 + t54 * t54) - R(0.43540000000000006);
                 const gic_real t61 = t34 * t34 + (t45 * t45 + t56 * t56) - R(0.4974000000000001);
                 const gic_real t62 = t35 * t35 + (t46 * t46 + t57 * t57) - R(0.4974000000000001);
+                /* pose: the last correction */
                 const gic_real t63 = x[0] * x[0] - (t36 * t36 + (t47 * t47 + t58 * t58));
                 const gic_real t64 = x[1] * x[1] - (t37 * t37 + (t48 * t48 + t59 * t59));
                 const gic_real t65 = R(0.5) * t60;
                 const gic_real t66 = R(0.5) * t61;
                 const gic_real t67 = R(0.5) * t62;
+                /* what the bodies add to the inertia and to the equations of motion */
                 const gic_real t68 = t55 * f[0] + t66 * f[6] + t67 * f[12] + t65 * f[18];
                 const gic_real t69 = f[36] * (t63 * f[24] - t68 + t64 * f[30]);
                 const gic_real t70 = t66 + f[6] * t69;
@@ -601,13 +764,17 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
                 const gic_real t95 = f[41] * t93;
                 const gic_real t96 = f[15] * t95 - (t78 + f[14] * t82) - f[16] * t91;
                 const gic_real t97 = R(0.5) * t95;
-                const gic_real t98 = q[5] + (q[3] * t94 - (q[6] * t92 + q[4] * t97));
-                const gic_real t99 = q[4] + (q[5] * t97 + q[6] * t94 + q[3] * t92);
-                const gic_real t100 = q[6] + (q[5] * t92 - q[4] * t94 - q[3] * t97);
+                const gic_real t98 = q[SOLID_AXLE_Q_P2] + (q[SOLID_AXLE_Q_P0] * t94 - (q[SOLID_AXLE_Q_P3] * t92 +
+                    q[SOLID_AXLE_Q_P1] * t97));
+                const gic_real t99 = q[SOLID_AXLE_Q_P1] + (q[SOLID_AXLE_Q_P2] * t97 + q[SOLID_AXLE_Q_P3] * t94 +
+                    q[SOLID_AXLE_Q_P0] * t92);
+                const gic_real t100 = q[SOLID_AXLE_Q_P3] + (q[SOLID_AXLE_Q_P2] * t92 - q[SOLID_AXLE_Q_P1] * t94 -
+                    q[SOLID_AXLE_Q_P0] * t97);
                 const gic_real t101 = f[39] * (t96 - f[17] * t90);
-                const gic_real t102 = q[3] - (q[5] * t94 + q[4] * t92 - q[6] * t97);
+                const gic_real t102 = q[SOLID_AXLE_Q_P0] - (q[SOLID_AXLE_Q_P2] * t94 + q[SOLID_AXLE_Q_P1] * t92 -
+                    q[SOLID_AXLE_Q_P3] * t97);
                 const gic_real t103 = f[9] * t95 - (t70 + f[7] * t76 + f[8] * t101);
-                const gic_real t104 = q[0] + t101;
+                const gic_real t104 = q[SOLID_AXLE_Q_X] + t101;
                 const gic_real t105 = t100 * t100 + (t98 * t98 + t99 * t99) + t102 * t102;
                 const gic_real t106 = f[37] * (t103 - f[10] * t91 - f[11] * t90);
                 const gic_real t107 = R(1.5) - R(0.5) * t105;
@@ -616,25 +783,25 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
                 const gic_real t110 = t98 * t107;
                 const gic_real t111 = t100 * t107;
                 const gic_real t112 = t55 + f[0] * t69 + f[1] * t106 + f[2] * t101;
-                const gic_real t113 = q[1] + t106;
+                const gic_real t113 = q[SOLID_AXLE_Q_Y] + t106;
                 const gic_real t114 = f[4] * t91 - (t112 + f[3] * t95) + f[5] * t90;
                 const gic_real t115 = f[35] * t114;
                 const gic_real t116 = R(2.184837229626393) * (t115 * t115 + (t106 * t106 + t101 * t101));
-                const gic_real t117 = q[2] + t115;
+                const gic_real t117 = q[SOLID_AXLE_Q_Z] + t115;
                 const gic_real t118 = t95 * t95 + (t91 * t91 + t90 * t90) + t116;
                 step = t118;
-                q[0] = t104;
-                q[1] = t113;
-                q[2] = t117;
-                q[3] = t108;
-                q[4] = t109;
-                q[5] = t110;
-                q[6] = t111;
+                q[SOLID_AXLE_Q_X] = t104;
+                q[SOLID_AXLE_Q_Y] = t113;
+                q[SOLID_AXLE_Q_Z] = t117;
+                q[SOLID_AXLE_Q_P0] = t108;
+                q[SOLID_AXLE_Q_P1] = t109;
+                q[SOLID_AXLE_Q_P2] = t110;
+                q[SOLID_AXLE_Q_P3] = t111;
             }
             ++self->head.correction_count;
-            if (!(step < GIC_LEAP_SQUARE))
+            if (!GIC_LEADS_ON(step))
                 return GIC_ERROR_NEWTON;
-            if (R(4.0) * step * GIC_MAX(reach, step) <= enough)
+            if (GIC_CORRECTED(step, GIC_MAX(reach, step), enough))
                 break;
             ++self->head.late_count;
         }
@@ -642,25 +809,26 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
     for (i = 0; i < GIC_PASSES; ++i) {
         /* factor at the corrected pose; unit velocities, last correction, velocities, accelerations, inertia */
         {
-            const gic_real t1 = q[5] + q[5];
-            const gic_real t2 = q[4] + q[4];
-            const gic_real t3 = q[6] + q[6];
-            const gic_real t4 = q[2] - R(0.18600000000000005);
-            const gic_real t5 = q[1] - R(-0.45);
-            const gic_real t6 = q[0] - R(-1.05);
+            const gic_real t1 = q[SOLID_AXLE_Q_P2] + q[SOLID_AXLE_Q_P2];
+            const gic_real t2 = q[SOLID_AXLE_Q_P1] + q[SOLID_AXLE_Q_P1];
+            const gic_real t3 = q[SOLID_AXLE_Q_P3] + q[SOLID_AXLE_Q_P3];
+            const gic_real t4 = q[SOLID_AXLE_Q_Z] - R(0.18600000000000005);
+            const gic_real t5 = q[SOLID_AXLE_Q_Y] - R(-0.45);
+            const gic_real t6 = q[SOLID_AXLE_Q_X] - R(-1.05);
+            /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
             const gic_real t7 = x[1] * R(2.0);
             const gic_real t8 = x[0] * R(2.0);
-            const gic_real t9 = q[6] * t1;
-            const gic_real t10 = q[3] * t2;
-            const gic_real t11 = q[4] * t2;
-            const gic_real t12 = q[5] * t1;
-            const gic_real t13 = q[4] * t3;
-            const gic_real t14 = q[3] * t1;
+            const gic_real t9 = q[SOLID_AXLE_Q_P3] * t1;
+            const gic_real t10 = q[SOLID_AXLE_Q_P0] * t2;
+            const gic_real t11 = q[SOLID_AXLE_Q_P1] * t2;
+            const gic_real t12 = q[SOLID_AXLE_Q_P2] * t1;
+            const gic_real t13 = q[SOLID_AXLE_Q_P1] * t3;
+            const gic_real t14 = q[SOLID_AXLE_Q_P0] * t1;
             const gic_real t15 = t4 * t4;
-            const gic_real t16 = q[6] * t3;
-            const gic_real t17 = q[5] * t2;
+            const gic_real t16 = q[SOLID_AXLE_Q_P3] * t3;
+            const gic_real t17 = q[SOLID_AXLE_Q_P2] * t2;
             const gic_real t18 = t9 + t10;
-            const gic_real t19 = q[3] * t3;
+            const gic_real t19 = q[SOLID_AXLE_Q_P0] * t3;
             const gic_real t20 = R(1.0) - (t11 + t12);
             const gic_real t21 = t13 - t14;
             const gic_real t22 = t9 - t10;
@@ -676,7 +844,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t32 = R(1.0) - (t12 + t16);
             const gic_real t33 = R(-0.27) * t20;
             const gic_real t34 = R(-0.16999999999999998) * t20;
-            const gic_real t35 = q[2] + t26 - R(0.18600000000000005);
+            const gic_real t35 = q[SOLID_AXLE_Q_Z] + t26 - R(0.18600000000000005);
             start[37] = t35;
             const gic_real t36 = R(-0.38) * t23;
             const gic_real t37 = R(0.020000000000000018) * t27;
@@ -691,19 +859,20 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t46 = t30 + (t37 + t38);
             const gic_real t47 = t31 + (t38 + t39);
             const gic_real t48 = R(0.24) * t23;
-            const gic_real t49 = q[2] + t40 - R(-0.05399999999999999);
+            const gic_real t49 = q[SOLID_AXLE_Q_Z] + t40 - R(-0.05399999999999999);
             start[25] = t49;
-            const gic_real t50 = q[2] + t41 - R(-0.05399999999999999);
+            const gic_real t50 = q[SOLID_AXLE_Q_Z] + t41 - R(-0.05399999999999999);
             start[31] = t50;
-            const gic_real t51 = q[2] + t42 - R(0.30600000000000005);
-            const gic_real t52 = q[2] + t43 - R(0.30600000000000005);
-            const gic_real t53 = q[1] + t44 - R(-0.45);
+            const gic_real t51 = q[SOLID_AXLE_Q_Z] + t42 - R(0.30600000000000005);
+            const gic_real t52 = q[SOLID_AXLE_Q_Z] + t43 - R(0.30600000000000005);
+            const gic_real t53 = q[SOLID_AXLE_Q_Y] + t44 - R(-0.45);
             const gic_real t54 = t31 + (t36 + t39);
-            const gic_real t55 = q[1] + t46 - R(0.45);
-            const gic_real t56 = q[1] + t48 - R(0.45);
+            const gic_real t55 = q[SOLID_AXLE_Q_Y] + t46 - R(0.45);
+            const gic_real t56 = q[SOLID_AXLE_Q_Y] + t48 - R(0.45);
             const gic_real t57 = t49 * t49;
-            const gic_real t58 = q[1] + t47 - R(0.45);
+            const gic_real t58 = q[SOLID_AXLE_Q_Y] + t47 - R(0.45);
             const gic_real t59 = t50 * t50;
+            /* constraint equations at the poses, and their derivative */
             const gic_real t60 = t51 * R(2.0);
             start[43] = t60;
             const gic_real t61 = t17 - t19;
@@ -712,7 +881,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t63 = t13 + t14;
             const gic_real t64 = R(0.020000000000000018) * t32;
             const gic_real t65 = R(-0.09999999999999987) * t32;
-            const gic_real t66 = q[1] + t54 - R(-0.45);
+            const gic_real t66 = q[SOLID_AXLE_Q_Y] + t54 - R(-0.45);
             const gic_real t67 = t44 * t49 - t40 * t53;
             const gic_real t68 = t45 + (t59 + (t15 + t57)) + t60 * t60 + t62 * t62;
             const gic_real t69 = t58 * R(2.0);
@@ -727,14 +896,14 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t78 = t71 + (t64 + t72);
             const gic_real t79 = t74 + (t72 + t65);
             const gic_real t80 = t74 + (t70 + t65);
-            const gic_real t81 = q[0] + t75 - R(-1.05);
+            const gic_real t81 = q[SOLID_AXLE_Q_X] + t75 - R(-1.05);
             const gic_real t82 = t48 * t35 - t26 * t56;
             const gic_real t83 = (t47 * t51 - t42 * t58) * R(2.0);
-            const gic_real t84 = q[0] + t77 - R(-0.9);
-            const gic_real t85 = q[0] + t78 - R(-0.9);
-            const gic_real t86 = q[0] + t79 - R(-1.75);
+            const gic_real t84 = q[SOLID_AXLE_Q_X] + t77 - R(-0.9);
+            const gic_real t85 = q[SOLID_AXLE_Q_X] + t78 - R(-0.9);
+            const gic_real t86 = q[SOLID_AXLE_Q_X] + t79 - R(-1.75);
             const gic_real t87 = GIC_SQRT(t68);
-            const gic_real t88 = q[0] + t80 - R(-1.75);
+            const gic_real t88 = q[SOLID_AXLE_Q_X] + t80 - R(-1.75);
             const gic_real t89 = t77 * t53 - t44 * t84;
             const gic_real t90 = t78 * t55 - t46 * t85;
             const gic_real t91 = t86 * R(2.0);
@@ -769,6 +938,7 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t118 = t107 * (t62 * t7);
             const gic_real t119 = t107 * (t60 * t8);
             const gic_real t120 = R(0.5) * (t45 + (t56 * t56 + t81 * t81) - R(0.43540000000000006));
+            /* pose: the last correction */
             const gic_real t121 = x[0] * x[0] - (t51 * t51 + (t58 * t58 + t86 * t86));
             const gic_real t122 = t53 - t49 * t113;
             const gic_real t123 = t55 - t50 * t113;
@@ -978,72 +1148,78 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t292 = R(1.0) / t290;
             start[64] = t292;
             const gic_real t293 = t100 * t166 * t218 * t256 * t282 * t290 * R(-22.748513467154556);
-            const gic_real t294 = t292 * (t275 - t270 * t287);
-            motion[30] = t294;
-            start[13] = t294;
+            const gic_real s_1_0 = t292 * (t275 - t270 * t287);
+            motion[SOLID_AXLE_S + 6] = s_1_0;
+            start[13] = s_1_0;
             const gic_real t295 = t292 * (t278 + t270 * t288);
             const gic_real t296 = t292 * (t281 - t270 * t289);
-            const gic_real t297 = t284 * (t276 + t283 * t287 + t291 * t294);
-            const gic_real t298 = t284 * (t279 - t283 * t288 + t291 * t295);
-            motion[25] = t298;
-            start[8] = t298;
-            const gic_real t299 = rate[1] * t294 - rate[0] * t295;
-            motion[12] = t299;
+            const gic_real t297 = t284 * (t276 + t283 * t287 + t291 * s_1_0);
+            const gic_real s_0_1 = t284 * (t279 - t283 * t288 + t291 * t295);
+            motion[SOLID_AXLE_S + 1] = s_0_1;
+            start[8] = s_0_1;
+            const gic_real omega_x = rate[1] * s_1_0 - rate[0] * t295;
+            motion[SOLID_AXLE_OMEGA_X] = omega_x;
             const gic_real t300 = t284 * (t280 - t283 * t289 - t291 * t296);
             const gic_real t301 = R(0.5) * t296;
-            const gic_real t302 = -t295;
-            motion[24] = t302;
-            start[7] = t302;
-            const gic_real t303 = t299 + turn[0];
-            const gic_real t304 = t271 * t297 - (t245 + t257 * t266) - t274 * t294;
-            const gic_real t305 = t274 * t295 - (t248 + t257 * t267 + t271 * t298);
-            const gic_real t306 = rate[0] * t298 - rate[1] * t297;
-            motion[13] = t306;
+            const gic_real s_0_0 = -t295;
+            motion[SOLID_AXLE_S + 0] = s_0_0;
+            start[7] = s_0_0;
+            /* what the bodies add to the inertia and to the equations of motion */
+            const gic_real t303 = omega_x + turn[0];
+            const gic_real t304 = t271 * t297 - (t245 + t257 * t266) - t274 * s_1_0;
+            const gic_real t305 = t274 * t295 - (t248 + t257 * t267 + t271 * s_0_1);
+            const gic_real omega_y = rate[0] * s_0_1 - rate[1] * t297;
+            motion[SOLID_AXLE_OMEGA_Y] = omega_y;
             const gic_real t307 = t261 + t257 * t268 + t271 * t300 + t274 * t296;
             const gic_real t308 = R(0.5) * t300;
-            const gic_real t309 = -t297;
-            motion[31] = t309;
-            start[14] = t309;
-            const gic_real t310 = t44 * t299 - t77 * t306;
-            const gic_real t311 = t47 * t299 - t79 * t306;
-            const gic_real t312 = t258 * t304;
-            motion[32] = t312;
-            start[15] = t312;
-            const gic_real t313 = t46 * t299 - t78 * t306;
-            const gic_real t314 = t258 * t305;
-            motion[26] = t314;
-            start[9] = t314;
-            const gic_real t315 = t54 * t299 - t80 * t306;
-            const gic_real t316 = t238 * t297 - (t202 + t219 * t236 + t237 * t312);
-            const gic_real t317 = t208 + t219 * t239 + t237 * t314 + t238 * t298;
-            const gic_real t318 = rate[0] * t314 + rate[1] * t312;
-            motion[14] = t318;
-            const gic_real t319 = t48 * t299 - t75 * t306;
+            const gic_real s_1_1 = -t297;
+            motion[SOLID_AXLE_S + 7] = s_1_1;
+            start[14] = s_1_1;
+            /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+            const gic_real t310 = t44 * omega_x - t77 * omega_y;
+            const gic_real t311 = t47 * omega_x - t79 * omega_y;
+            const gic_real s_1_2 = t258 * t304;
+            motion[SOLID_AXLE_S + 8] = s_1_2;
+            start[15] = s_1_2;
+            const gic_real t313 = t46 * omega_x - t78 * omega_y;
+            const gic_real s_0_2 = t258 * t305;
+            motion[SOLID_AXLE_S + 2] = s_0_2;
+            start[9] = s_0_2;
+            const gic_real t315 = t54 * omega_x - t80 * omega_y;
+            const gic_real t316 = t238 * t297 - (t202 + t219 * t236 + t237 * s_1_2);
+            const gic_real t317 = t208 + t219 * t239 + t237 * s_0_2 + t238 * s_0_1;
+            const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+            motion[SOLID_AXLE_OMEGA_Z] = omega_z;
+            const gic_real t319 = t48 * omega_x - t75 * omega_y;
             const gic_real t320 = t258 * t307;
-            const gic_real t321 = t306 + turn[1];
+            const gic_real t321 = omega_y + turn[1];
             const gic_real t322 = t237 * t320 - (t252 + t219 * t260) - t238 * t300;
-            const gic_real t323 = t77 * t318 - t40 * t299;
-            const gic_real t324 = t40 * t306 - t44 * t318;
-            const gic_real t325 = t79 * t318 - t42 * t299;
-            const gic_real t326 = t42 * t306 - t47 * t318;
-            const gic_real t327 = t78 * t318 - t41 * t299;
-            const gic_real t328 = t41 * t306 - t46 * t318;
-            const gic_real t329 = t80 * t318 - t43 * t299;
-            const gic_real t330 = t43 * t306 - t54 * t318;
-            const gic_real t331 = t53 * (t318 * t324 - t299 * t310) + t84 * (t306 * t310 - t318 * t323);
-            const gic_real t332 = t75 * t318 - t26 * t299;
-            const gic_real t333 = t26 * t306 - t48 * t318;
-            const gic_real t334 = t58 * (t318 * t326 - t299 * t311) + t86 * (t306 * t311 - t318 * t325);
-            const gic_real t335 = t55 * (t318 * t328 - t299 * t313) + t85 * (t306 * t313 - t318 * t327);
-            const gic_real t336 = t66 * (t318 * t330 - t299 * t315) + t88 * (t306 * t315 - t318 * t329);
-            const gic_real t337 = t56 * (t318 * t333 - t299 * t319) + t81 * (t306 * t319 - t318 * t332);
+            const gic_real t323 = t77 * omega_z - t40 * omega_x;
+            const gic_real t324 = t40 * omega_y - t44 * omega_z;
+            const gic_real t325 = t79 * omega_z - t42 * omega_x;
+            const gic_real t326 = t42 * omega_y - t47 * omega_z;
+            const gic_real t327 = t78 * omega_z - t41 * omega_x;
+            const gic_real t328 = t41 * omega_y - t46 * omega_z;
+            const gic_real t329 = t80 * omega_z - t43 * omega_x;
+            const gic_real t330 = t43 * omega_y - t54 * omega_z;
+            const gic_real t331 = t53 * (omega_z * t324 - omega_x * t310) + t84 * (omega_y * t310 - omega_z * t323);
+            const gic_real t332 = t75 * omega_z - t26 * omega_x;
+            const gic_real t333 = t26 * omega_y - t48 * omega_z;
+            const gic_real t334 = t58 * (omega_z * t326 - omega_x * t311) + t86 * (omega_y * t311 - omega_z * t325);
+            const gic_real t335 = t55 * (omega_z * t328 - omega_x * t313) + t85 * (omega_y * t313 - omega_z * t327);
+            const gic_real t336 = t66 * (omega_z * t330 - omega_x * t315) + t88 * (omega_y * t315 - omega_z * t329);
+            const gic_real t337 = t56 * (omega_z * t333 - omega_x * t319) + t81 * (omega_y * t319 - omega_z * t332);
             const gic_real t338 = R(0.5) * t320;
-            const gic_real t339 = t318 + turn[2];
-            const gic_real t340 = (GIC_FABS(t299) + GIC_FABS(t306) + GIC_FABS(t318)) * ahead[0];
-            const gic_real t341 = q[5] + (q[3] * t308 - (q[6] * t301 + q[4] * t338));
-            const gic_real t342 = q[4] + (q[5] * t338 + q[6] * t308 + q[3] * t301);
-            const gic_real t343 = q[6] + (q[5] * t301 - q[4] * t308 - q[3] * t338);
-            const gic_real t344 = q[3] - (q[5] * t308 + q[4] * t301 - q[6] * t338);
+            const gic_real t339 = omega_z + turn[2];
+            const gic_real t340 = (GIC_FABS(omega_x) + GIC_FABS(omega_y) + GIC_FABS(omega_z)) * ahead[0];
+            const gic_real t341 = q[SOLID_AXLE_Q_P2] + (q[SOLID_AXLE_Q_P0] * t308 - (q[SOLID_AXLE_Q_P3] * t301 +
+                q[SOLID_AXLE_Q_P1] * t338));
+            const gic_real t342 = q[SOLID_AXLE_Q_P1] + (q[SOLID_AXLE_Q_P2] * t338 + q[SOLID_AXLE_Q_P3] * t308 +
+                q[SOLID_AXLE_Q_P0] * t301);
+            const gic_real t343 = q[SOLID_AXLE_Q_P3] + (q[SOLID_AXLE_Q_P2] * t301 - q[SOLID_AXLE_Q_P1] * t308 -
+                q[SOLID_AXLE_Q_P0] * t338);
+            const gic_real t344 = q[SOLID_AXLE_Q_P0] - (q[SOLID_AXLE_Q_P2] * t308 + q[SOLID_AXLE_Q_P1] * t301 -
+                q[SOLID_AXLE_Q_P3] * t338);
             if (!(t293 - t340 > R(0.004)))
                 return GIC_ERROR_SINGULAR;
             const gic_real t345 = R(1.0) / -t218;
@@ -1053,32 +1229,32 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t347 = R(1.0) / -t100;
             start[54] = t347;
             const gic_real t348 = t343 * t343 + (t341 * t341 + t342 * t342) + t344 * t344;
-            const gic_real t349 = t345 * (t251 * t295 - t317);
-            motion[27] = t349;
-            start[10] = t349;
-            const gic_real t350 = t345 * (t316 - t251 * t294);
-            motion[33] = t350;
-            start[16] = t350;
+            const gic_real s_0_3 = t345 * (t251 * t295 - t317);
+            motion[SOLID_AXLE_S + 3] = s_0_3;
+            start[10] = s_0_3;
+            const gic_real s_1_3 = t345 * (t316 - t251 * s_1_0);
+            motion[SOLID_AXLE_S + 9] = s_1_3;
+            start[16] = s_1_3;
             const gic_real t351 = t345 * (t322 - t251 * t296);
-            const gic_real t352 = t151 + t167 * t199 + t206 * t349 + t212 * t314;
-            const gic_real t353 = t149 + t167 * t187 + t206 * t350 + t212 * t312;
-            const gic_real t354 = rate[0] * t349 + rate[1] * t350;
-            motion[15] = t354;
+            const gic_real t352 = t151 + t167 * t199 + t206 * s_0_3 + t212 * s_0_2;
+            const gic_real t353 = t149 + t167 * t187 + t206 * s_1_3 + t212 * s_1_2;
+            const gic_real velocity_x = rate[0] * s_0_3 + rate[1] * s_1_3;
+            motion[SOLID_AXLE_VELOCITY_X] = velocity_x;
             const gic_real t355 = t212 * t320 - (t179 + t167 * t227 + t206 * t351);
             const gic_real t356 = R(1.5) - R(0.5) * t348;
-            const gic_real t357 = q[0] + t351;
-            motion[0] = t357;
-            const gic_real t358 = t354 + t324;
-            const gic_real t359 = t354 + t326;
-            const gic_real t360 = t354 + t328;
-            const gic_real t361 = t354 + t330;
-            const gic_real t362 = t346 * (t214 * t295 - (t352 + t213 * t298));
-            motion[28] = t362;
-            start[11] = t362;
-            const gic_real t363 = t354 + t333;
-            const gic_real t364 = t346 * (t213 * t297 - t353 - t214 * t294);
-            motion[34] = t364;
-            start[17] = t364;
+            const gic_real c_x = q[SOLID_AXLE_Q_X] + t351;
+            motion[SOLID_AXLE_C_X] = c_x;
+            const gic_real t358 = velocity_x + t324;
+            const gic_real t359 = velocity_x + t326;
+            const gic_real t360 = velocity_x + t328;
+            const gic_real t361 = velocity_x + t330;
+            const gic_real s_0_4 = t346 * (t214 * t295 - (t352 + t213 * s_0_1));
+            motion[SOLID_AXLE_S + 4] = s_0_4;
+            start[11] = s_0_4;
+            const gic_real t363 = velocity_x + t333;
+            const gic_real s_1_4 = t346 * (t213 * t297 - t353 - t214 * s_1_0);
+            motion[SOLID_AXLE_S + 10] = s_1_4;
+            start[17] = s_1_4;
             const gic_real t365 = t342 * t356;
             const gic_real t366 = t341 * t356;
             const gic_real t367 = t343 * t356;
@@ -1091,241 +1267,251 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
             const gic_real t374 = t367 * t371;
             const gic_real t375 = t365 * t372;
             const gic_real t376 = t366 * t372;
-            const gic_real t377 = t161 * t314 - (t103 * t119 + t159 * t362 + t160 * t349);
-            const gic_real t378 = t161 * t312 - (t103 * t118 + t159 * t364 + t160 * t350);
-            const gic_real t379 = rate[0] * t362 + rate[1] * t364;
-            motion[16] = t379;
+            const gic_real t377 = t161 * s_0_2 - (t103 * t119 + t159 * s_0_4 + t160 * s_0_3);
+            const gic_real t378 = t161 * s_1_2 - (t103 * t118 + t159 * s_1_4 + t160 * s_1_3);
+            const gic_real velocity_y = rate[0] * s_0_4 + rate[1] * s_1_4;
+            motion[SOLID_AXLE_VELOCITY_Y] = velocity_y;
             const gic_real t380 = t110 + t103 * t168 + t159 * t369 + t160 * t351;
-            const gic_real t381 = R(1.0) - (t373 + t374);
-            motion[3] = t381;
+            const gic_real a_xx = R(1.0) - (t373 + t374);
+            motion[SOLID_AXLE_A_XX] = a_xx;
             const gic_real t382 = t368 * t371;
             const gic_real t383 = t365 * t371;
             const gic_real t384 = t368 * t370;
-            const gic_real t385 = R(1.0) - (t375 + t374);
-            motion[7] = t385;
-            const gic_real t386 = t379 + t323;
-            const gic_real t387 = t379 + t325;
-            const gic_real t388 = t347 * (t377 + t164 * t298 - t165 * t295);
-            motion[29] = t388;
-            start[12] = t388;
-            const gic_real t389 = t379 + t327;
-            const gic_real t390 = t379 + t329;
-            const gic_real t391 = t347 * (t378 - t164 * t297 + t165 * t294);
-            motion[35] = t391;
-            start[18] = t391;
-            const gic_real t392 = t379 + t332;
+            const gic_real a_yy = R(1.0) - (t375 + t374);
+            motion[SOLID_AXLE_A_YY] = a_yy;
+            const gic_real t386 = velocity_y + t323;
+            const gic_real t387 = velocity_y + t325;
+            const gic_real s_0_5 = t347 * (t377 + t164 * s_0_1 - t165 * t295);
+            motion[SOLID_AXLE_S + 5] = s_0_5;
+            start[12] = s_0_5;
+            const gic_real t389 = velocity_y + t327;
+            const gic_real t390 = velocity_y + t329;
+            const gic_real s_1_5 = t347 * (t378 - t164 * t297 + t165 * s_1_0);
+            motion[SOLID_AXLE_S + 11] = s_1_5;
+            start[18] = s_1_5;
+            const gic_real t392 = velocity_y + t332;
             const gic_real t393 = t367 * t370;
             const gic_real t394 = t368 * t372;
-            const gic_real t395 = t376 - t382;
-            motion[4] = t395;
-            const gic_real t396 = t376 + t382;
-            motion[6] = t396;
+            const gic_real a_xy = t376 - t382;
+            motion[SOLID_AXLE_A_XY] = a_xy;
+            const gic_real a_yx = t376 + t382;
+            motion[SOLID_AXLE_A_YX] = a_yx;
             const gic_real t397 = t164 * t300 - (t380 + t161 * t320) + t165 * t296;
-            const gic_real t398 = t383 - t384;
-            motion[9] = t398;
-            const gic_real t399 = t393 + t394;
-            motion[10] = t399;
-            const gic_real t400 = R(1.0) - (t375 + t373);
-            motion[11] = t400;
-            const gic_real t401 = t383 + t384;
-            motion[5] = t401;
-            const gic_real t402 = t393 - t394;
-            motion[8] = t402;
-            const gic_real t403 = q[1] + t369;
-            motion[1] = t403;
-            const gic_real t404 = t395 * R(-147.617262);
-            const gic_real t405 = t381 * R(0.24386000000001218);
-            const gic_real t406 = t385 * R(-147.617262);
-            const gic_real t407 = t396 * R(0.24386000000001218);
-            const gic_real t408 = R(163.103702) + (t399 * (t399 * R(-147.617262)) + t398 * (t398 * R(0.24386000000001218)));
-            const gic_real t409 = rate[0] * t388 + rate[1] * t391;
-            motion[17] = t409;
-            const gic_real t410 = t401 * R(-0.17228899999999997) + (t395 * R(0.12) + t381 * R(-0.03340499999999991));
-            const gic_real t411 = t402 * R(-0.17228899999999997) + (t385 * R(0.12) + t396 * R(-0.03340499999999991));
-            const gic_real t412 = t400 * R(-0.17228899999999997) + (t399 * R(0.12) + t398 * R(-0.03340499999999991));
-            const gic_real t413 = t409 + t310;
-            const gic_real t414 = t409 + t311;
-            const gic_real t415 = t409 * t409 + (t379 * t379 + t354 * t354);
-            const gic_real t416 = t409 + t313;
-            const gic_real t417 = t413 * t413 + (t386 * t386 + t358 * t358) + (t49 * (t299 * t323 - t306 * t324) + t331);
-            const gic_real t418 = t414 * t414 + (t387 * t387 + t359 * t359) + (t51 * (t299 * t325 - t306 * t326) + t334);
-            const gic_real t419 = t416 * t416 + (t389 * t389 + t360 * t360) + (t50 * (t299 * t327 - t306 * t328) + t335);
-            const gic_real t420 = t409 + t315;
-            const gic_real t421 = t409 + t319;
+            const gic_real a_zx = t383 - t384;
+            motion[SOLID_AXLE_A_ZX] = a_zx;
+            const gic_real a_zy = t393 + t394;
+            motion[SOLID_AXLE_A_ZY] = a_zy;
+            const gic_real a_zz = R(1.0) - (t375 + t373);
+            motion[SOLID_AXLE_A_ZZ] = a_zz;
+            const gic_real a_xz = t383 + t384;
+            motion[SOLID_AXLE_A_XZ] = a_xz;
+            const gic_real a_yz = t393 - t394;
+            motion[SOLID_AXLE_A_YZ] = a_yz;
+            const gic_real c_y = q[SOLID_AXLE_Q_Y] + t369;
+            motion[SOLID_AXLE_C_Y] = c_y;
+            const gic_real t404 = a_xy * R(-147.617262);
+            const gic_real t405 = a_xx * R(0.24386000000001218);
+            const gic_real t406 = a_yy * R(-147.617262);
+            const gic_real t407 = a_yx * R(0.24386000000001218);
+            const gic_real t408 = R(163.103702) + (a_zy * (a_zy * R(-147.617262)) + a_zx * (a_zx *
+                R(0.24386000000001218)));
+            const gic_real velocity_z = rate[0] * s_0_5 + rate[1] * s_1_5;
+            motion[SOLID_AXLE_VELOCITY_Z] = velocity_z;
+            const gic_real t410 = a_xz * R(-0.17228899999999997) + (a_xy * R(0.12) + a_xx * R(-0.03340499999999991));
+            const gic_real t411 = a_yz * R(-0.17228899999999997) + (a_yy * R(0.12) + a_yx * R(-0.03340499999999991));
+            const gic_real t412 = a_zz * R(-0.17228899999999997) + (a_zy * R(0.12) + a_zx * R(-0.03340499999999991));
+            const gic_real t413 = velocity_z + t310;
+            const gic_real t414 = velocity_z + t311;
+            const gic_real t415 = velocity_z * velocity_z + (velocity_y * velocity_y + velocity_x * velocity_x);
+            const gic_real t416 = velocity_z + t313;
+            const gic_real t417 = t413 * t413 + (t386 * t386 + t358 * t358) + (t49 * (omega_x * t323 - omega_y * t324) +
+                t331);
+            const gic_real t418 = t414 * t414 + (t387 * t387 + t359 * t359) + (t51 * (omega_x * t325 - omega_y * t326) +
+                t334);
+            const gic_real t419 = t416 * t416 + (t389 * t389 + t360 * t360) + (t50 * (omega_x * t327 - omega_y * t328) +
+                t335);
+            const gic_real t420 = velocity_z + t315;
+            const gic_real t421 = velocity_z + t319;
             const gic_real t422 = t347 * t397;
-            const gic_real t423 = t357 + t410;
-            const gic_real t424 = t403 + t411;
-            const gic_real t425 = t299 * t411 - t306 * t410;
-            const gic_real t426 = t420 * t420 + (t390 * t390 + t361 * t361) + (t52 * (t299 * t329 - t306 * t330) + t336);
-            const gic_real t427 = t421 * t421 + (t392 * t392 + t363 * t363) + (t35 * (t299 * t332 - t306 * t333) + t337);
+            const gic_real t423 = c_x + t410;
+            const gic_real t424 = c_y + t411;
+            const gic_real t425 = omega_x * t411 - omega_y * t410;
+            const gic_real t426 = t420 * t420 + (t390 * t390 + t361 * t361) + (t52 * (omega_x * t329 - omega_y * t330) +
+                t336);
+            const gic_real t427 = t421 * t421 + (t392 * t392 + t363 * t363) + (t35 * (omega_x * t332 - omega_y * t333) +
+                t337);
             const gic_real t428 = R(2.0) * (rate[0] * rate[0] - t418);
-            const gic_real t429 = q[2] + t422;
-            motion[2] = t429;
-            const gic_real t430 = t318 * t410 - t299 * t412;
-            const gic_real t431 = t306 * t412 - t318 * t411;
-            const gic_real t432 = R(163.103702) + (t395 * t404 + t381 * t405);
-            const gic_real t433 = t429 + t412;
-            const gic_real t434 = R(163.103702) + (t385 * t406 + t396 * t407);
+            const gic_real c_z = q[SOLID_AXLE_Q_Z] + t422;
+            motion[SOLID_AXLE_C_Z] = c_z;
+            const gic_real t430 = omega_z * t410 - omega_x * t412;
+            const gic_real t431 = omega_y * t412 - omega_z * t411;
+            const gic_real t432 = R(163.103702) + (a_xy * t404 + a_xx * t405);
+            const gic_real t433 = c_z + t412;
+            const gic_real t434 = R(163.103702) + (a_yy * t406 + a_yx * t407);
             const gic_real t435 = R(2.0) * (rate[1] * rate[1] - t426);
-            const gic_real t436 = t409 + t425;
-            const gic_real t437 = t379 + t430;
-            const gic_real t438 = t354 + t431;
-            const gic_real t439 = t385 * t404 + t396 * t405;
-            const gic_real t440 = t399 * t404 + t398 * t405;
+            const gic_real t436 = velocity_z + t425;
+            const gic_real t437 = velocity_y + t430;
+            const gic_real t438 = velocity_x + t431;
+            const gic_real t439 = a_yy * t404 + a_yx * t405;
+            const gic_real t440 = a_zy * t404 + a_zx * t405;
             const gic_real t441 = t103 * t415 + t49 * t417 + t50 * t419 + t35 * t427;
             const gic_real t442 = t436 + (t436 + (turn[0] * t424 - turn[1] * t423));
             const gic_real t443 = t437 + (t437 + (turn[2] * t423 - turn[0] * t433));
             const gic_real t444 = t438 + (t438 + (turn[1] * t433 - turn[2] * t424));
-            const gic_real t445 = t399 * t406 + t398 * t407;
+            const gic_real t445 = a_zy * t406 + a_zx * t407;
             const gic_real t446 = t440 * t339 + (t439 * t321 + t432 * t303);
-            const gic_real t447 = t349 + (t298 * t412 - t314 * t411);
+            const gic_real t447 = s_0_3 + (s_0_1 * t412 - s_0_2 * t411);
             const gic_real t448 = t107 * (t60 * t428 - t441 + t62 * t435);
             const gic_real t449 = t408 * t339 + (t445 * t321 + t440 * t303);
-            const gic_real t450 = turn[1] * t442 - turn[2] * t443 + (t306 * t425 - t318 * t430);
-            const gic_real t451 = turn[2] * t444 - turn[0] * t442 + (t318 * t431 - t299 * t425);
+            const gic_real t450 = turn[1] * t442 - turn[2] * t443 + (omega_y * t425 - omega_z * t430);
+            const gic_real t451 = turn[2] * t444 - turn[0] * t442 + (omega_z * t431 - omega_x * t425);
             const gic_real t452 = t445 * t339 + (t434 * t321 + t439 * t303);
-            const gic_real t453 = turn[0] * t443 - turn[1] * t444 + (t299 * t430 - t306 * t431);
+            const gic_real t453 = turn[0] * t443 - turn[1] * t444 + (omega_x * t430 - omega_y * t431);
             const gic_real t454 = t417 + t49 * t448;
             const gic_real t455 = t419 + t50 * t448;
             const gic_real t456 = t427 + t35 * t448;
             const gic_real t457 = t428 - t60 * t448;
             const gic_real t458 = t435 - t62 * t448;
-            const gic_real t459 = t362 + (t295 * t412 + t314 * t410);
-            const gic_real t460 = t350 - (t312 * t411 + t297 * t412);
-            const gic_real t461 = t364 + (t312 * t410 - t294 * t412);
+            const gic_real t459 = s_0_4 + (t295 * t412 + s_0_2 * t410);
+            const gic_real t460 = s_1_3 - (s_1_2 * t411 + t297 * t412);
+            const gic_real t461 = s_1_4 + (s_1_2 * t410 - s_1_0 * t412);
             const gic_real t462 = t125 * t457 - (t167 * t454 + t123 * t455 + t124 * t456);
-            const gic_real t463 = t388 - (t298 * t410 + t295 * t411);
-            const gic_real t464 = t314 * t440 + (t298 * t439 - t295 * t432);
-            const gic_real t465 = t314 * t445 + (t298 * t434 - t295 * t439);
-            const gic_real t466 = t391 + (t297 * t410 + t294 * t411);
-            const gic_real t467 = t312 * t440 + (t294 * t432 - t297 * t439);
-            const gic_real t468 = t312 * t445 + (t294 * t439 - t297 * t434);
+            const gic_real t463 = s_0_5 - (s_0_1 * t410 + t295 * t411);
+            const gic_real t464 = s_0_2 * t440 + (s_0_1 * t439 - t295 * t432);
+            const gic_real t465 = s_0_2 * t445 + (s_0_1 * t434 - t295 * t439);
+            const gic_real t466 = s_1_5 + (t297 * t410 + s_1_0 * t411);
+            const gic_real t467 = s_1_2 * t440 + (s_1_0 * t432 - t297 * t439);
+            const gic_real t468 = s_1_2 * t445 + (s_1_0 * t439 - t297 * t434);
             const gic_real t469 = t170 * (t462 + t126 * t458);
-            const gic_real t470 = t314 * t408 + (t298 * t445 - t295 * t440);
-            const gic_real t471 = t312 * t408 + (t294 * t440 - t297 * t445);
+            const gic_real t470 = s_0_2 * t408 + (s_0_1 * t445 - t295 * t440);
+            const gic_real t471 = s_1_2 * t408 + (s_1_0 * t440 - t297 * t445);
             const gic_real t472 = R(2.184837229626393) * (t422 * t422 + (t369 * t369 + t351 * t351));
-            const gic_real t473 = R(271.11) * t447;
-            inertia[15] = t473;
-            const gic_real t474 = R(271.11) * t459;
-            inertia[16] = t474;
-            const gic_real t475 = R(271.11) * t460;
-            inertia[22] = t475;
-            const gic_real t476 = R(271.11) * t461;
-            inertia[23] = t476;
-            const gic_real t477 = R(271.11) * t423;
-            inertia[0] = t477;
+            const gic_real along_0_force_x = R(271.11) * t447;
+            inertia[SOLID_AXLE_I_COORDINATE + 0] = along_0_force_x;
+            const gic_real along_0_force_y = R(271.11) * t459;
+            inertia[SOLID_AXLE_I_COORDINATE + 1] = along_0_force_y;
+            const gic_real along_1_force_x = R(271.11) * t460;
+            inertia[SOLID_AXLE_I_COORDINATE + 7] = along_1_force_x;
+            const gic_real along_1_force_y = R(271.11) * t461;
+            inertia[SOLID_AXLE_I_COORDINATE + 8] = along_1_force_y;
+            const gic_real inertia_first_x = R(271.11) * t423;
+            inertia[SOLID_AXLE_I_FIRST_X] = inertia_first_x;
             const gic_real t478 = t455 + t123 * t469;
             const gic_real t479 = t456 + t124 * t469;
             const gic_real t480 = t457 - t125 * t469;
             const gic_real t481 = t458 - t126 * t469;
-            const gic_real t482 = R(271.11) * t424;
-            inertia[1] = t482;
-            const gic_real t483 = R(271.11) * t433;
-            inertia[2] = t483;
-            const gic_real t484 = R(271.11) * t463;
-            inertia[17] = t484;
-            const gic_real t485 = R(271.11) * t466;
-            inertia[24] = t485;
-            const gic_real t486 = t423 * t477;
-            const gic_real t487 = t470 + (t423 * t474 - t424 * t473);
-            inertia[20] = t487;
-            const gic_real t488 = t424 * t482;
-            const gic_real t489 = t314 * t470 + (t298 * t465 - t295 * t464) + (t463 * t484 + (t459 * t474 + t447 * t473));
-            inertia[29] = t489;
+            const gic_real inertia_first_y = R(271.11) * t424;
+            inertia[SOLID_AXLE_I_FIRST_Y] = inertia_first_y;
+            const gic_real inertia_first_z = R(271.11) * t433;
+            inertia[SOLID_AXLE_I_FIRST_Z] = inertia_first_z;
+            const gic_real along_0_force_z = R(271.11) * t463;
+            inertia[SOLID_AXLE_I_COORDINATE + 2] = along_0_force_z;
+            const gic_real along_1_force_z = R(271.11) * t466;
+            inertia[SOLID_AXLE_I_COORDINATE + 9] = along_1_force_z;
+            const gic_real t486 = t423 * inertia_first_x;
+            const gic_real along_0_moment_z = t470 + (t423 * along_0_force_y - t424 * along_0_force_x);
+            inertia[SOLID_AXLE_I_COORDINATE + 5] = along_0_moment_z;
+            const gic_real t488 = t424 * inertia_first_y;
+            const gic_real mass_0 = s_0_2 * t470 + (s_0_1 * t465 - t295 * t464) + (t463 * along_0_force_z + (t459 *
+                along_0_force_y + t447 * along_0_force_x));
+            inertia[SOLID_AXLE_I_COORDINATE + 14] = mass_0;
             const gic_real t490 = t185 * t480 - (t219 * t478 + t184 * t479) + t186 * t481;
             const gic_real t491 = t320 * t320 + (t300 * t300 + t296 * t296) + t472;
             step = t491;
-            const gic_real t492 = t314 * t471 + (t298 * t468 - t295 * t467) + (t463 * t485 + (t459 * t476 + t447 * t475));
-            inertia[30] = t492;
-            const gic_real t493 = t312 * t471 + (t294 * t467 - t297 * t468) + (t466 * t485 + (t461 * t476 + t460 * t475));
-            inertia[31] = t493;
+            const gic_real mass_1 = s_0_2 * t471 + (s_0_1 * t468 - t295 * t467) + (t463 * along_1_force_z + (t459 *
+                along_1_force_y + t447 * along_1_force_x));
+            inertia[SOLID_AXLE_I_COORDINATE + 15] = mass_1;
+            const gic_real mass_2 = s_1_2 * t471 + (s_1_0 * t467 - t297 * t468) + (t466 * along_1_force_z + (t461 *
+                along_1_force_y + t460 * along_1_force_x));
+            inertia[SOLID_AXLE_I_COORDINATE + 16] = mass_2;
             const gic_real t494 = t220 * t490;
-            const gic_real t495 = t433 * t483;
-            const gic_real t496 = t464 + (t424 * t484 - t433 * t474);
-            inertia[18] = t496;
-            const gic_real t497 = t465 + (t433 * t473 - t423 * t484);
-            inertia[19] = t497;
+            const gic_real t495 = t433 * inertia_first_z;
+            const gic_real along_0_moment_x = t464 + (t424 * along_0_force_z - t433 * along_0_force_y);
+            inertia[SOLID_AXLE_I_COORDINATE + 3] = along_0_moment_x;
+            const gic_real along_0_moment_y = t465 + (t433 * along_0_force_x - t423 * along_0_force_z);
+            inertia[SOLID_AXLE_I_COORDINATE + 4] = along_0_moment_y;
             const gic_real t498 = t480 - t185 * t494;
             const gic_real t499 = t479 + t184 * t494;
             const gic_real t500 = t481 - t186 * t494;
-            const gic_real t501 = t467 + (t424 * t485 - t433 * t476);
-            inertia[25] = t501;
-            const gic_real t502 = t468 + (t433 * t475 - t423 * t485);
-            inertia[26] = t502;
-            const gic_real t503 = t471 + (t423 * t476 - t424 * t475);
-            inertia[27] = t503;
-            const gic_real t504 = t432 + (t488 + t495);
-            inertia[3] = t504;
+            const gic_real along_1_moment_x = t467 + (t424 * along_1_force_z - t433 * along_1_force_y);
+            inertia[SOLID_AXLE_I_COORDINATE + 10] = along_1_moment_x;
+            const gic_real along_1_moment_y = t468 + (t433 * along_1_force_x - t423 * along_1_force_z);
+            inertia[SOLID_AXLE_I_COORDINATE + 11] = along_1_moment_y;
+            const gic_real along_1_moment_z = t471 + (t423 * along_1_force_y - t424 * along_1_force_x);
+            inertia[SOLID_AXLE_I_COORDINATE + 12] = along_1_moment_z;
+            const gic_real inertia_second_xx = t432 + (t488 + t495);
+            inertia[SOLID_AXLE_I_SECOND_XX] = inertia_second_xx;
             const gic_real t505 = t259 * (t230 * t498 - t257 * t499 + t231 * t500);
-            const gic_real t506 = t434 + (t486 + t495);
-            inertia[4] = t506;
-            const gic_real t507 = t408 + (t486 + t488);
-            inertia[5] = t507;
-            const gic_real t508 = t439 - t424 * t477;
-            inertia[6] = t508;
-            const gic_real t509 = t440 - t433 * t477;
-            inertia[7] = t509;
-            const gic_real t510 = t445 - t433 * t482;
-            inertia[8] = t510;
+            const gic_real inertia_second_yy = t434 + (t486 + t495);
+            inertia[SOLID_AXLE_I_SECOND_YY] = inertia_second_yy;
+            const gic_real inertia_second_zz = t408 + (t486 + t488);
+            inertia[SOLID_AXLE_I_SECOND_ZZ] = inertia_second_zz;
+            const gic_real inertia_second_xy = t439 - t424 * inertia_first_x;
+            inertia[SOLID_AXLE_I_SECOND_XY] = inertia_second_xy;
+            const gic_real inertia_second_xz = t440 - t433 * inertia_first_x;
+            inertia[SOLID_AXLE_I_SECOND_XZ] = inertia_second_xz;
+            const gic_real inertia_second_yz = t445 - t433 * inertia_first_y;
+            inertia[SOLID_AXLE_I_SECOND_YZ] = inertia_second_yz;
             const gic_real t511 = t500 - t231 * t505;
             const gic_real t512 = t498 - t230 * t505;
             const gic_real t513 = t285 * (t283 * t512 + t270 * t511);
-            const gic_real t514 = t292 * (t511 - t270 * t513);
-            motion[18] = t514;
-            const gic_real t515 = t284 * (t512 - t283 * t513 - t291 * t514);
-            motion[19] = t515;
-            const gic_real t516 = t514 + (t318 * turn[1] - t306 * turn[2]);
-            const gic_real t517 = t499 + t257 * t505 + t271 * t515 + t274 * t514;
-            const gic_real t518 = t515 + (t299 * turn[2] - t318 * turn[0]);
+            const gic_real alpha_x = t292 * (t511 - t270 * t513);
+            motion[SOLID_AXLE_ALPHA_X] = alpha_x;
+            const gic_real alpha_y = t284 * (t512 - t283 * t513 - t291 * alpha_x);
+            motion[SOLID_AXLE_ALPHA_Y] = alpha_y;
+            const gic_real t516 = alpha_x + (omega_z * turn[1] - omega_y * turn[2]);
+            const gic_real t517 = t499 + t257 * t505 + t271 * alpha_y + t274 * alpha_x;
+            const gic_real t518 = alpha_y + (omega_x * turn[2] - omega_z * turn[0]);
             const gic_real t519 = t258 * t517;
-            const gic_real t520 = t237 * t519 - (t478 + t219 * t494) - t238 * t515;
-            const gic_real t521 = t306 * turn[0] - t299 * turn[1] - t519;
-            const gic_real t522 = -t519;
-            motion[20] = t522;
+            const gic_real t520 = t237 * t519 - (t478 + t219 * t494) - t238 * alpha_y;
+            const gic_real t521 = omega_y * turn[0] - omega_x * turn[1] - t519;
+            const gic_real alpha_z = -t519;
+            motion[SOLID_AXLE_ALPHA_Z] = alpha_z;
             const gic_real t523 = t440 * t521 + (t439 * t518 + t432 * t516) + (t321 * t449 - t339 * t452);
-            const gic_real t524 = t345 * (t520 - t251 * t514);
-            motion[21] = t524;
+            const gic_real acceleration_x = t345 * (t520 - t251 * alpha_x);
+            motion[SOLID_AXLE_ACCELERATION_X] = acceleration_x;
             const gic_real t525 = t445 * t521 + (t434 * t518 + t439 * t516) + (t339 * t446 - t303 * t449);
             const gic_real t526 = t408 * t521 + (t445 * t518 + t440 * t516) + (t303 * t452 - t321 * t446);
-            const gic_real t527 = t212 * t519 - (t454 + t167 * t469 + t206 * t524);
-            const gic_real t528 = R(271.11) * (t524 + (t450 + (t519 * t411 + t515 * t412)));
-            inertia[9] = t528;
-            const gic_real t529 = t346 * (t527 - t213 * t515 - t214 * t514);
-            motion[22] = t529;
-            const gic_real t530 = t415 + t103 * t448 + t159 * t529 + t160 * t524;
-            const gic_real t531 = R(271.11) * (t529 + (t451 - (t514 * t412 + t519 * t410)));
-            inertia[10] = t531;
-            const gic_real t532 = t164 * t515 - (t530 + t161 * t519) + t165 * t514;
-            const gic_real t533 = t526 + (t423 * t531 - t424 * t528);
-            inertia[14] = t533;
-            const gic_real t534 = t347 * t532;
-            motion[23] = t534;
-            const gic_real t535 = R(271.11) * (t534 + (t453 + (t514 * t411 - t515 * t410)));
-            inertia[11] = t535;
-            const gic_real t536 = t314 * t526 + (t298 * t525 - t295 * t523) + (t535 * t463 + (t531 * t459 + t528 * t447));
-            inertia[21] = t536;
-            const gic_real t537 = t312 * t526 + (t294 * t523 - t297 * t525) + (t535 * t466 + (t531 * t461 + t528 * t460));
-            inertia[28] = t537;
-            const gic_real t538 = t523 + (t424 * t535 - t433 * t531);
-            inertia[12] = t538;
-            const gic_real t539 = t525 + (t433 * t528 - t423 * t535);
-            inertia[13] = t539;
-            q[0] = t357;
-            q[1] = t403;
-            q[2] = t429;
-            q[3] = t368;
-            q[4] = t365;
-            q[5] = t366;
-            q[6] = t367;
+            const gic_real t527 = t212 * t519 - (t454 + t167 * t469 + t206 * acceleration_x);
+            const gic_real inertia_force_x = R(271.11) * (acceleration_x + (t450 + (t519 * t411 + alpha_y * t412)));
+            inertia[SOLID_AXLE_I_FORCE_X] = inertia_force_x;
+            const gic_real acceleration_y = t346 * (t527 - t213 * alpha_y - t214 * alpha_x);
+            motion[SOLID_AXLE_ACCELERATION_Y] = acceleration_y;
+            const gic_real t530 = t415 + t103 * t448 + t159 * acceleration_y + t160 * acceleration_x;
+            const gic_real inertia_force_y = R(271.11) * (acceleration_y + (t451 - (alpha_x * t412 + t519 * t410)));
+            inertia[SOLID_AXLE_I_FORCE_Y] = inertia_force_y;
+            const gic_real t532 = t164 * alpha_y - (t530 + t161 * t519) + t165 * alpha_x;
+            const gic_real inertia_moment_z = t526 + (t423 * inertia_force_y - t424 * inertia_force_x);
+            inertia[SOLID_AXLE_I_MOMENT_Z] = inertia_moment_z;
+            const gic_real acceleration_z = t347 * t532;
+            motion[SOLID_AXLE_ACCELERATION_Z] = acceleration_z;
+            const gic_real inertia_force_z = R(271.11) * (acceleration_z + (t453 + (alpha_x * t411 - alpha_y * t410)));
+            inertia[SOLID_AXLE_I_FORCE_Z] = inertia_force_z;
+            const gic_real along_0_bias = s_0_2 * t526 + (s_0_1 * t525 - t295 * t523) + (inertia_force_z * t463 +
+                (inertia_force_y * t459 + inertia_force_x * t447));
+            inertia[SOLID_AXLE_I_COORDINATE + 6] = along_0_bias;
+            const gic_real along_1_bias = s_1_2 * t526 + (s_1_0 * t523 - t297 * t525) + (inertia_force_z * t466 +
+                (inertia_force_y * t461 + inertia_force_x * t460));
+            inertia[SOLID_AXLE_I_COORDINATE + 13] = along_1_bias;
+            const gic_real inertia_moment_x = t523 + (t424 * inertia_force_z - t433 * inertia_force_y);
+            inertia[SOLID_AXLE_I_MOMENT_X] = inertia_moment_x;
+            const gic_real inertia_moment_y = t525 + (t433 * inertia_force_x - t423 * inertia_force_z);
+            inertia[SOLID_AXLE_I_MOMENT_Y] = inertia_moment_y;
+            q[SOLID_AXLE_Q_X] = c_x;
+            q[SOLID_AXLE_Q_Y] = c_y;
+            q[SOLID_AXLE_Q_Z] = c_z;
+            q[SOLID_AXLE_Q_P0] = t368;
+            q[SOLID_AXLE_Q_P1] = t365;
+            q[SOLID_AXLE_Q_P2] = t366;
+            q[SOLID_AXLE_Q_P3] = t367;
         }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
         motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
 #endif
         ++self->head.correction_count;
-        if (!(step < GIC_LEAP_SQUARE))
+        if (!GIC_LEADS_ON(step))
             return GIC_ERROR_NEWTON;
-        /* a small correction that no longer shrinks is rounding, near a singular configuration a larger one */
-        if (step <= enough || (step <= GIC_AMPLIFIED * enough && step > before / R(16.0))) {
+        if (GIC_IS_ENOUGH(step, enough) || GIC_IS_ROUNDING(step, before, enough)) {
             if (step > self->head.largest_step)
                 self->head.largest_step = step;
             ++self->head.newton_count;
@@ -1341,207 +1527,269 @@ static int solid_axle_solve_axle(solid_axle *self, const gic_real *GIC_RESTRICT 
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void solid_axle_residual_axle(const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* spring_r_l, spring_r_r */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = motion[2] - R(0.18600000000000005);
-        const gic_real t2 = motion[1] - R(-0.45);
-        const gic_real t3 = motion[0] - R(-1.05);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = motion[SOLID_AXLE_C_Z] - R(0.18600000000000005);
+        const gic_real t2 = motion[SOLID_AXLE_C_Y] - R(-0.45);
+        const gic_real t3 = motion[SOLID_AXLE_C_X] - R(-1.05);
         const gic_real t4 = t1 * t1 + (t2 * t2 + t3 * t3) - R(0.43540000000000006);
         const gic_real t5 = (GIC_FABS(t3) + GIC_FABS(t2) + GIC_FABS(t1)) * R(0.6765352910233139);
         const gic_real t6 = R(2.0) / (t5 + R(0.38562511588328896));
-        const gic_real t7 = R(-0.27) * motion[11];
-        const gic_real t8 = R(-0.38) * motion[10];
-        const gic_real t9 = R(0.020000000000000018) * motion[9];
+        const gic_real t7 = R(-0.27) * motion[SOLID_AXLE_A_ZZ];
+        const gic_real t8 = R(-0.38) * motion[SOLID_AXLE_A_ZY];
+        const gic_real t9 = R(0.020000000000000018) * motion[SOLID_AXLE_A_ZX];
         const gic_real t10 = t7 + (t8 + t9);
-        const gic_real t11 = motion[2] + t10 - R(-0.05399999999999999);
-        const gic_real t12 = R(-0.27) * motion[8];
-        const gic_real t13 = R(-0.38) * motion[7];
-        const gic_real t14 = R(0.020000000000000018) * motion[6];
+        const gic_real t11 = motion[SOLID_AXLE_C_Z] + t10 - R(-0.05399999999999999);
+        const gic_real t12 = R(-0.27) * motion[SOLID_AXLE_A_YZ];
+        const gic_real t13 = R(-0.38) * motion[SOLID_AXLE_A_YY];
+        const gic_real t14 = R(0.020000000000000018) * motion[SOLID_AXLE_A_YX];
         const gic_real t15 = t12 + (t13 + t14);
-        const gic_real t16 = motion[1] + t15 - R(-0.45);
-        const gic_real t17 = R(-0.27) * motion[5];
-        const gic_real t18 = R(-0.38) * motion[4];
-        const gic_real t19 = R(0.020000000000000018) * motion[3];
+        const gic_real t16 = motion[SOLID_AXLE_C_Y] + t15 - R(-0.45);
+        const gic_real t17 = R(-0.27) * motion[SOLID_AXLE_A_XZ];
+        const gic_real t18 = R(-0.38) * motion[SOLID_AXLE_A_XY];
+        const gic_real t19 = R(0.020000000000000018) * motion[SOLID_AXLE_A_XX];
         const gic_real t20 = t17 + (t18 + t19);
-        const gic_real t21 = motion[0] + t20 - R(-0.9);
+        const gic_real t21 = motion[SOLID_AXLE_C_X] + t20 - R(-0.9);
         const gic_real t22 = t11 * t11 + (t16 * t16 + t21 * t21) - R(0.4974000000000001);
         const gic_real t23 = R(0.6765352910233139) * (GIC_FABS(t21) + GIC_FABS(t16) + GIC_FABS(t11));
         const gic_real t24 = R(2.0) / (t23 + R(0.47357470371631977));
         const gic_real t25 = GIC_FABS(R(0.5) * t4 * t6) + GIC_FABS(R(0.5) * t22 * t24);
-        const gic_real t26 = R(0.62) * motion[10];
+        const gic_real t26 = R(0.62) * motion[SOLID_AXLE_A_ZY];
         const gic_real t27 = t7 + (t9 + t26);
-        const gic_real t28 = motion[2] + t27 - R(-0.05399999999999999);
-        const gic_real t29 = R(0.62) * motion[7];
+        const gic_real t28 = motion[SOLID_AXLE_C_Z] + t27 - R(-0.05399999999999999);
+        const gic_real t29 = R(0.62) * motion[SOLID_AXLE_A_YY];
         const gic_real t30 = t12 + (t14 + t29);
-        const gic_real t31 = motion[1] + t30 - R(0.45);
-        const gic_real t32 = R(0.62) * motion[4];
+        const gic_real t31 = motion[SOLID_AXLE_C_Y] + t30 - R(0.45);
+        const gic_real t32 = R(0.62) * motion[SOLID_AXLE_A_XY];
         const gic_real t33 = t17 + (t19 + t32);
-        const gic_real t34 = motion[0] + t33 - R(-0.9);
+        const gic_real t34 = motion[SOLID_AXLE_C_X] + t33 - R(-0.9);
         const gic_real t35 = t28 * t28 + (t31 * t31 + t34 * t34) - R(0.4974000000000001);
         const gic_real t36 = R(0.6765352910233139) * (GIC_FABS(t34) + GIC_FABS(t31) + GIC_FABS(t28));
         const gic_real t37 = R(2.0) / (R(0.47357470371631977) + t36);
-        const gic_real t38 = R(0.24) * motion[10];
-        const gic_real t39 = motion[2] + t38 - R(0.18600000000000005);
-        const gic_real t40 = R(0.24) * motion[7];
-        const gic_real t41 = motion[1] + t40 - R(0.45);
-        const gic_real t42 = R(0.24) * motion[4];
-        const gic_real t43 = motion[0] + t42 - R(-1.05);
+        const gic_real t38 = R(0.24) * motion[SOLID_AXLE_A_ZY];
+        const gic_real t39 = motion[SOLID_AXLE_C_Z] + t38 - R(0.18600000000000005);
+        const gic_real t40 = R(0.24) * motion[SOLID_AXLE_A_YY];
+        const gic_real t41 = motion[SOLID_AXLE_C_Y] + t40 - R(0.45);
+        const gic_real t42 = R(0.24) * motion[SOLID_AXLE_A_XY];
+        const gic_real t43 = motion[SOLID_AXLE_C_X] + t42 - R(-1.05);
         const gic_real t44 = t39 * t39 + (t41 * t41 + t43 * t43) - R(0.43540000000000006);
         const gic_real t45 = R(0.6765352910233139) * (GIC_FABS(t43) + GIC_FABS(t41) + GIC_FABS(t39));
         const gic_real t46 = R(2.0) / (R(0.38562511588328896) + t45);
         const gic_real t47 = t25 + GIC_FABS(R(0.5) * t35 * t37) + GIC_FABS(R(0.5) * t44 * t46);
-        const gic_real t48 = R(-0.16999999999999998) * motion[11];
-        const gic_real t49 = R(-0.09999999999999987) * motion[9];
+        const gic_real t48 = R(-0.16999999999999998) * motion[SOLID_AXLE_A_ZZ];
+        const gic_real t49 = R(-0.09999999999999987) * motion[SOLID_AXLE_A_ZX];
         const gic_real t50 = t48 + (t26 + t49);
-        const gic_real t51 = motion[2] + t50 - R(0.30600000000000005);
-        const gic_real t52 = R(-0.16999999999999998) * motion[8];
-        const gic_real t53 = R(-0.09999999999999987) * motion[6];
+        const gic_real t51 = motion[SOLID_AXLE_C_Z] + t50 - R(0.30600000000000005);
+        const gic_real t52 = R(-0.16999999999999998) * motion[SOLID_AXLE_A_YZ];
+        const gic_real t53 = R(-0.09999999999999987) * motion[SOLID_AXLE_A_YX];
         const gic_real t54 = t52 + (t29 + t53);
-        const gic_real t55 = motion[1] + t54 - R(0.45);
-        const gic_real t56 = R(-0.16999999999999998) * motion[5];
-        const gic_real t57 = R(-0.09999999999999987) * motion[3];
+        const gic_real t55 = motion[SOLID_AXLE_C_Y] + t54 - R(0.45);
+        const gic_real t56 = R(-0.16999999999999998) * motion[SOLID_AXLE_A_XZ];
+        const gic_real t57 = R(-0.09999999999999987) * motion[SOLID_AXLE_A_XX];
         const gic_real t58 = t56 + (t32 + t57);
-        const gic_real t59 = motion[0] + t58 - R(-1.75);
+        const gic_real t59 = motion[SOLID_AXLE_C_X] + t58 - R(-1.75);
         const gic_real t60 = t51 * t51 + (t55 * t55 + t59 * t59) - x[0] * x[0];
         const gic_real t61 = R(0.6765352910233139) * (GIC_FABS(t59) + GIC_FABS(t55) + GIC_FABS(t51));
         const gic_real t62 = R(2.0) / (t61 + R(0.2232566460376936));
         const gic_real t63 = t48 + (t8 + t49);
-        const gic_real t64 = motion[2] + t63 - R(0.30600000000000005);
+        const gic_real t64 = motion[SOLID_AXLE_C_Z] + t63 - R(0.30600000000000005);
         const gic_real t65 = t52 + (t13 + t53);
-        const gic_real t66 = motion[1] + t65 - R(-0.45);
+        const gic_real t66 = motion[SOLID_AXLE_C_Y] + t65 - R(-0.45);
         const gic_real t67 = t56 + (t18 + t57);
-        const gic_real t68 = motion[0] + t67 - R(-1.75);
+        const gic_real t68 = motion[SOLID_AXLE_C_X] + t67 - R(-1.75);
         const gic_real t69 = t64 * t64 + (t66 * t66 + t68 * t68) - x[1] * x[1];
         const gic_real t70 = R(0.6765352910233139) * (GIC_FABS(t68) + GIC_FABS(t66) + GIC_FABS(t64));
         const gic_real t71 = R(2.0) / (R(0.2232566460376936) + t70);
         const gic_real t72 = t47 + GIC_FABS(R(0.5) * t60 * t62) + GIC_FABS(R(0.5) * t69 * t71);
-        const gic_real t73 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t74 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
-        const gic_real t75 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t76 = t72 + GIC_FABS(t73) + GIC_FABS(t74) + t75 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t77 = t76 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t78 = t77 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
-        const gic_real t79 = t6 * (t3 * motion[27] + t2 * motion[28] + t1 * motion[29]);
+        const gic_real t73 = motion[SOLID_AXLE_A_ZX] * motion[SOLID_AXLE_A_ZX] + (motion[SOLID_AXLE_A_YX] *
+            motion[SOLID_AXLE_A_YX] + motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_XX]) - R(1.0);
+        const gic_real t74 = motion[SOLID_AXLE_A_ZY] * motion[SOLID_AXLE_A_ZY] + (motion[SOLID_AXLE_A_YY] *
+            motion[SOLID_AXLE_A_YY] + motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_XY]) - R(1.0);
+        const gic_real t75 = GIC_FABS(motion[SOLID_AXLE_A_ZX] * motion[SOLID_AXLE_A_ZY] + (motion[SOLID_AXLE_A_YX] *
+            motion[SOLID_AXLE_A_YY] + motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_XY]));
+        const gic_real t76 = t72 + GIC_FABS(t73) + GIC_FABS(t74) + t75 + GIC_FABS(motion[SOLID_AXLE_A_YX] *
+            motion[SOLID_AXLE_A_ZY] - motion[SOLID_AXLE_A_YY] * motion[SOLID_AXLE_A_ZX] - motion[SOLID_AXLE_A_XZ]);
+        const gic_real t77 = t76 + GIC_FABS(motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_ZX] -
+            motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_ZY] - motion[SOLID_AXLE_A_YZ]);
+        const gic_real t78 = t77 + GIC_FABS(motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_YY] -
+            motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_YX] - motion[SOLID_AXLE_A_ZZ]);
+        const gic_real t79 = t6 * (t3 * motion[SOLID_AXLE_S + 3] + t2 * motion[SOLID_AXLE_S + 4] + t1 *
+            motion[SOLID_AXLE_S + 5]);
         const gic_real t80 = t15 * t11 - t10 * t16;
         const gic_real t81 = t10 * t21 - t20 * t11;
         const gic_real t82 = t20 * t16 - t15 * t21;
-        const gic_real t83 = t80 * motion[24] + t81 * motion[25] + t82 * motion[26] + t21 * motion[27];
-        const gic_real t84 = GIC_FABS(t24 * (t83 + t16 * motion[28] + t11 * motion[29]));
+        const gic_real t83 = t80 * motion[SOLID_AXLE_S + 0] + t81 * motion[SOLID_AXLE_S + 1] + t82 *
+            motion[SOLID_AXLE_S + 2] + t21 * motion[SOLID_AXLE_S + 3];
+        const gic_real t84 = GIC_FABS(t24 * (t83 + t16 * motion[SOLID_AXLE_S + 4] + t11 * motion[SOLID_AXLE_S + 5]));
         const gic_real t85 = t30 * t28 - t27 * t31;
         const gic_real t86 = t27 * t34 - t33 * t28;
         const gic_real t87 = t33 * t31 - t30 * t34;
-        const gic_real t88 = t85 * motion[24] + t86 * motion[25] + t87 * motion[26] + t34 * motion[27];
-        const gic_real t89 = GIC_FABS(t37 * (t88 + t31 * motion[28] + t28 * motion[29]));
+        const gic_real t88 = t85 * motion[SOLID_AXLE_S + 0] + t86 * motion[SOLID_AXLE_S + 1] + t87 *
+            motion[SOLID_AXLE_S + 2] + t34 * motion[SOLID_AXLE_S + 3];
+        const gic_real t89 = GIC_FABS(t37 * (t88 + t31 * motion[SOLID_AXLE_S + 4] + t28 * motion[SOLID_AXLE_S + 5]));
         const gic_real t90 = t40 * t39 - t38 * t41;
         const gic_real t91 = t38 * t43 - t42 * t39;
         const gic_real t92 = t42 * t41 - t40 * t43;
-        const gic_real t93 = t90 * motion[24] + t91 * motion[25] + t92 * motion[26] + t43 * motion[27];
-        const gic_real t94 = GIC_FABS(t46 * (t93 + t41 * motion[28] + t39 * motion[29]));
+        const gic_real t93 = t90 * motion[SOLID_AXLE_S + 0] + t91 * motion[SOLID_AXLE_S + 1] + t92 *
+            motion[SOLID_AXLE_S + 2] + t43 * motion[SOLID_AXLE_S + 3];
+        const gic_real t94 = GIC_FABS(t46 * (t93 + t41 * motion[SOLID_AXLE_S + 4] + t39 * motion[SOLID_AXLE_S + 5]));
         const gic_real t95 = t54 * t51 - t50 * t55;
         const gic_real t96 = t50 * t59 - t58 * t51;
         const gic_real t97 = t58 * t55 - t54 * t59;
-        const gic_real t98 = t95 * motion[24] - x[0] + t96 * motion[25] + t97 * motion[26];
-        const gic_real t99 = t98 + t59 * motion[27] + t55 * motion[28] + t51 * motion[29];
+        const gic_real t98 = t95 * motion[SOLID_AXLE_S + 0] - x[0] + t96 * motion[SOLID_AXLE_S + 1] + t97 *
+            motion[SOLID_AXLE_S + 2];
+        const gic_real t99 = t98 + t59 * motion[SOLID_AXLE_S + 3] + t55 * motion[SOLID_AXLE_S + 4] + t51 *
+            motion[SOLID_AXLE_S + 5];
         const gic_real t100 = GIC_FABS(t79) + t84 + t89 + t94 + GIC_FABS(t62 * t99);
         const gic_real t101 = t65 * t64 - t63 * t66;
         const gic_real t102 = t63 * t68 - t67 * t64;
         const gic_real t103 = t67 * t66 - t65 * t68;
-        const gic_real t104 = t101 * motion[24] + t102 * motion[25] + t103 * motion[26] + t68 * motion[27];
-        const gic_real t105 = GIC_FABS(t71 * (t104 + t66 * motion[28] + t64 * motion[29]));
-        const gic_real t106 = R(1.4781194909838624) * (GIC_FABS(motion[27]) + GIC_FABS(motion[28]) + GIC_FABS(motion[29]));
-        const gic_real t107 = t106 + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
+        const gic_real t104 = t101 * motion[SOLID_AXLE_S + 0] + t102 * motion[SOLID_AXLE_S + 1] + t103 *
+            motion[SOLID_AXLE_S + 2] + t68 * motion[SOLID_AXLE_S + 3];
+        const gic_real t105 = GIC_FABS(t71 * (t104 + t66 * motion[SOLID_AXLE_S + 4] + t64 * motion[SOLID_AXLE_S + 5]));
+        const gic_real t106 = R(1.4781194909838624) * (GIC_FABS(motion[SOLID_AXLE_S + 3]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 4]) + GIC_FABS(motion[SOLID_AXLE_S + 5]));
+        const gic_real t107 = t106 + (GIC_FABS(motion[SOLID_AXLE_S + 0]) + GIC_FABS(motion[SOLID_AXLE_S + 1]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 2]));
         const gic_real t108 = t107 + GIC_FABS(-(x[0] * t62));
-        const gic_real t109 = t6 * (t3 * motion[33] + t2 * motion[34] + t1 * motion[35]);
-        const gic_real t110 = t80 * motion[30] + t81 * motion[31] + t82 * motion[32] + t21 * motion[33];
-        const gic_real t111 = GIC_FABS(t24 * (t110 + t16 * motion[34] + t11 * motion[35]));
-        const gic_real t112 = t85 * motion[30] + t86 * motion[31] + t87 * motion[32] + t34 * motion[33];
-        const gic_real t113 = GIC_FABS(t37 * (t112 + t31 * motion[34] + t28 * motion[35]));
-        const gic_real t114 = t90 * motion[30] + t91 * motion[31] + t92 * motion[32] + t43 * motion[33];
-        const gic_real t115 = GIC_FABS(t46 * (t114 + t41 * motion[34] + t39 * motion[35]));
-        const gic_real t116 = t95 * motion[30] + t96 * motion[31] + t97 * motion[32] + t59 * motion[33];
-        const gic_real t117 = GIC_FABS(t62 * (t116 + t55 * motion[34] + t51 * motion[35]));
-        const gic_real t118 = t101 * motion[30] - x[1] + t102 * motion[31] + t103 * motion[32];
-        const gic_real t119 = t118 + t68 * motion[33] + t66 * motion[34] + t64 * motion[35];
+        const gic_real t109 = t6 * (t3 * motion[SOLID_AXLE_S + 9] + t2 * motion[SOLID_AXLE_S + 10] + t1 *
+            motion[SOLID_AXLE_S + 11]);
+        const gic_real t110 = t80 * motion[SOLID_AXLE_S + 6] + t81 * motion[SOLID_AXLE_S + 7] + t82 *
+            motion[SOLID_AXLE_S + 8] + t21 * motion[SOLID_AXLE_S + 9];
+        const gic_real t111 = GIC_FABS(t24 * (t110 + t16 * motion[SOLID_AXLE_S + 10] + t11 *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t112 = t85 * motion[SOLID_AXLE_S + 6] + t86 * motion[SOLID_AXLE_S + 7] + t87 *
+            motion[SOLID_AXLE_S + 8] + t34 * motion[SOLID_AXLE_S + 9];
+        const gic_real t113 = GIC_FABS(t37 * (t112 + t31 * motion[SOLID_AXLE_S + 10] + t28 *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t114 = t90 * motion[SOLID_AXLE_S + 6] + t91 * motion[SOLID_AXLE_S + 7] + t92 *
+            motion[SOLID_AXLE_S + 8] + t43 * motion[SOLID_AXLE_S + 9];
+        const gic_real t115 = GIC_FABS(t46 * (t114 + t41 * motion[SOLID_AXLE_S + 10] + t39 *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t116 = t95 * motion[SOLID_AXLE_S + 6] + t96 * motion[SOLID_AXLE_S + 7] + t97 *
+            motion[SOLID_AXLE_S + 8] + t59 * motion[SOLID_AXLE_S + 9];
+        const gic_real t117 = GIC_FABS(t62 * (t116 + t55 * motion[SOLID_AXLE_S + 10] + t51 *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t118 = t101 * motion[SOLID_AXLE_S + 6] - x[1] + t102 * motion[SOLID_AXLE_S + 7] + t103 *
+            motion[SOLID_AXLE_S + 8];
+        const gic_real t119 = t118 + t68 * motion[SOLID_AXLE_S + 9] + t66 * motion[SOLID_AXLE_S + 10] + t64 *
+            motion[SOLID_AXLE_S + 11];
         const gic_real t120 = GIC_FABS(t109) + t111 + t113 + t115 + t117 + GIC_FABS(t71 * t119);
-        const gic_real t121 = R(1.4781194909838624) * (GIC_FABS(motion[33]) + GIC_FABS(motion[34]) + GIC_FABS(motion[35]));
-        const gic_real t122 = t121 + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t121 = R(1.4781194909838624) * (GIC_FABS(motion[SOLID_AXLE_S + 9]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 10]) + GIC_FABS(motion[SOLID_AXLE_S + 11]));
+        const gic_real t122 = t121 + (GIC_FABS(motion[SOLID_AXLE_S + 6]) + GIC_FABS(motion[SOLID_AXLE_S + 7]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 8]));
         const gic_real t123 = t122 + GIC_FABS(-(x[1] * t71));
         const gic_real t124 = (t100 + t105) / (t108 + R(1e-30)) + t120 / (R(1e-30) + t123);
-        const gic_real t125 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t126 = t125 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t127 = GIC_FABS(R(1.4781194909838624) * (motion[15] - rate[0] * motion[27] - rate[1] * motion[33]));
-        const gic_real t128 = GIC_FABS(R(1.4781194909838624) * (motion[16] - rate[0] * motion[28] - rate[1] * motion[34]));
-        const gic_real t129 = GIC_FABS(R(1.4781194909838624) * (motion[17] - rate[0] * motion[29] - rate[1] * motion[35]));
-        const gic_real t130 = R(1.4781194909838624) * (GIC_FABS(motion[15]) + GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t131 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t125 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X] - rate[0] * motion[SOLID_AXLE_S + 0] - rate[1] *
+            motion[SOLID_AXLE_S + 6]) + GIC_FABS(motion[SOLID_AXLE_OMEGA_Y] - rate[0] * motion[SOLID_AXLE_S + 1] -
+            rate[1] * motion[SOLID_AXLE_S + 7]);
+        const gic_real t126 = t125 + GIC_FABS(motion[SOLID_AXLE_OMEGA_Z] - rate[0] * motion[SOLID_AXLE_S + 2] -
+            rate[1] * motion[SOLID_AXLE_S + 8]);
+        const gic_real t127 = GIC_FABS(R(1.4781194909838624) * (motion[SOLID_AXLE_VELOCITY_X] - rate[0] *
+            motion[SOLID_AXLE_S + 3] - rate[1] * motion[SOLID_AXLE_S + 9]));
+        const gic_real t128 = GIC_FABS(R(1.4781194909838624) * (motion[SOLID_AXLE_VELOCITY_Y] - rate[0] *
+            motion[SOLID_AXLE_S + 4] - rate[1] * motion[SOLID_AXLE_S + 10]));
+        const gic_real t129 = GIC_FABS(R(1.4781194909838624) * (motion[SOLID_AXLE_VELOCITY_Z] - rate[0] *
+            motion[SOLID_AXLE_S + 5] - rate[1] * motion[SOLID_AXLE_S + 11]));
+        const gic_real t130 = R(1.4781194909838624) * (GIC_FABS(motion[SOLID_AXLE_VELOCITY_X]) +
+            GIC_FABS(motion[SOLID_AXLE_VELOCITY_Y]) + GIC_FABS(motion[SOLID_AXLE_VELOCITY_Z]));
+        const gic_real t131 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X]) + GIC_FABS(motion[SOLID_AXLE_OMEGA_Y]) +
+            GIC_FABS(motion[SOLID_AXLE_OMEGA_Z]);
         const gic_real t132 = t108 * GIC_FABS(rate[0]);
         const gic_real t133 = t123 * GIC_FABS(rate[1]);
         const gic_real t134 = (t126 + t127 + t128 + t129) / (R(1e-30) + (t130 + t131 + t132 + t133));
-        const gic_real t135 = motion[17] * motion[17] + (motion[16] * motion[16] + motion[15] * motion[15]) + (t1 * motion[23] + (t2 * motion[22] + t3 * motion[21]));
-        const gic_real t136 = t15 * motion[12] - t20 * motion[13];
-        const gic_real t137 = motion[17] + t136;
-        const gic_real t138 = t20 * motion[14] - t10 * motion[12];
-        const gic_real t139 = motion[16] + t138;
-        const gic_real t140 = t10 * motion[13] - t15 * motion[14];
-        const gic_real t141 = motion[15] + t140;
-        const gic_real t142 = motion[12] * t138 - motion[13] * t140 + (t15 * motion[18] - t20 * motion[19]);
-        const gic_real t143 = motion[14] * t140 - motion[12] * t136 + (t20 * motion[20] - t10 * motion[18]);
-        const gic_real t144 = motion[13] * t136 - motion[14] * t138 + (t10 * motion[19] - t15 * motion[20]);
-        const gic_real t145 = t11 * (motion[23] + t142) + (t16 * (motion[22] + t143) + t21 * (motion[21] + t144));
+        const gic_real t135 = motion[SOLID_AXLE_VELOCITY_Z] * motion[SOLID_AXLE_VELOCITY_Z] +
+            (motion[SOLID_AXLE_VELOCITY_Y] * motion[SOLID_AXLE_VELOCITY_Y] + motion[SOLID_AXLE_VELOCITY_X] *
+            motion[SOLID_AXLE_VELOCITY_X]) + (t1 * motion[SOLID_AXLE_ACCELERATION_Z] + (t2 *
+            motion[SOLID_AXLE_ACCELERATION_Y] + t3 * motion[SOLID_AXLE_ACCELERATION_X]));
+        const gic_real t136 = t15 * motion[SOLID_AXLE_OMEGA_X] - t20 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t137 = motion[SOLID_AXLE_VELOCITY_Z] + t136;
+        const gic_real t138 = t20 * motion[SOLID_AXLE_OMEGA_Z] - t10 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t139 = motion[SOLID_AXLE_VELOCITY_Y] + t138;
+        const gic_real t140 = t10 * motion[SOLID_AXLE_OMEGA_Y] - t15 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t141 = motion[SOLID_AXLE_VELOCITY_X] + t140;
+        const gic_real t142 = motion[SOLID_AXLE_OMEGA_X] * t138 - motion[SOLID_AXLE_OMEGA_Y] * t140 + (t15 *
+            motion[SOLID_AXLE_ALPHA_X] - t20 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t143 = motion[SOLID_AXLE_OMEGA_Z] * t140 - motion[SOLID_AXLE_OMEGA_X] * t136 + (t20 *
+            motion[SOLID_AXLE_ALPHA_Z] - t10 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t144 = motion[SOLID_AXLE_OMEGA_Y] * t136 - motion[SOLID_AXLE_OMEGA_Z] * t138 + (t10 *
+            motion[SOLID_AXLE_ALPHA_Y] - t15 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t145 = t11 * (motion[SOLID_AXLE_ACCELERATION_Z] + t142) + (t16 *
+            (motion[SOLID_AXLE_ACCELERATION_Y] + t143) + t21 * (motion[SOLID_AXLE_ACCELERATION_X] + t144));
         const gic_real t146 = t137 * t137 + (t139 * t139 + t141 * t141) + t145;
-        const gic_real t147 = t30 * motion[12] - t33 * motion[13];
-        const gic_real t148 = motion[17] + t147;
-        const gic_real t149 = t33 * motion[14] - t27 * motion[12];
-        const gic_real t150 = motion[16] + t149;
-        const gic_real t151 = t27 * motion[13] - t30 * motion[14];
-        const gic_real t152 = motion[15] + t151;
-        const gic_real t153 = motion[12] * t149 - motion[13] * t151 + (t30 * motion[18] - t33 * motion[19]);
-        const gic_real t154 = motion[14] * t151 - motion[12] * t147 + (t33 * motion[20] - t27 * motion[18]);
-        const gic_real t155 = motion[13] * t147 - motion[14] * t149 + (t27 * motion[19] - t30 * motion[20]);
-        const gic_real t156 = t28 * (motion[23] + t153) + (t31 * (motion[22] + t154) + t34 * (motion[21] + t155));
+        const gic_real t147 = t30 * motion[SOLID_AXLE_OMEGA_X] - t33 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t148 = motion[SOLID_AXLE_VELOCITY_Z] + t147;
+        const gic_real t149 = t33 * motion[SOLID_AXLE_OMEGA_Z] - t27 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t150 = motion[SOLID_AXLE_VELOCITY_Y] + t149;
+        const gic_real t151 = t27 * motion[SOLID_AXLE_OMEGA_Y] - t30 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t152 = motion[SOLID_AXLE_VELOCITY_X] + t151;
+        const gic_real t153 = motion[SOLID_AXLE_OMEGA_X] * t149 - motion[SOLID_AXLE_OMEGA_Y] * t151 + (t30 *
+            motion[SOLID_AXLE_ALPHA_X] - t33 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t154 = motion[SOLID_AXLE_OMEGA_Z] * t151 - motion[SOLID_AXLE_OMEGA_X] * t147 + (t33 *
+            motion[SOLID_AXLE_ALPHA_Z] - t27 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t155 = motion[SOLID_AXLE_OMEGA_Y] * t147 - motion[SOLID_AXLE_OMEGA_Z] * t149 + (t27 *
+            motion[SOLID_AXLE_ALPHA_Y] - t30 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t156 = t28 * (motion[SOLID_AXLE_ACCELERATION_Z] + t153) + (t31 *
+            (motion[SOLID_AXLE_ACCELERATION_Y] + t154) + t34 * (motion[SOLID_AXLE_ACCELERATION_X] + t155));
         const gic_real t157 = t148 * t148 + (t150 * t150 + t152 * t152) + t156;
         const gic_real t158 = GIC_FABS(t135 * t6) + GIC_FABS(t146 * t24) + GIC_FABS(t157 * t37);
-        const gic_real t159 = t40 * motion[12] - t42 * motion[13];
-        const gic_real t160 = motion[17] + t159;
-        const gic_real t161 = t42 * motion[14] - t38 * motion[12];
-        const gic_real t162 = motion[16] + t161;
-        const gic_real t163 = t38 * motion[13] - t40 * motion[14];
-        const gic_real t164 = motion[15] + t163;
-        const gic_real t165 = motion[12] * t161 - motion[13] * t163 + (t40 * motion[18] - t42 * motion[19]);
-        const gic_real t166 = motion[14] * t163 - motion[12] * t159 + (t42 * motion[20] - t38 * motion[18]);
-        const gic_real t167 = motion[13] * t159 - motion[14] * t161 + (t38 * motion[19] - t40 * motion[20]);
-        const gic_real t168 = t39 * (motion[23] + t165) + (t41 * (motion[22] + t166) + t43 * (motion[21] + t167));
+        const gic_real t159 = t40 * motion[SOLID_AXLE_OMEGA_X] - t42 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t160 = motion[SOLID_AXLE_VELOCITY_Z] + t159;
+        const gic_real t161 = t42 * motion[SOLID_AXLE_OMEGA_Z] - t38 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t162 = motion[SOLID_AXLE_VELOCITY_Y] + t161;
+        const gic_real t163 = t38 * motion[SOLID_AXLE_OMEGA_Y] - t40 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t164 = motion[SOLID_AXLE_VELOCITY_X] + t163;
+        const gic_real t165 = motion[SOLID_AXLE_OMEGA_X] * t161 - motion[SOLID_AXLE_OMEGA_Y] * t163 + (t40 *
+            motion[SOLID_AXLE_ALPHA_X] - t42 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t166 = motion[SOLID_AXLE_OMEGA_Z] * t163 - motion[SOLID_AXLE_OMEGA_X] * t159 + (t42 *
+            motion[SOLID_AXLE_ALPHA_Z] - t38 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t167 = motion[SOLID_AXLE_OMEGA_Y] * t159 - motion[SOLID_AXLE_OMEGA_Z] * t161 + (t38 *
+            motion[SOLID_AXLE_ALPHA_Y] - t40 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t168 = t39 * (motion[SOLID_AXLE_ACCELERATION_Z] + t165) + (t41 *
+            (motion[SOLID_AXLE_ACCELERATION_Y] + t166) + t43 * (motion[SOLID_AXLE_ACCELERATION_X] + t167));
         const gic_real t169 = t160 * t160 + (t162 * t162 + t164 * t164) + t168;
-        const gic_real t170 = t54 * motion[12] - t58 * motion[13];
-        const gic_real t171 = motion[17] + t170;
-        const gic_real t172 = t58 * motion[14] - t50 * motion[12];
-        const gic_real t173 = motion[16] + t172;
-        const gic_real t174 = t50 * motion[13] - t54 * motion[14];
-        const gic_real t175 = motion[15] + t174;
-        const gic_real t176 = motion[12] * t172 - motion[13] * t174 + (t54 * motion[18] - t58 * motion[19]);
-        const gic_real t177 = motion[14] * t174 - motion[12] * t170 + (t58 * motion[20] - t50 * motion[18]);
-        const gic_real t178 = motion[13] * t170 - motion[14] * t172 + (t50 * motion[19] - t54 * motion[20]);
-        const gic_real t179 = t51 * (motion[23] + t176) + (t55 * (motion[22] + t177) + t59 * (motion[21] + t178));
+        const gic_real t170 = t54 * motion[SOLID_AXLE_OMEGA_X] - t58 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t171 = motion[SOLID_AXLE_VELOCITY_Z] + t170;
+        const gic_real t172 = t58 * motion[SOLID_AXLE_OMEGA_Z] - t50 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t173 = motion[SOLID_AXLE_VELOCITY_Y] + t172;
+        const gic_real t174 = t50 * motion[SOLID_AXLE_OMEGA_Y] - t54 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t175 = motion[SOLID_AXLE_VELOCITY_X] + t174;
+        const gic_real t176 = motion[SOLID_AXLE_OMEGA_X] * t172 - motion[SOLID_AXLE_OMEGA_Y] * t174 + (t54 *
+            motion[SOLID_AXLE_ALPHA_X] - t58 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t177 = motion[SOLID_AXLE_OMEGA_Z] * t174 - motion[SOLID_AXLE_OMEGA_X] * t170 + (t58 *
+            motion[SOLID_AXLE_ALPHA_Z] - t50 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t178 = motion[SOLID_AXLE_OMEGA_Y] * t170 - motion[SOLID_AXLE_OMEGA_Z] * t172 + (t50 *
+            motion[SOLID_AXLE_ALPHA_Y] - t54 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t179 = t51 * (motion[SOLID_AXLE_ACCELERATION_Z] + t176) + (t55 *
+            (motion[SOLID_AXLE_ACCELERATION_Y] + t177) + t59 * (motion[SOLID_AXLE_ACCELERATION_X] + t178));
         const gic_real t180 = t171 * t171 + (t173 * t173 + t175 * t175) + t179;
         const gic_real t181 = t158 + GIC_FABS(t169 * t46) + GIC_FABS((t180 - rate[0] * rate[0]) * t62);
-        const gic_real t182 = t65 * motion[12] - t67 * motion[13];
-        const gic_real t183 = motion[17] + t182;
-        const gic_real t184 = t67 * motion[14] - t63 * motion[12];
-        const gic_real t185 = motion[16] + t184;
-        const gic_real t186 = t63 * motion[13] - t65 * motion[14];
-        const gic_real t187 = motion[15] + t186;
-        const gic_real t188 = motion[12] * t184 - motion[13] * t186 + (t65 * motion[18] - t67 * motion[19]);
-        const gic_real t189 = motion[14] * t186 - motion[12] * t182 + (t67 * motion[20] - t63 * motion[18]);
-        const gic_real t190 = motion[13] * t182 - motion[14] * t184 + (t63 * motion[19] - t65 * motion[20]);
-        const gic_real t191 = t64 * (motion[23] + t188) + (t66 * (motion[22] + t189) + t68 * (motion[21] + t190));
+        const gic_real t182 = t65 * motion[SOLID_AXLE_OMEGA_X] - t67 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t183 = motion[SOLID_AXLE_VELOCITY_Z] + t182;
+        const gic_real t184 = t67 * motion[SOLID_AXLE_OMEGA_Z] - t63 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t185 = motion[SOLID_AXLE_VELOCITY_Y] + t184;
+        const gic_real t186 = t63 * motion[SOLID_AXLE_OMEGA_Y] - t65 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t187 = motion[SOLID_AXLE_VELOCITY_X] + t186;
+        const gic_real t188 = motion[SOLID_AXLE_OMEGA_X] * t184 - motion[SOLID_AXLE_OMEGA_Y] * t186 + (t65 *
+            motion[SOLID_AXLE_ALPHA_X] - t67 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t189 = motion[SOLID_AXLE_OMEGA_Z] * t186 - motion[SOLID_AXLE_OMEGA_X] * t182 + (t67 *
+            motion[SOLID_AXLE_ALPHA_Z] - t63 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t190 = motion[SOLID_AXLE_OMEGA_Y] * t182 - motion[SOLID_AXLE_OMEGA_Z] * t184 + (t63 *
+            motion[SOLID_AXLE_ALPHA_Y] - t65 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t191 = t64 * (motion[SOLID_AXLE_ACCELERATION_Z] + t188) + (t66 *
+            (motion[SOLID_AXLE_ACCELERATION_Y] + t189) + t68 * (motion[SOLID_AXLE_ACCELERATION_X] + t190));
         const gic_real t192 = t183 * t183 + (t185 * t185 + t187 * t187) + t191;
-        const gic_real t193 = R(1.4781194909838624) * (GIC_FABS(motion[21]) + GIC_FABS(motion[22]) + GIC_FABS(motion[23]));
-        const gic_real t194 = t193 + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
+        const gic_real t193 = R(1.4781194909838624) * (GIC_FABS(motion[SOLID_AXLE_ACCELERATION_X]) +
+            GIC_FABS(motion[SOLID_AXLE_ACCELERATION_Y]) + GIC_FABS(motion[SOLID_AXLE_ACCELERATION_Z]));
+        const gic_real t194 = t193 + (GIC_FABS(motion[SOLID_AXLE_ALPHA_X]) + GIC_FABS(motion[SOLID_AXLE_ALPHA_Y]) +
+            GIC_FABS(motion[SOLID_AXLE_ALPHA_Z]));
         const gic_real t195 = t130 * t130 + t131 * t131 + t194 + t132 * t132;
         const gic_real t196 = (t181 + GIC_FABS((t192 - rate[1] * rate[1]) * t71)) / (R(1e-30) + (t195 + t133 * t133));
         const gic_real t197 = t124 + t134 + t196;
@@ -1550,6 +1798,23 @@ static GIC_COLD void solid_axle_residual_axle(const gic_real *GIC_RESTRICT k, co
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  lca_f_l.C_Y
+ *    3  upper_f_l.point_a_y
+ *    4  upper_f_l.axis_a_y
+ *    5  upper_f_l.axis_a_y * (-0.059522)
+ *    6  sign
+ *    7  sign * 2.92808
+ *    8  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *    9  upper_f_l.point_b_y * 8.57363
+ *   10  from tierod_f_l.point_b, upper_f_l.point_b
+ *   11  from upper_f_l.point_b, tierod_f_l.point_b
+ *   12  wheel_f_l.com_y
+ *   13  tierod_f_l.point_b_y
+ *   14  upper_f_l.point_b_y
+ */
 static const gic_real solid_axle_k_wheel_f_l[2][15] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(0.307086), R(0.4527638),
@@ -1568,8 +1833,9 @@ static const gic_real solid_axle_k_wheel_f_l[2][15] = {
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -1578,37 +1844,40 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = t1 + k[2];
-        motion[1] = t4;
-        const gic_real t5 = R(0.23411769999999998) - t2;
-        const gic_real t6 = R(0.05422899999999997) - t2;
-        const gic_real t7 = m1[24] * t2;
-        const gic_real t8 = m1[24] * t1;
-        motion[35] = t8;
-        const gic_real t9 = m1[12] * (m1[12] * t1) + m1[18] * t2;
-        const gic_real t10 = k[3] - t4;
+        const gic_real t1 = k[0] * m1[SOLID_AXLE_A_YY];
+        const gic_real c_z = k[0] * m1[SOLID_AXLE_A_ZY];
+        motion[SOLID_AXLE_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[SOLID_AXLE_C_Y];
+        const gic_real c_y = t1 + k[2];
+        motion[SOLID_AXLE_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t5 = R(0.23411769999999998) - c_z;
+        const gic_real t6 = R(0.05422899999999997) - c_z;
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t7 = m1[SOLID_AXLE_S + 0] * c_z;
+        const gic_real s_1_5 = m1[SOLID_AXLE_S + 0] * t1;
+        motion[SOLID_AXLE_S + 11] = s_1_5;
+        const gic_real t9 = m1[SOLID_AXLE_OMEGA_X] * (m1[SOLID_AXLE_OMEGA_X] * t1) + m1[SOLID_AXLE_ALPHA_X] * c_z;
+        const gic_real t10 = k[3] - c_y;
         const gic_real t11 = R(-0.012812720436325503) - R(0.9665541626242249) * t5;
-        const gic_real t12 = t3 - t4;
-        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * t8;
+        const gic_real t12 = t3 - c_y;
+        const gic_real t13 = k[4] * t7 - R(0.21526024724178433) * s_1_5;
         const gic_real t14 = rate[1] * t7;
         const gic_real t15 = t10 * t10 + (t5 * t5 + R(0.0035428684840000087));
         const gic_real t16 = k[4] * t10 + (R(0.21526024724178433) * t5 + R(-0.05753123686771919));
         const gic_real t17 = k[4] * t5 - R(0.21526024724178433) * t10;
         const gic_real t18 = R(0.9665541626242249) * t10 - k[5];
-        const gic_real t19 = m1[18] * t1 - m1[12] * (m1[12] * t2);
-        motion[23] = t19;
-        const gic_real t20 = rate[1] * t8;
-        motion[17] = t20;
-        const gic_real t21 = -t14;
-        motion[16] = t21;
-        const gic_real t22 = -t9;
-        motion[22] = t22;
-        const gic_real t23 = -t7;
-        motion[34] = t23;
+        const gic_real acceleration_z = m1[SOLID_AXLE_ALPHA_X] * t1 - m1[SOLID_AXLE_OMEGA_X] * (m1[SOLID_AXLE_OMEGA_X] *
+            c_z);
+        motion[SOLID_AXLE_ACCELERATION_Z] = acceleration_z;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[SOLID_AXLE_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t14;
+        motion[SOLID_AXLE_VELOCITY_Y] = velocity_y;
+        const gic_real acceleration_y = -t9;
+        motion[SOLID_AXLE_ACCELERATION_Y] = acceleration_y;
+        const gic_real s_1_4 = -t7;
+        motion[SOLID_AXLE_S + 10] = s_1_4;
         const gic_real t24 = R(0.5) * (R(0.04548219048831004) + t15);
         const gic_real t25 = t17 * t17 + (t18 * t18 + t11 * t11);
         const gic_real t26 = R(4.3116545195287515e-08) + t16;
@@ -1626,8 +1895,9 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t34 = t18 * t31 + (R(0.21526024724178433) * t32 + t5 * t33);
         const gic_real t35 = t11 * t31 + (k[4] * t32 + t10 * t33);
         const gic_real t36 = t17 * t31 + (R(0.9665541626242249) * t32 + R(-0.059522000000000075) * t33);
-        const gic_real t37 = t34 + (t2 - R(0.23411769999999998));
-        const gic_real t38 = t35 + (t4 - k[3]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t37 = t34 + (c_z - R(0.23411769999999998));
+        const gic_real t38 = t35 + (c_y - k[3]);
         const gic_real t39 = R(0.21526024724178433) * t35 - k[4] * t34;
         const gic_real t40 = R(-0.2147570000000001) * t36 + (t6 * t34 + t12 * t35);
         const gic_real t41 = t36 + R(0.059522000000000075);
@@ -1636,7 +1906,7 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t44 = t35 * t37 - t34 * t38;
         const gic_real t45 = t36 * t38 - t35 * t41;
         const gic_real t46 = t34 * t41 - t36 * t37;
-        const gic_real t47 = t7 * t38 - t8 * t37;
+        const gic_real t47 = t7 * t38 - s_1_5 * t37;
         const gic_real t48 = R(0.5) * (t12 * t12 + (t6 * t6 + R(-0.07206227845579997))) - R(0.2910617987184667) * t40;
         const gic_real t49 = R(8.573627050492615) * t40;
         const gic_real t50 = t44 * t43 - t45 * t39;
@@ -1662,39 +1932,40 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t66 = t35 * t62 - t34 * t61;
         const gic_real t67 = t63 + R(0.2910617987184667) * t36;
         const gic_real t68 = t34 * t63 - t36 * t62;
-        const gic_real t69 = t64 + (t4 - t3);
+        const gic_real t69 = t64 + (c_y - t3);
         const gic_real t70 = t36 * t61 - t35 * t63;
-        const gic_real t71 = t65 + (t2 - R(0.05422899999999997));
-        const gic_real t72 = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
-        motion[4] = t72;
+        const gic_real t71 = t65 + (c_z - R(0.05422899999999997));
+        const gic_real a_xy = R(-18.07838873614245) * t66 + (k[8] * t63 + k[9] * t36);
+        motion[SOLID_AXLE_A_XY] = a_xy;
         const gic_real t73 = t67 + R(0.2147570000000001);
-        const gic_real t74 = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
-        motion[7] = t74;
-        const gic_real t75 = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
-        motion[8] = t75;
+        const gic_real a_yy = R(-18.07838873614245) * t68 + (k[8] * t61 + k[9] * t35);
+        motion[SOLID_AXLE_A_YY] = a_yy;
+        const gic_real a_yz = k[10] * t68 + (R(0.2191665982107646) * t61 + R(2.8601928491017183) * t35);
+        motion[SOLID_AXLE_A_YZ] = a_yz;
         const gic_real t76 = t67 * t69 - t64 * t73;
         const gic_real t77 = t65 * t73 - t67 * t71;
         const gic_real t78 = t64 * t71 - t65 * t69;
-        const gic_real t79 = t7 * t69 - t8 * t71;
-        const gic_real t80 = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
-        motion[10] = t80;
-        const gic_real t81 = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
-        motion[11] = t81;
+        const gic_real t79 = t7 * t69 - s_1_5 * t71;
+        const gic_real a_zy = R(-18.07838873614245) * t70 + (k[8] * t62 + k[9] * t34);
+        motion[SOLID_AXLE_A_ZY] = a_zy;
+        const gic_real a_zz = k[10] * t70 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t34);
+        motion[SOLID_AXLE_A_ZZ] = a_zz;
         const gic_real t82 = t78 * t52 + (t76 * t51 + t77 * t50);
-        const gic_real t83 = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
-        motion[5] = t83;
-        const gic_real t84 = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
-        motion[6] = t84;
-        const gic_real t85 = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
-        motion[9] = t85;
-        const gic_real t86 = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
-        motion[3] = t86;
+        const gic_real a_xz = k[10] * t66 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t36);
+        motion[SOLID_AXLE_A_XZ] = a_xz;
+        const gic_real a_yx = k[11] * t68 + (R(-6.332169372123424) * t61 + R(-0.14982584743276875) * t35);
+        motion[SOLID_AXLE_A_YX] = a_yx;
+        const gic_real a_zx = k[11] * t70 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t34);
+        motion[SOLID_AXLE_A_ZX] = a_zx;
+        const gic_real a_xx = k[11] * t66 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t36);
+        motion[SOLID_AXLE_A_XX] = a_xx;
         const gic_real t87 = R(1.0) / t82;
-        const gic_real t88 = R(2.8083995) * t74;
-        const gic_real t89 = R(-0.004825999999999997) * t84 + (R(0.09182100000000004) * t75 + k[12] * t74);
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182100000000004) * t81 + k[12] * t80);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t83 + k[12] * t72);
-        const gic_real t92 = t85 * (R(0.12192999999999987) * t85) + (R(4.7728205) + t80 * (R(2.8083995) * t80));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t88 = R(2.8083995) * a_yy;
+        const gic_real t89 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + k[12] * a_yy);
+        const gic_real t90 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz + k[12] * a_zy);
+        const gic_real t91 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + k[12] * a_xy);
+        const gic_real t92 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(2.8083995) * a_zy));
         const gic_real t93 = (t78 * t42 - t77 * t39) * t87;
         const gic_real t94 = (t77 * t43 - t76 * t42) * t87;
         const gic_real t95 = (t76 * t39 - t78 * t43) * t87;
@@ -1704,173 +1975,175 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
         const gic_real t99 = t51 * t87;
         const gic_real t100 = t52 * t87;
         const gic_real t101 = t50 * t87;
-        const gic_real t102 = t4 + t89;
-        const gic_real t103 = t2 + t90;
+        const gic_real t102 = c_y + t89;
+        const gic_real t103 = c_z + t90;
         const gic_real t104 = R(1.653405) + t91;
-        const gic_real t105 = R(0.12192999999999987) * t86;
-        const gic_real t106 = R(2.8083995) * t72;
-        const gic_real t107 = t69 * t99;
-        motion[26] = t107;
-        const gic_real t108 = t69 * t100;
-        motion[24] = t108;
-        const gic_real t109 = t69 * t101;
-        motion[25] = t109;
-        const gic_real t110 = R(0.12192999999999987) * t84;
-        const gic_real t111 = t13 * t96 + (t99 * t79 + t93 * t47);
-        motion[32] = t111;
-        const gic_real t112 = t13 * t97 + (t100 * t79 + t94 * t47);
-        motion[30] = t112;
-        const gic_real t113 = t13 * t98 + (t101 * t79 + t95 * t47);
-        motion[31] = t113;
-        const gic_real t114 = t84 * t110 + (R(4.7728205) + t74 * t88);
-        const gic_real t115 = t86 * t105 + (R(4.7728205) + t72 * t106);
-        const gic_real t116 = t74 * t106 + t84 * t105;
-        const gic_real t117 = rate[0] * t107 + rate[1] * t111;
-        motion[14] = t117;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[12] = t118;
-        const gic_real t119 = t80 * t106 + t85 * t105;
-        const gic_real t120 = rate[0] * t109 + rate[1] * t113;
-        motion[13] = t120;
-        const gic_real t121 = t80 * t88 + t85 * t110;
-        const gic_real t122 = t108 * t89 - t109 * t91;
-        const gic_real t123 = turn[2] + t117;
-        const gic_real t124 = t36 * t117 - t34 * t118;
-        const gic_real t125 = t67 * t117 - t65 * t118;
-        const gic_real t126 = t65 * t120 - t64 * t117;
-        const gic_real t127 = t64 * t118 - t67 * t120;
-        const gic_real t128 = t34 * t120 - t35 * t117;
-        const gic_real t129 = t35 * t118 - t36 * t120;
+        const gic_real t105 = R(0.12192999999999987) * a_xx;
+        const gic_real t106 = R(2.8083995) * a_xy;
+        const gic_real s_0_2 = t69 * t99;
+        motion[SOLID_AXLE_S + 2] = s_0_2;
+        const gic_real s_0_0 = t69 * t100;
+        motion[SOLID_AXLE_S + 0] = s_0_0;
+        const gic_real s_0_1 = t69 * t101;
+        motion[SOLID_AXLE_S + 1] = s_0_1;
+        const gic_real t110 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t13 * t96 + (t99 * t79 + t93 * t47);
+        motion[SOLID_AXLE_S + 8] = s_1_2;
+        const gic_real s_1_0 = t13 * t97 + (t100 * t79 + t94 * t47);
+        motion[SOLID_AXLE_S + 6] = s_1_0;
+        const gic_real s_1_1 = t13 * t98 + (t101 * t79 + t95 * t47);
+        motion[SOLID_AXLE_S + 7] = s_1_1;
+        const gic_real t114 = a_yx * t110 + (R(4.7728205) + a_yy * t88);
+        const gic_real t115 = a_xx * t105 + (R(4.7728205) + a_xy * t106);
+        const gic_real t116 = a_yy * t106 + a_yx * t105;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[SOLID_AXLE_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[SOLID_AXLE_OMEGA_X] = omega_x;
+        const gic_real t119 = a_zy * t106 + a_zx * t105;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[SOLID_AXLE_OMEGA_Y] = omega_y;
+        const gic_real t121 = a_zy * t88 + a_zx * t110;
+        const gic_real t122 = s_0_0 * t89 - s_0_1 * t91;
+        const gic_real t123 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t124 = t36 * omega_z - t34 * omega_x;
+        const gic_real t125 = t67 * omega_z - t65 * omega_x;
+        const gic_real t126 = t65 * omega_y - t64 * omega_z;
+        const gic_real t127 = t64 * omega_x - t67 * omega_y;
+        const gic_real t128 = t34 * omega_y - t35 * omega_z;
+        const gic_real t129 = t35 * omega_x - t36 * omega_y;
         const gic_real t130 = t124 - t14;
-        const gic_real t131 = t125 - (m0[16] + t14);
-        const gic_real t132 = t118 * t89 - t120 * t91;
-        const gic_real t133 = t117 * t91 - t118 * t90;
-        const gic_real t134 = t20 + t127;
-        const gic_real t135 = t118 * t124 - t120 * t128;
-        const gic_real t136 = t20 + t129;
-        const gic_real t137 = t120 * t129 - t117 * t124;
-        const gic_real t138 = t9 * t69 - t19 * t71 - t126 * t126 - t134 * t134;
-        const gic_real t139 = t9 * t38 - t19 * t37 - t128 * t128 - t136 * t136;
-        const gic_real t140 = t117 * t128 - t118 * t129;
-        const gic_real t141 = t71 * (t118 * t125 - t120 * t126) + t69 * (t117 * t126 - t118 * t127);
-        const gic_real t142 = t120 * t90 - t117 * t89;
-        const gic_real t143 = t20 + t132;
-        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * t19 - R(0.21526024724178433) * t135 - (k[4] * t140 + R(0.9665541626242249) * t137);
-        const gic_real t145 = t138 - t131 * t131 - t73 * (t120 * t127 - t117 * t125);
+        const gic_real t131 = t125 - (m0[SOLID_AXLE_VELOCITY_Y] + t14);
+        const gic_real t132 = omega_x * t89 - omega_y * t91;
+        const gic_real t133 = omega_z * t91 - omega_x * t90;
+        const gic_real t134 = velocity_z + t127;
+        const gic_real t135 = omega_x * t124 - omega_y * t128;
+        const gic_real t136 = velocity_z + t129;
+        const gic_real t137 = omega_y * t129 - omega_z * t124;
+        const gic_real t138 = t9 * t69 - acceleration_z * t71 - t126 * t126 - t134 * t134;
+        const gic_real t139 = t9 * t38 - acceleration_z * t37 - t128 * t128 - t136 * t136;
+        const gic_real t140 = omega_z * t128 - omega_x * t129;
+        const gic_real t141 = t71 * (omega_x * t125 - omega_y * t126) + t69 * (omega_z * t126 - omega_x * t127);
+        const gic_real t142 = omega_y * t90 - omega_z * t89;
+        const gic_real t143 = velocity_z + t132;
+        const gic_real t144 = k[4] * t9 - R(0.21526024724178433) * acceleration_z - R(0.21526024724178433) * t135 -
+            (k[4] * t140 + R(0.9665541626242249) * t137);
+        const gic_real t145 = t138 - t131 * t131 - t73 * (omega_y * t127 - omega_z * t125);
         const gic_real t146 = t139 - t130 * t130 - t41 * t137 - (t37 * t135 + t38 * t140);
         const gic_real t147 = t142 + (t142 + (turn[1] * t103 - turn[2] * t102));
         const gic_real t148 = t143 + (t143 + (turn[0] * t102 - turn[1] * t104));
         const gic_real t149 = t133 - t14;
-        const gic_real t150 = turn[1] + t120;
-        const gic_real t151 = turn[0] + t118;
-        const gic_real t152 = t108 * t115 + (t107 * t119 + t109 * t116);
+        const gic_real t150 = turn[1] + omega_y;
+        const gic_real t151 = turn[0] + omega_x;
+        const gic_real t152 = s_0_0 * t115 + (s_0_2 * t119 + s_0_1 * t116);
         const gic_real t153 = t149 + (t149 + (turn[2] * t104 - turn[0] * t103));
         const gic_real t154 = t145 - t141;
         const gic_real t155 = t119 * t151 + (t92 * t123 + t121 * t150);
         const gic_real t156 = t116 * t151 + (t121 * t123 + t114 * t150);
-        const gic_real t157 = t19 + t118 * t133 - t120 * t142 - turn[1] * t147;
-        const gic_real t158 = t94 * t146 + (t100 * t154 + t97 * t144);
-        motion[18] = t158;
-        const gic_real t159 = t95 * t146 + (t101 * t154 + t98 * t144);
-        motion[19] = t159;
-        const gic_real t160 = t93 * t146 + (t99 * t154 + t96 * t144);
-        motion[20] = t160;
-        const gic_real t161 = turn[2] * t147 + (t117 * t142 - t9 - t118 * t132);
+        const gic_real t157 = acceleration_z + omega_x * t133 - omega_y * t142 - turn[1] * t147;
+        const gic_real alpha_x = t94 * t146 + (t100 * t154 + t97 * t144);
+        motion[SOLID_AXLE_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t95 * t146 + (t101 * t154 + t98 * t144);
+        motion[SOLID_AXLE_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t93 * t146 + (t99 * t154 + t96 * t144);
+        motion[SOLID_AXLE_ALPHA_Z] = alpha_z;
+        const gic_real t161 = turn[2] * t147 + (omega_z * t142 - t9 - omega_x * t132);
         const gic_real t162 = t115 * t151 + (t119 * t123 + t116 * t150);
-        const gic_real t163 = turn[1] * t148 + (t120 * t132 - t117 * t133) - turn[2] * t153;
-        const gic_real t164 = t159 + (turn[2] * t118 - turn[0] * t117);
-        const gic_real t165 = t160 + (turn[0] * t120 - turn[1] * t118);
-        const gic_real t166 = t158 + (turn[1] * t117 - turn[2] * t120);
-        const gic_real t167 = t158 * t89 + (turn[0] * t153 + t157) - t159 * t91;
-        const gic_real t168 = t160 * t91 + (t161 - turn[0] * t148) - t158 * t90;
-        const gic_real t169 = t108 * t116 + (t107 * t121 + t109 * t114);
-        const gic_real t170 = R(90.555) * (t159 * t90 + t163 - t160 * t89);
-        inertia[9] = t170;
+        const gic_real t163 = turn[1] * t148 + (omega_y * t132 - omega_z * t133) - turn[2] * t153;
+        const gic_real t164 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t165 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t166 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t167 = alpha_x * t89 + (turn[0] * t153 + t157) - alpha_y * t91;
+        const gic_real t168 = alpha_z * t91 + (t161 - turn[0] * t148) - alpha_x * t90;
+        const gic_real t169 = s_0_0 * t116 + (s_0_2 * t121 + s_0_1 * t114);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t90 + t163 - alpha_z * t89);
+        inertia[SOLID_AXLE_I_FORCE_X] = inertia_force_x;
         const gic_real t171 = t119 * t165 + (t150 * t155 - t123 * t156) + (t116 * t164 + t115 * t166);
         const gic_real t172 = t121 * t165 + (t123 * t162 - t151 * t155) + (t114 * t164 + t116 * t166);
         const gic_real t173 = t92 * t165 + (t151 * t156 - t150 * t162) + (t121 * t164 + t119 * t166);
-        const gic_real t174 = t108 * t119 + (t107 * t92 + t109 * t121);
-        const gic_real t175 = t113 * t90 - t111 * t89;
-        const gic_real t176 = t111 * t91 - t7 - t112 * t90;
-        const gic_real t177 = t8 + t112 * t89 - t113 * t91;
-        const gic_real t178 = t112 * t115 + (t111 * t119 + t113 * t116);
-        const gic_real t179 = t112 * t116 + (t111 * t121 + t113 * t114);
-        const gic_real t180 = t112 * t119 + (t111 * t92 + t113 * t121);
-        const gic_real t181 = t109 * t90 - t107 * t89;
-        const gic_real t182 = t107 * t91 - t108 * t90;
-        const gic_real t183 = R(90.555) * t167;
-        inertia[11] = t183;
-        const gic_real t184 = R(90.555) * t122;
-        inertia[17] = t184;
-        const gic_real t185 = R(90.555) * t175;
-        inertia[22] = t185;
-        const gic_real t186 = ahead[0] * (GIC_FABS(t117) + (GIC_FABS(t118) + GIC_FABS(t120)));
-        const gic_real t187 = R(90.555) * t104;
-        inertia[0] = t187;
-        const gic_real t188 = R(90.555) * t102;
-        inertia[1] = t188;
-        const gic_real t189 = R(90.555) * t168;
-        inertia[10] = t189;
-        const gic_real t190 = R(90.555) * t181;
-        inertia[15] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[16] = t191;
-        const gic_real t192 = t107 * t173 + t109 * t172 + (t108 * t171 + t183 * t122);
-        const gic_real t193 = R(90.555) * t176;
-        inertia[23] = t193;
-        const gic_real t194 = R(90.555) * t177;
-        inertia[24] = t194;
-        const gic_real t195 = t111 * t173 + t113 * t172 + (t112 * t171 + t183 * t177);
+        const gic_real t174 = s_0_0 * t119 + (s_0_2 * t92 + s_0_1 * t121);
+        const gic_real t175 = s_1_1 * t90 - s_1_2 * t89;
+        const gic_real t176 = s_1_2 * t91 - t7 - s_1_0 * t90;
+        const gic_real t177 = s_1_5 + s_1_0 * t89 - s_1_1 * t91;
+        const gic_real t178 = s_1_0 * t115 + (s_1_2 * t119 + s_1_1 * t116);
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t121 + s_1_1 * t114);
+        const gic_real t180 = s_1_0 * t119 + (s_1_2 * t92 + s_1_1 * t121);
+        const gic_real t181 = s_0_1 * t90 - s_0_2 * t89;
+        const gic_real t182 = s_0_2 * t91 - s_0_0 * t90;
+        const gic_real inertia_force_z = R(90.555) * t167;
+        inertia[SOLID_AXLE_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t122;
+        inertia[SOLID_AXLE_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t175;
+        inertia[SOLID_AXLE_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t186 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t104;
+        inertia[SOLID_AXLE_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t102;
+        inertia[SOLID_AXLE_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t168;
+        inertia[SOLID_AXLE_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t181;
+        inertia[SOLID_AXLE_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t182;
+        inertia[SOLID_AXLE_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t192 = s_0_2 * t173 + s_0_1 * t172 + (s_0_0 * t171 + inertia_force_z * t122);
+        const gic_real along_1_force_y = R(90.555) * t176;
+        inertia[SOLID_AXLE_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t177;
+        inertia[SOLID_AXLE_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t195 = s_1_2 * t173 + s_1_1 * t172 + (s_1_0 * t171 + inertia_force_z * t177);
         if (!(R(-334.7683100636247) * t82 - t186 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t196 = t107 * t174 + t109 * t169 + (t108 * t152 + t122 * t184);
-        const gic_real t197 = t107 * t180 + t109 * t179 + (t108 * t178 + t181 * t185);
-        const gic_real t198 = t111 * t180 + t113 * t179 + (t112 * t178 + t175 * t185);
-        const gic_real t199 = R(90.555) * t103;
-        inertia[2] = t199;
-        const gic_real t200 = t102 * t188;
-        const gic_real t201 = t104 * t187;
-        const gic_real t202 = t171 + t102 * t183 - t103 * t189;
-        inertia[12] = t202;
-        const gic_real t203 = t172 + t103 * t170 - t104 * t183;
-        inertia[13] = t203;
-        const gic_real t204 = t173 + t104 * t189 - t102 * t170;
-        inertia[14] = t204;
-        const gic_real t205 = t152 + t102 * t184 - t103 * t191;
-        inertia[18] = t205;
-        const gic_real t206 = t169 + t103 * t190 - t104 * t184;
-        inertia[19] = t206;
-        const gic_real t207 = t174 + t104 * t191 - t102 * t190;
-        inertia[20] = t207;
-        const gic_real t208 = t189 * t182 + t170 * t181 + t192;
-        inertia[21] = t208;
-        const gic_real t209 = t178 + t102 * t194 - t103 * t193;
-        inertia[25] = t209;
-        const gic_real t210 = t179 + t103 * t185 - t104 * t194;
-        inertia[26] = t210;
-        const gic_real t211 = t104 * t193 + (t180 - t102 * t185);
-        inertia[27] = t211;
-        const gic_real t212 = t189 * t176 + t170 * t175 + t195;
-        inertia[28] = t212;
-        const gic_real t213 = t182 * t191 + t181 * t190 + t196;
-        inertia[29] = t213;
-        const gic_real t214 = t197 + (t122 * t194 + t182 * t193);
-        inertia[30] = t214;
-        const gic_real t215 = t198 + (t177 * t194 + t176 * t193);
-        inertia[31] = t215;
-        const gic_real t216 = t103 * t199;
-        const gic_real t217 = t200 + (t92 + t201);
-        inertia[5] = t217;
-        const gic_real t218 = t116 - t102 * t187;
-        inertia[6] = t218;
-        const gic_real t219 = t119 - t103 * t187;
-        inertia[7] = t219;
-        const gic_real t220 = t121 - t103 * t188;
-        inertia[8] = t220;
-        const gic_real t221 = t216 + (t115 + t200);
-        inertia[3] = t221;
-        const gic_real t222 = t216 + (t114 + t201);
-        inertia[4] = t222;
+        const gic_real t196 = s_0_2 * t174 + s_0_1 * t169 + (s_0_0 * t152 + t122 * along_0_force_z);
+        const gic_real t197 = s_0_2 * t180 + s_0_1 * t179 + (s_0_0 * t178 + t181 * along_1_force_x);
+        const gic_real t198 = s_1_2 * t180 + s_1_1 * t179 + (s_1_0 * t178 + t175 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t103;
+        inertia[SOLID_AXLE_I_FIRST_Z] = inertia_first_z;
+        const gic_real t200 = t102 * inertia_first_y;
+        const gic_real t201 = t104 * inertia_first_x;
+        const gic_real inertia_moment_x = t171 + t102 * inertia_force_z - t103 * inertia_force_y;
+        inertia[SOLID_AXLE_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t172 + t103 * inertia_force_x - t104 * inertia_force_z;
+        inertia[SOLID_AXLE_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t173 + t104 * inertia_force_y - t102 * inertia_force_x;
+        inertia[SOLID_AXLE_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t152 + t102 * along_0_force_z - t103 * along_0_force_y;
+        inertia[SOLID_AXLE_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t169 + t103 * along_0_force_x - t104 * along_0_force_z;
+        inertia[SOLID_AXLE_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t174 + t104 * along_0_force_y - t102 * along_0_force_x;
+        inertia[SOLID_AXLE_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t182 + inertia_force_x * t181 + t192;
+        inertia[SOLID_AXLE_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t178 + t102 * along_1_force_z - t103 * along_1_force_y;
+        inertia[SOLID_AXLE_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t179 + t103 * along_1_force_x - t104 * along_1_force_z;
+        inertia[SOLID_AXLE_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t104 * along_1_force_y + (t180 - t102 * along_1_force_x);
+        inertia[SOLID_AXLE_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t176 + inertia_force_x * t175 + t195;
+        inertia[SOLID_AXLE_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t182 * along_0_force_y + t181 * along_0_force_x + t196;
+        inertia[SOLID_AXLE_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t197 + (t122 * along_1_force_z + t182 * along_1_force_y);
+        inertia[SOLID_AXLE_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t198 + (t177 * along_1_force_z + t176 * along_1_force_y);
+        inertia[SOLID_AXLE_I_COORDINATE + 16] = mass_2;
+        const gic_real t216 = t103 * inertia_first_z;
+        const gic_real inertia_second_zz = t200 + (t92 + t201);
+        inertia[SOLID_AXLE_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t116 - t102 * inertia_first_x;
+        inertia[SOLID_AXLE_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t119 - t103 * inertia_first_x;
+        inertia[SOLID_AXLE_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t121 - t103 * inertia_first_y;
+        inertia[SOLID_AXLE_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t216 + (t115 + t200);
+        inertia[SOLID_AXLE_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t216 + (t114 + t201);
+        inertia[SOLID_AXLE_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -1881,106 +2154,152 @@ static int solid_axle_solve_wheel_f_l(solid_axle *self, const gic_real *GIC_REST
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const solid_axle_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void solid_axle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const solid_axle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[2]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[13] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[13] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[SOLID_AXLE_A_YY];
+        const gic_real t2 = k[0] * m1[SOLID_AXLE_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[SOLID_AXLE_C_Y] - (t1 + k[2]))) +
+            GIC_FABS(R(2.928075656552032) * (motion[SOLID_AXLE_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[SOLID_AXLE_A_ZZ] + (k[13] * motion[SOLID_AXLE_A_ZY] +
+            R(-0.14025880000000002) * motion[SOLID_AXLE_A_ZX]);
+        const gic_real t5 = motion[SOLID_AXLE_C_Z] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[SOLID_AXLE_A_YZ] + (k[13] * motion[SOLID_AXLE_A_YY] +
+            R(-0.14025880000000002) * motion[SOLID_AXLE_A_YX]);
+        const gic_real t7 = motion[SOLID_AXLE_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[SOLID_AXLE_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[13] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[SOLID_AXLE_A_XZ] + (k[13] * motion[SOLID_AXLE_A_XY] +
+            R(-0.14025880000000002) * motion[SOLID_AXLE_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[14] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
-        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[14] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[3];
-        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[14] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.33360360000000006) * motion[SOLID_AXLE_A_ZZ] + (k[14] * motion[SOLID_AXLE_A_ZY] +
+            R(-0.017475200000000024) * motion[SOLID_AXLE_A_ZX]);
+        const gic_real t16 = motion[SOLID_AXLE_C_Z] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[SOLID_AXLE_A_YZ] + (k[14] * motion[SOLID_AXLE_A_YY] +
+            R(-0.017475200000000024) * motion[SOLID_AXLE_A_YX]);
+        const gic_real t18 = motion[SOLID_AXLE_C_Y] + t17 - k[3];
+        const gic_real t19 = R(0.33360360000000006) * motion[SOLID_AXLE_A_XZ] + (k[14] * motion[SOLID_AXLE_A_XY] +
+            R(-0.017475200000000024) * motion[SOLID_AXLE_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[4] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[SOLID_AXLE_A_ZX] * motion[SOLID_AXLE_A_ZX] + (motion[SOLID_AXLE_A_YX] *
+            motion[SOLID_AXLE_A_YX] + motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_XX]) - R(1.0);
+        const gic_real t27 = motion[SOLID_AXLE_A_ZY] * motion[SOLID_AXLE_A_ZY] + (motion[SOLID_AXLE_A_YY] *
+            motion[SOLID_AXLE_A_YY] + motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[SOLID_AXLE_A_ZX] * motion[SOLID_AXLE_A_ZY] + (motion[SOLID_AXLE_A_YX] *
+            motion[SOLID_AXLE_A_YY] + motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[SOLID_AXLE_A_YX] * motion[SOLID_AXLE_A_ZY] -
+            motion[SOLID_AXLE_A_YY] * motion[SOLID_AXLE_A_ZX] - motion[SOLID_AXLE_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_ZX] -
+            motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_ZY] - motion[SOLID_AXLE_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[SOLID_AXLE_A_XX] * motion[SOLID_AXLE_A_YY] -
+            motion[SOLID_AXLE_A_XY] * motion[SOLID_AXLE_A_YX] - motion[SOLID_AXLE_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[SOLID_AXLE_S + 0] + t34 * motion[SOLID_AXLE_S + 1] + t35 *
+            motion[SOLID_AXLE_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[SOLID_AXLE_S + 0] + t38 * motion[SOLID_AXLE_S + 1] + t39 *
+            motion[SOLID_AXLE_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[4] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[4] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[SOLID_AXLE_S + 0] + t42 * motion[SOLID_AXLE_S + 1] +
+            t43 * motion[SOLID_AXLE_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[24] * t2 + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[24] * t1));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[4] * motion[34];
-        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
-        const gic_real t53 = t52 + GIC_FABS(m1[24]);
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[SOLID_AXLE_S + 0]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 1]) + GIC_FABS(motion[SOLID_AXLE_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[SOLID_AXLE_S + 0] * t2 + motion[SOLID_AXLE_S + 10])) +
+            GIC_FABS(R(2.928075656552032) * (motion[SOLID_AXLE_S + 11] - m1[SOLID_AXLE_S + 0] * t1));
+        const gic_real t48 = t33 * motion[SOLID_AXLE_S + 6] + t34 * motion[SOLID_AXLE_S + 7] + t35 *
+            motion[SOLID_AXLE_S + 8] + t9 * motion[SOLID_AXLE_S + 10];
+        const gic_real t49 = t37 * motion[SOLID_AXLE_S + 6] + t38 * motion[SOLID_AXLE_S + 7] + t39 *
+            motion[SOLID_AXLE_S + 8] + t18 * motion[SOLID_AXLE_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[SOLID_AXLE_S + 11])) + GIC_FABS(t23 * (t49 + t16 *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t51 = t41 * motion[SOLID_AXLE_S + 6] + t42 * motion[SOLID_AXLE_S + 7] + t43 *
+            motion[SOLID_AXLE_S + 8] + k[4] * motion[SOLID_AXLE_S + 10];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[SOLID_AXLE_S + 10]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 11])) + (GIC_FABS(motion[SOLID_AXLE_S + 6]) +
+            GIC_FABS(motion[SOLID_AXLE_S + 7]) + GIC_FABS(motion[SOLID_AXLE_S + 8]));
+        const gic_real t53 = t52 + GIC_FABS(m1[SOLID_AXLE_S + 0]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[SOLID_AXLE_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X] - rate[0] * motion[SOLID_AXLE_S + 0] - rate[1] *
+            motion[SOLID_AXLE_S + 6]) + GIC_FABS(motion[SOLID_AXLE_OMEGA_Y] - rate[0] * motion[SOLID_AXLE_S + 1] -
+            rate[1] * motion[SOLID_AXLE_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[SOLID_AXLE_OMEGA_Z] - rate[0] * motion[SOLID_AXLE_S + 2] - rate[1] *
+            motion[SOLID_AXLE_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[SOLID_AXLE_VELOCITY_Y] - rate[1] *
+            motion[SOLID_AXLE_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[SOLID_AXLE_VELOCITY_Z] - rate[1] *
+            motion[SOLID_AXLE_S + 11]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[SOLID_AXLE_VELOCITY_Y]) +
+            GIC_FABS(motion[SOLID_AXLE_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[SOLID_AXLE_OMEGA_X]) + GIC_FABS(motion[SOLID_AXLE_OMEGA_Y]) +
+            GIC_FABS(motion[SOLID_AXLE_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = R(2.928075656552032) * (m1[12] * (m1[12] * t1) + m1[18] * t2 + motion[22]);
-        const gic_real t64 = R(2.928075656552032) * (motion[23] - (m1[18] * t1 - m1[12] * (m1[12] * t2)));
-        const gic_real t65 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t66 = motion[17] + t65;
-        const gic_real t67 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t68 = motion[16] + t67 - m0[16];
-        const gic_real t69 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t70 = motion[12] * t67 - motion[13] * t69 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t71 = motion[14] * t69 - motion[12] * t65 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t72 = motion[13] * t65 - motion[14] * t67 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t73 = t5 * (motion[23] + t70) + (t9 * (motion[22] + t71) + t11 * t72);
+        const gic_real t63 = R(2.928075656552032) * (m1[SOLID_AXLE_OMEGA_X] * (m1[SOLID_AXLE_OMEGA_X] * t1) +
+            m1[SOLID_AXLE_ALPHA_X] * t2 + motion[SOLID_AXLE_ACCELERATION_Y]);
+        const gic_real t64 = R(2.928075656552032) * (motion[SOLID_AXLE_ACCELERATION_Z] - (m1[SOLID_AXLE_ALPHA_X] * t1 -
+            m1[SOLID_AXLE_OMEGA_X] * (m1[SOLID_AXLE_OMEGA_X] * t2)));
+        const gic_real t65 = t6 * motion[SOLID_AXLE_OMEGA_X] - t10 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t66 = motion[SOLID_AXLE_VELOCITY_Z] + t65;
+        const gic_real t67 = t10 * motion[SOLID_AXLE_OMEGA_Z] - t4 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t68 = motion[SOLID_AXLE_VELOCITY_Y] + t67 - m0[SOLID_AXLE_VELOCITY_Y];
+        const gic_real t69 = t4 * motion[SOLID_AXLE_OMEGA_Y] - t6 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t70 = motion[SOLID_AXLE_OMEGA_X] * t67 - motion[SOLID_AXLE_OMEGA_Y] * t69 + (t6 *
+            motion[SOLID_AXLE_ALPHA_X] - t10 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t71 = motion[SOLID_AXLE_OMEGA_Z] * t69 - motion[SOLID_AXLE_OMEGA_X] * t65 + (t10 *
+            motion[SOLID_AXLE_ALPHA_Z] - t4 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t72 = motion[SOLID_AXLE_OMEGA_Y] * t65 - motion[SOLID_AXLE_OMEGA_Z] * t67 + (t4 *
+            motion[SOLID_AXLE_ALPHA_Y] - t6 * motion[SOLID_AXLE_ALPHA_Z]);
+        const gic_real t73 = t5 * (motion[SOLID_AXLE_ACCELERATION_Z] + t70) + (t9 * (motion[SOLID_AXLE_ACCELERATION_Y] +
+            t71) + t11 * t72);
         const gic_real t74 = t66 * t66 + (t68 * t68 + t69 * t69) + t73;
         const gic_real t75 = GIC_FABS(t63) + GIC_FABS(t64) + GIC_FABS(t74 * t14);
-        const gic_real t76 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t77 = motion[17] + t76;
-        const gic_real t78 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t79 = motion[16] + t78;
-        const gic_real t80 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t81 = motion[12] * t78 - motion[13] * t80 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t82 = motion[23] + t81;
-        const gic_real t83 = motion[14] * t80 - motion[12] * t76 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t84 = motion[22] + t83;
-        const gic_real t85 = motion[13] * t76 - motion[14] * t78 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t76 = t17 * motion[SOLID_AXLE_OMEGA_X] - t19 * motion[SOLID_AXLE_OMEGA_Y];
+        const gic_real t77 = motion[SOLID_AXLE_VELOCITY_Z] + t76;
+        const gic_real t78 = t19 * motion[SOLID_AXLE_OMEGA_Z] - t15 * motion[SOLID_AXLE_OMEGA_X];
+        const gic_real t79 = motion[SOLID_AXLE_VELOCITY_Y] + t78;
+        const gic_real t80 = t15 * motion[SOLID_AXLE_OMEGA_Y] - t17 * motion[SOLID_AXLE_OMEGA_Z];
+        const gic_real t81 = motion[SOLID_AXLE_OMEGA_X] * t78 - motion[SOLID_AXLE_OMEGA_Y] * t80 + (t17 *
+            motion[SOLID_AXLE_ALPHA_X] - t19 * motion[SOLID_AXLE_ALPHA_Y]);
+        const gic_real t82 = motion[SOLID_AXLE_ACCELERATION_Z] + t81;
+        const gic_real t83 = motion[SOLID_AXLE_OMEGA_Z] * t80 - motion[SOLID_AXLE_OMEGA_X] * t76 + (t19 *
+            motion[SOLID_AXLE_ALPHA_Z] - t15 * motion[SOLID_AXLE_ALPHA_X]);
+        const gic_real t84 = motion[SOLID_AXLE_ACCELERATION_Y] + t83;
+        const gic_real t85 = motion[SOLID_AXLE_OMEGA_Y] * t76 - motion[SOLID_AXLE_OMEGA_Z] * t78 + (t15 *
+            motion[SOLID_AXLE_ALPHA_Y] - t17 * motion[SOLID_AXLE_ALPHA_Z]);
         const gic_real t86 = t77 * t77 + (t79 * t79 + t80 * t80) + (t16 * t82 + (t18 * t84 + t20 * t85));
-        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) * R(2.559750693852431);
-        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t87 = (R(0.21526024724178433) * t82 + (k[4] * t84 + R(0.9665541626242249) * t85)) *
+            R(2.559750693852431);
+        const gic_real t88 = R(2.928075656552032) * (GIC_FABS(motion[SOLID_AXLE_ACCELERATION_Y]) +
+            GIC_FABS(motion[SOLID_AXLE_ACCELERATION_Z])) + (GIC_FABS(motion[SOLID_AXLE_ALPHA_X]) +
+            GIC_FABS(motion[SOLID_AXLE_ALPHA_Y]) + GIC_FABS(motion[SOLID_AXLE_ALPHA_Z]));
+        const gic_real t89 = R(2.928075656552032) * GIC_FABS(m0[SOLID_AXLE_VELOCITY_Y]);
         const gic_real t90 = t58 * t58 + t59 * t59 + t88 + t89 * t89;
-        const gic_real t91 = GIC_FABS(m1[12]);
-        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[18])) + t60 * t60;
+        const gic_real t91 = GIC_FABS(m1[SOLID_AXLE_OMEGA_X]);
+        const gic_real t92 = t90 + (t91 * t91 + GIC_FABS(m1[SOLID_AXLE_ALPHA_X])) + t60 * t60;
         const gic_real t93 = (t75 + GIC_FABS(t86 * t23) + GIC_FABS(t87)) / (R(1e-30) + (t92 + t61 * t61));
         const gic_real t94 = t62 + t93;
         worst[0] = t32;
@@ -2010,91 +2329,99 @@ static int solid_axle_recover_piece(solid_axle *self, solid_axle_links *links, c
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[SOLID_AXLE_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = solid_axle_solve_rack(self, solid_axle_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[SOLID_AXLE_X_RACK];
+        links->rate[0] = xd[SOLID_AXLE_X_RACK];
+        status = solid_axle_solve_rack(self, solid_axle_k_rack[0], links, start + 5, self->motion +
+            SOLID_AXLE_MOTION_RACK, self->inertia + SOLID_AXLE_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = SOLID_AXLE_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[SOLID_AXLE_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* spring_f_l */
-        links->rate[0] = xd[0];
-        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[SOLID_AXLE_X_SPRING_F_L];
+        links->rate[0] = xd[SOLID_AXLE_X_SPRING_F_L];
+        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[0], links, start + 5, self->motion +
+            SOLID_AXLE_MOTION_LCA_F_L, self->inertia + SOLID_AXLE_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = SOLID_AXLE_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[SOLID_AXLE_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* spring_f_r */
-        links->rate[0] = xd[1];
-        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[SOLID_AXLE_X_SPRING_F_R];
+        links->rate[0] = xd[SOLID_AXLE_X_SPRING_F_R];
+        status = solid_axle_solve_lca_f_l(self, solid_axle_k_lca_f_l[1], links, start + 5, self->motion +
+            SOLID_AXLE_MOTION_LCA_F_R, self->inertia + SOLID_AXLE_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = SOLID_AXLE_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: axle */
-    links->x[0] = start[2]; /* spring_r_l */
-    links->rate[0] = xd[2];
-    links->change[0] = start[2] - old[2];
-    links->x[1] = start[3]; /* spring_r_r */
-    links->rate[1] = xd[3];
-    links->change[1] = start[3] - old[3];
-    status = solid_axle_solve_axle(self, solid_axle_k_axle[0], links, old + 5, start + 5, self->motion + 90, self->inertia + 69);
+    links->x[0] = start[SOLID_AXLE_X_SPRING_R_L];
+    links->rate[0] = xd[SOLID_AXLE_X_SPRING_R_L];
+    links->change[0] = start[SOLID_AXLE_X_SPRING_R_L] - old[SOLID_AXLE_X_SPRING_R_L];
+    links->x[1] = start[SOLID_AXLE_X_SPRING_R_R];
+    links->rate[1] = xd[SOLID_AXLE_X_SPRING_R_R];
+    links->change[1] = start[SOLID_AXLE_X_SPRING_R_R] - old[SOLID_AXLE_X_SPRING_R_R];
+    status = solid_axle_solve_axle(self, solid_axle_k_axle[0], links, old + 5, start + 5, self->motion +
+        SOLID_AXLE_MOTION_AXLE, self->inertia + SOLID_AXLE_INERTIA_AXLE);
     if (status != GIC_OK) {
-        self->head.subset = 4;
+        self->head.subset = SOLID_AXLE_SUBSET_AXLE;
         return status;
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[SOLID_AXLE_X_RACK] && links->same[SOLID_AXLE_X_SPRING_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* spring_f_l */
-        links->rate[1] = xd[0];
-        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[0], links, start + 70, self->motion + 126, self->inertia + 101);
+        links->known[0] = self->motion + SOLID_AXLE_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + SOLID_AXLE_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[SOLID_AXLE_X_RACK];
+        links->rate[0] = xd[SOLID_AXLE_X_RACK];
+        links->x[1] = start[SOLID_AXLE_X_SPRING_F_L];
+        links->rate[1] = xd[SOLID_AXLE_X_SPRING_F_L];
+        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[0], links, start + 70, self->motion +
+            SOLID_AXLE_MOTION_WHEEL_F_L, self->inertia + SOLID_AXLE_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = SOLID_AXLE_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[SOLID_AXLE_X_RACK] && links->same[SOLID_AXLE_X_SPRING_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* spring_f_r */
-        links->rate[1] = xd[1];
-        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[1], links, start + 70, self->motion + 162, self->inertia + 133);
+        links->known[0] = self->motion + SOLID_AXLE_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + SOLID_AXLE_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[SOLID_AXLE_X_RACK];
+        links->rate[0] = xd[SOLID_AXLE_X_RACK];
+        links->x[1] = start[SOLID_AXLE_X_SPRING_F_R];
+        links->rate[1] = xd[SOLID_AXLE_X_SPRING_F_R];
+        status = solid_axle_solve_wheel_f_l(self, solid_axle_k_wheel_f_l[1], links, start + 70, self->motion +
+            SOLID_AXLE_MOTION_WHEEL_F_R, self->inertia + SOLID_AXLE_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = SOLID_AXLE_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
-static int solid_axle_recover_way(solid_axle *self, solid_axle_links *links, const gic_real *way, int far, int32_t *last)
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
+static int solid_axle_recover_way(solid_axle *self, solid_axle_links *links, const gic_real *way, int far,
+    int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
@@ -2116,13 +2443,11 @@ static int solid_axle_recover_way(solid_axle *self, solid_axle_links *links, con
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (SOLID_AXLE_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -2183,15 +2508,15 @@ static void solid_axle_gather(solid_axle *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 5 * sizeof *x); /* spring_f_l to rack */
-    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
+    memcpy(x + SOLID_AXLE_X_SPRING_F_L, y + SOLID_AXLE_STATE_SPRING_F_L, 5 * sizeof *x); /* spring_f_l to rack */
+    memcpy(xd + SOLID_AXLE_X_SPRING_F_L, y + SOLID_AXLE_STATE_SPRING_F_L_RATE, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int solid_axle_orient(const solid_axle *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -2228,7 +2553,8 @@ static GIC_COLD int solid_axle_about(solid_axle *self, int status, int32_t subse
 
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2238,136 +2564,217 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        const gic_real t1 = n[5] + n[28] + n[51] + n[74] + n[106] + n[138] + R(3576.74332672);
-        const gic_real t2 = n[1] + n[24] + n[47] + n[70] + n[102] + n[134];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        const gic_real t1 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_SECOND_ZZ] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_ZZ] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_ZZ] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_ZZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_ZZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_ZZ] + R(3576.74332672);
+        const gic_real t2 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_FIRST_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_FIRST_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_FIRST_Y] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FIRST_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FIRST_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FIRST_Y];
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t3 = t2 * R(0.00038524629951667);
-        const gic_real t4 = R(94.003507106) + n[69] + n[101] + n[133] + R(116.84512);
+        const gic_real t4 = R(94.003507106) + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FIRST_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FIRST_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FIRST_X] + R(116.84512);
         const gic_real t5 = t4 * R(0.00038524629951667);
         const gic_real t6 = t1 - t2 * t3 - t4 * t5;
         if (!(t6 - t1 * R(1e-06) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, -1, 17);
-        const gic_real t7 = n[3] + n[26] + n[49] + n[72] + n[104] + n[136] + R(1173.18332588);
-        const gic_real t8 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[103] + n[135] + R(444.4287600000002);
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, SOLID_AXLE_STATE_OMEGA_Z);
+        const gic_real t7 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_SECOND_XX] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_XX] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_XX] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_XX] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_XX] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_XX] + R(1173.18332588);
+        const gic_real t8 = R(0.4919654879999997) + n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_FIRST_Z] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_FIRST_Z] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FIRST_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FIRST_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FIRST_Z] + R(444.4287600000002);
         const gic_real t9 = t8 * R(0.00038524629951667);
         const gic_real t10 = t8 * t9;
-        const gic_real t11 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[108] + n[140] + R(-24.88801056000001);
+        const gic_real t11 = R(-0.7077651653802236) + n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_XZ] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_XZ] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_XZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_XZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_XZ] + R(-24.88801056000001);
         const gic_real t12 = t11 + t4 * t9;
         const gic_real t13 = R(1.0) / t6;
         const gic_real t14 = t12 * t13;
         const gic_real t15 = t7 - t10 - t12 * t14;
         if (!(t15 - t7 * R(1e-06) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t16 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[105] + n[137] + R(3056.8666525999997);
-        const gic_real t17 = n[8] + n[31] + n[54] + n[77] + n[109] + n[141] + t2 * t9;
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, SOLID_AXLE_STATE_OMEGA_X);
+        const gic_real t16 = R(19.803070388473838) + n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_YY] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_YY] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_YY] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_YY] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_YY] + R(3056.8666525999997);
+        const gic_real t17 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_SECOND_YZ] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_YZ] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_YZ] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_YZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_YZ] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_YZ] + t2 * t9;
         const gic_real t18 = t17 * t13;
-        const gic_real t19 = n[6] + n[29] + n[52] + n[75] + n[107] + n[139] - t17 * t14;
+        const gic_real t19 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_SECOND_XY] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_SECOND_XY] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_SECOND_XY] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_SECOND_XY] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_SECOND_XY] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_SECOND_XY] - t17 * t14;
         const gic_real t20 = R(1.0) / t15;
         const gic_real t21 = t19 * t20;
         const gic_real t22 = t16 - t10 - t17 * t18 - t19 * t21;
         if (!(t22 - t16 * R(1e-06) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, -1, 16);
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, SOLID_AXLE_STATE_OMEGA_Y);
         const gic_real t23 = t2 * t20;
         const gic_real t24 = t4 + t2 * t21;
         const gic_real t25 = R(1.0) / t22;
         const gic_real t26 = t24 * t25;
         const gic_real t27 = R(2595.742) - t2 * t23 - t24 * t26;
-        const gic_real t28 = n[45] + n[132];
-        const gic_real t29 = n[123] * R(0.00038524629951667);
-        const gic_real t30 = n[39] + n[124];
+        const gic_real t28 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 7] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 16];
+        const gic_real t29 = n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 7] * R(0.00038524629951667);
+        const gic_real t30 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 1] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 8];
         const gic_real t31 = t30 * R(0.00038524629951667);
-        const gic_real t32 = n[43] + n[128] + n[123] * t3 - t30 * t5;
+        const gic_real t32 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 5] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 12] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 7] * t3 - t30 * t5;
         const gic_real t33 = t32 * t13;
-        const gic_real t34 = t28 - n[123] * t29 - t30 * t31 - t32 * t33;
-        const gic_real t35 = n[41] + n[126] + t30 * t9 - t32 * t14;
+        const gic_real t34 = t28 - n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 7] * t29 - t30 * t31 -
+            t32 * t33;
+        const gic_real t35 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 3] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 10] + t30 * t9 - t32 * t14;
         const gic_real t36 = t35 * t20;
-        const gic_real t37 = n[42] + n[127] - n[123] * t9 - t32 * t18 - t35 * t21;
+        const gic_real t37 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 4] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 11] -
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 7] * t9 - t32 * t18 - t35 * t21;
         const gic_real t38 = t37 * t25;
         const gic_real t39 = t34 - t35 * t36 - t37 * t38;
-        const gic_real t40 = n[68] + n[164];
-        const gic_real t41 = n[155] * R(0.00038524629951667);
-        const gic_real t42 = n[62] + n[156];
+        const gic_real t40 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 7] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 16];
+        const gic_real t41 = n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 7] * R(0.00038524629951667);
+        const gic_real t42 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 1] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 8];
         const gic_real t43 = t42 * R(0.00038524629951667);
-        const gic_real t44 = n[66] + n[160] + n[155] * t3 - t42 * t5;
+        const gic_real t44 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 5] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 12] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 7] * t3 - t42 * t5;
         const gic_real t45 = t44 * t13;
-        const gic_real t46 = t40 - n[155] * t41 - t42 * t43 - t44 * t45;
-        const gic_real t47 = n[64] + n[158] + t42 * t9 - t44 * t14;
+        const gic_real t46 = t40 - n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 7] * t41 - t42 * t43 -
+            t44 * t45;
+        const gic_real t47 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 3] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 10] + t42 * t9 - t44 * t14;
         const gic_real t48 = t47 * t20;
-        const gic_real t49 = n[65] + n[159] - n[155] * t9 - t44 * t18 - t47 * t21;
+        const gic_real t49 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 4] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 11] -
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 7] * t9 - t44 * t18 - t47 * t21;
         const gic_real t50 = t49 * t25;
         const gic_real t51 = t46 - t47 * t48 - t49 * t50;
-        const gic_real t52 = n[155] * t29 + t42 * t31 + t44 * t33 + t47 * t36;
+        const gic_real t52 = n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 7] * t29 + t42 * t31 + t44 *
+            t33 + t47 * t36;
         const gic_real t53 = t52 + t49 * t38;
         const gic_real t54 = t39 * t51 - t53 * t53;
-        const gic_real t55 = n[40] + n[125] - t35 * t23 + t37 * t26;
-        const gic_real t56 = n[63] + n[157] - t47 * t23 + t49 * t26;
+        const gic_real t55 = n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 2] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 9] - t35 * t23 + t37 * t26;
+        const gic_real t56 = n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 2] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 9] - t47 * t23 + t49 * t26;
         const gic_real t57 = t55 * t51 + t56 * t53;
         const gic_real t58 = t56 * t39 + t55 * t53;
         const gic_real t59 = t27 * t54 - t55 * t57 - t56 * t58;
         const gic_real t60 = t27 * t39;
         const gic_real t61 = t60 - t55 * t55;
         if (!(t59 - R(1e-06) * (t40 * t61) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 3, 8);
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_LCA_F_R, SOLID_AXLE_STATE_SPRING_F_R);
         const gic_real t62 = t27 * t51 - t56 * t56;
         if (!(t59 - R(1e-06) * (t28 * t62) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 2, 7);
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_LCA_F_L, SOLID_AXLE_STATE_SPRING_F_L);
         if (!(t59 - t54 * R(0.0025957420000000003) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, -1, 14);
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, SOLID_AXLE_STATE_V_Z);
         if (!(t59 - R(1e-06) * (t51 * t60) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, -1, 14);
-        const gic_real t63 = n[84] * R(0.00038524629951667);
-        const gic_real t64 = n[85] * R(0.00038524629951667);
-        const gic_real t65 = n[96] + n[91] * t3 - n[92] * t5;
-        const gic_real t66 = n[89] + n[84] * t3 - n[85] * t5;
+            return solid_axle_about(self, GIC_ERROR_MASS, -1, SOLID_AXLE_STATE_V_Z);
+        const gic_real t63 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * R(0.00038524629951667);
+        const gic_real t64 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * R(0.00038524629951667);
+        const gic_real t65 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 12] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t3 -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t5;
+        const gic_real t66 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 5] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * t3 -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * t5;
         const gic_real t67 = t66 * t13;
-        const gic_real t68 = n[99] - n[91] * t63 - n[92] * t64 - t65 * t67;
-        const gic_real t69 = n[94] + n[92] * t9 - t65 * t14;
-        const gic_real t70 = n[87] + n[85] * t9 - t66 * t14;
+        const gic_real t68 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 15] -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t63 -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t64 - t65 * t67;
+        const gic_real t69 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 10] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t9 - t65 * t14;
+        const gic_real t70 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 3] +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * t9 - t66 * t14;
         const gic_real t71 = t70 * t20;
-        const gic_real t72 = n[95] - n[91] * t9 - t65 * t18 - t69 * t21;
-        const gic_real t73 = n[88] - n[84] * t9 - t66 * t18 - t70 * t21;
+        const gic_real t72 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 11] -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t9 - t65 * t18 - t69 * t21;
+        const gic_real t73 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 4] -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * t9 - t66 * t18 - t70 * t21;
         const gic_real t74 = t73 * t25;
         const gic_real t75 = R(1.0) / t59;
-        const gic_real t76 = n[86] - t70 * t23 + t73 * t26;
-        const gic_real t77 = n[93] - t69 * t23 + t72 * t26;
-        const gic_real t78 = n[91] * t29 + n[92] * t31 + t65 * t33 + t69 * t36;
+        const gic_real t76 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 2] - t70 * t23 + t73 * t26;
+        const gic_real t77 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 9] - t69 * t23 + t72 * t26;
+        const gic_real t78 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t29 +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t31 + t65 * t33 + t69 * t36;
         const gic_real t79 = t78 + t72 * t38;
-        const gic_real t80 = n[91] * t41 + n[92] * t43 + t65 * t45 + t69 * t48;
+        const gic_real t80 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t41 +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t43 + t65 * t45 + t69 * t48;
         const gic_real t81 = t80 + t72 * t50;
         const gic_real t82 = t77 * t54 + t79 * t57 + t81 * t58;
-        const gic_real t83 = n[84] * t29 + n[85] * t31 + t66 * t33 + t70 * t36;
+        const gic_real t83 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * t29 +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * t31 + t66 * t33 + t70 * t36;
         const gic_real t84 = t83 + t73 * t38;
         const gic_real t85 = t27 * t53 + t55 * t56;
         const gic_real t86 = t77 * t57 + t79 * t62 + t81 * t85;
-        const gic_real t87 = n[84] * t41 + n[85] * t43 + t66 * t45 + t70 * t48;
+        const gic_real t87 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * t41 +
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * t43 + t66 * t45 + t70 * t48;
         const gic_real t88 = t87 + t73 * t50;
         const gic_real t89 = t77 * t58 + t79 * t85 + t81 * t61;
         const gic_real t90 = t75 * (t76 * t82 + t84 * t86 + t88 * t89);
         const gic_real t91 = t68 - t69 * t71 - t72 * t74 - t90;
-        const gic_real t92 = n[116] + n[148];
-        const gic_real t93 = R(9.072) + n[117] + n[149];
-        const gic_real t94 = R(13.051414655999999) + n[121] + n[153] + t92 * t3 - t93 * t5;
-        const gic_real t95 = R(-0.4919654879999997) + n[119] + n[151] + t93 * t9 - t94 * t14;
+        const gic_real t92 = n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 0] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 0];
+        const gic_real t93 = R(9.072) + n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 1] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 1];
+        const gic_real t94 = R(13.051414655999999) + n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 5] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 5] + t92 * t3 - t93 * t5;
+        const gic_real t95 = R(-0.4919654879999997) + n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 3] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 3] + t93 * t9 - t94 * t14;
         const gic_real t96 = t92 * t63 + t93 * t64 + t94 * t67 + t95 * t71;
-        const gic_real t97 = n[120] + n[152] - t92 * t9 - t94 * t18 - t95 * t21;
-        const gic_real t98 = n[118] + n[150] - t95 * t23 + t97 * t26;
-        const gic_real t99 = n[131] - t92 * t29 - t93 * t31 - t94 * t33;
+        const gic_real t97 = n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 4] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 4] - t92 * t9 - t94 * t18 - t95 * t21;
+        const gic_real t98 = n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 2] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 2] - t95 * t23 + t97 * t26;
+        const gic_real t99 = n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 15] - t92 * t29 - t93 * t31 -
+            t94 * t33;
         const gic_real t100 = t99 - t95 * t36 - t97 * t38;
-        const gic_real t101 = n[163] - t92 * t41 - t93 * t43 - t94 * t45;
+        const gic_real t101 = n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 15] - t92 * t41 - t93 * t43 -
+            t94 * t45;
         const gic_real t102 = t101 - t95 * t48 - t97 * t50;
         const gic_real t103 = t98 * t54 - t100 * t57 - t102 * t58;
         const gic_real t104 = t100 * t62 - t98 * t57 + t102 * t85;
         const gic_real t105 = t100 * t85 - t98 * t58 + t102 * t61;
         const gic_real t106 = t75 * (t76 * t103 - t84 * t104 - t88 * t105);
         const gic_real t107 = t96 + t97 * t74 + t106;
-        const gic_real t108 = n[91] * R(0.00038524629951667);
-        const gic_real t109 = n[92] * R(0.00038524629951667);
+        const gic_real t108 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * R(0.00038524629951667);
+        const gic_real t109 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * R(0.00038524629951667);
         const gic_real t110 = t65 * t13;
         const gic_real t111 = t69 * t20;
         const gic_real t112 = t92 * t108 + t93 * t109 + t94 * t110 + t95 * t111;
         const gic_real t113 = t72 * t25;
         const gic_real t114 = t75 * (t77 * t103 - t79 * t104 - t81 * t105);
         const gic_real t115 = t112 + t97 * t113 + t114;
-        const gic_real t116 = R(9.072) + n[130] + n[162];
+        const gic_real t116 = R(9.072) + n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 14] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 14];
         const gic_real t117 = t92 * R(0.00038524629951667);
         const gic_real t118 = t93 * R(0.00038524629951667);
         const gic_real t119 = t94 * t13;
@@ -2377,13 +2784,17 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t123 = t75 * (t98 * t103 + t100 * t104 + t102 * t105);
         const gic_real t124 = t120 - t95 * t121 - t97 * t122 - t123;
         const gic_real t125 = t107 * t115 - t91 * t124;
-        const gic_real t126 = n[98] - n[84] * t63 - n[85] * t64 - t66 * t67;
+        const gic_real t126 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 14] -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 0] * t63 -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 1] * t64 - t66 * t67;
         const gic_real t127 = t76 * t54 + t84 * t57 + t88 * t58;
         const gic_real t128 = t76 * t57 + t84 * t62 + t88 * t85;
         const gic_real t129 = t76 * t58 + t84 * t85 + t88 * t61;
         const gic_real t130 = t75 * (t76 * t127 + t84 * t128 + t88 * t129);
         const gic_real t131 = t126 - t70 * t71 - t73 * t74 - t130;
-        const gic_real t132 = n[100] - n[91] * t108 - n[92] * t109 - t65 * t110;
+        const gic_real t132 = n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 16] -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 7] * t108 -
+            n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 8] * t109 - t65 * t110;
         const gic_real t133 = t75 * (t77 * t82 + t79 * t86 + t81 * t89);
         const gic_real t134 = t132 - t69 * t111 - t72 * t113 - t133;
         const gic_real t135 = t134 * t124 - t115 * t115;
@@ -2392,18 +2803,19 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t138 = t131 * t134;
         const gic_real t139 = t138 - t91 * t91;
         if (!(t137 - R(1e-06) * (t116 * t139) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 1, 11);
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_RACK, SOLID_AXLE_STATE_RACK);
         const gic_real t140 = t131 * t124 - t107 * t107;
-        if (!(t137 - R(1e-06) * (n[100] * t140) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 4, 10);
-        if (!(t137 - R(1e-06) * (n[98] * t135) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 4, 9);
+        if (!(t137 - R(1e-06) * (n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 16] * t140) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_AXLE, SOLID_AXLE_STATE_SPRING_R_R);
+        if (!(t137 - R(1e-06) * (n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 14] * t135) > R(0.0)))
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_AXLE, SOLID_AXLE_STATE_SPRING_R_L);
         if (!(t137 - R(1e-06) * (t124 * t138) > R(0.0)))
-            return solid_axle_about(self, GIC_ERROR_MASS, 4, 9);
-        const gic_real t141 = y[17] * R(0.5);
-        const gic_real t142 = y[16] * R(0.5);
-        const gic_real t143 = y[15] * R(0.5);
-        const gic_real t144 = -(e[3] * t141 + (e[2] * t142 + e[1] * t143));
+            return solid_axle_about(self, GIC_ERROR_MASS, SOLID_AXLE_SUBSET_AXLE, SOLID_AXLE_STATE_SPRING_R_L);
+        /* rates of the state */
+        const gic_real t141 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t142 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t143 = y[SOLID_AXLE_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t141 + (e[2] * t142 + e[1] * t143));
         const gic_real t145 = e[3] + e[3];
         const gic_real t146 = e[1] * t145;
         const gic_real t147 = e[2] + e[2];
@@ -2416,121 +2828,171 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t154 = e[3] * t147;
         const gic_real t155 = e[0] * t150;
         const gic_real t156 = t154 - t155;
-        const gic_real t157 = m[98] * R(-0.17228899999999997);
-        const gic_real t158 = m[96] * R(-0.03340499999999991);
-        const gic_real t159 = t157 + (m[97] * R(1.029701) + t158);
-        const gic_real t160 = m[95] * R(-0.17228899999999997);
-        const gic_real t161 = m[93] * R(-0.03340499999999991);
-        const gic_real t162 = t160 + (m[94] * R(1.029701) + t161);
-        const gic_real t163 = m[91] + t159;
-        const gic_real t164 = m[90] + t162;
-        const gic_real t165 = m[107] + (m[102] * t159 - m[103] * t162) + (y[15] * t163 - y[16] * t164);
+        /* wheel tire_r_l */
+        const gic_real t157 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t158 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t159 = t157 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t158);
+        const gic_real t160 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t161 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t162 = t160 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t161);
+        const gic_real t163 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t159;
+        const gic_real t164 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t162;
+        const gic_real t165 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t159 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t162) + (y[SOLID_AXLE_STATE_OMEGA_X] * t163 - y[SOLID_AXLE_STATE_OMEGA_Y] * t164);
         const gic_real t166 = e[3] * t145;
         const gic_real t167 = R(1.0) - (t151 + t166);
-        const gic_real t168 = m[101] * R(-0.17228899999999997);
-        const gic_real t169 = m[99] * R(-0.03340499999999991);
-        const gic_real t170 = t168 + (m[100] * R(1.029701) + t169);
-        const gic_real t171 = m[92] + t170;
-        const gic_real t172 = m[106] + (m[104] * t162 - m[102] * t170) + (y[17] * t164 - y[15] * t171);
+        const gic_real t168 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t169 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t170 = t168 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t169);
+        const gic_real t171 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t170;
+        const gic_real t172 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t162 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t170) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t164 - y[SOLID_AXLE_STATE_OMEGA_X] * t171);
         const gic_real t173 = e[2] * t150;
         const gic_real t174 = e[0] * t145;
         const gic_real t175 = t173 + t174;
-        const gic_real t176 = m[105] + (m[103] * t170 - m[104] * t159) + (y[16] * t171 - y[17] * t163);
-        const gic_real t177 = y[13] + (t156 * t165 + (t167 * t172 + t175 * t176));
+        const gic_real t176 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t170 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t159) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t171 - y[SOLID_AXLE_STATE_OMEGA_Z] * t163);
+        const gic_real t177 = y[SOLID_AXLE_STATE_V_Y] + (t156 * t165 + (t167 * t172 + t175 * t176));
         const gic_real t178 = t173 - t174;
         const gic_real t179 = R(1.0) - (t152 + t166);
-        const gic_real t180 = y[0] + (t149 * t171 + (t178 * t163 + t179 * t164));
-        const gic_real t181 = y[1] + (t156 * t171 + (t167 * t163 + t175 * t164));
+        const gic_real t180 = y[SOLID_AXLE_STATE_R_X] + (t149 * t171 + (t178 * t163 + t179 * t164));
+        const gic_real t181 = y[SOLID_AXLE_STATE_R_Y] + (t156 * t171 + (t167 * t163 + t175 * t164));
         gic_real road182[3];
         if (!solid_axle_road_height(self, time, t180, t181, road182))
             return GIC_ERROR_ROAD;
-        const gic_real t183 = y[12] + (t149 * t165 + (t178 * t172 + t179 * t176));
+        const gic_real t183 = y[SOLID_AXLE_STATE_V_X] + (t149 * t165 + (t178 * t172 + t179 * t176));
         const gic_real t184 = t154 + t155;
         const gic_real t185 = t146 - t148;
-        const gic_real t186 = y[14] + (t153 * t165 + (t184 * t172 + t185 * t176));
+        const gic_real t186 = y[SOLID_AXLE_STATE_V_Z] + (t153 * t165 + (t184 * t172 + t185 * t176));
         const gic_real t187 = t177 * road182[2] + t183 * road182[1] - t186;
-        const gic_real t188 = y[2] + (t153 * t171 + (t184 * t163 + t185 * t164));
+        const gic_real t188 = y[SOLID_AXLE_STATE_R_Z] + (t153 * t171 + (t184 * t163 + t185 * t164));
         const gic_real t189 = R(0.4699) + road182[0] - t188;
         const gic_real t190 = GIC_MIN(GIC_MAX(R(100.0) * t189, R(0.0)), R(1.0));
         const gic_real t191 = t187 * (R(500.0) * ((R(3.0) - (t190 + t190)) * (t190 * t190)));
         const gic_real t192 = GIC_MAX(t191 + R(283000.0) * t189, R(0.0));
         const gic_real t193 = t153 * t192;
-        const gic_real t194 = t157 + (t158 + m[97] * R(-0.789701));
-        const gic_real t195 = t160 + (t161 + m[94] * R(-0.789701));
-        const gic_real t196 = m[91] + t194;
-        const gic_real t197 = m[90] + t195;
-        const gic_real t198 = m[107] + (m[102] * t194 - m[103] * t195) + (y[15] * t196 - y[16] * t197);
-        const gic_real t199 = t168 + (t169 + m[100] * R(-0.789701));
-        const gic_real t200 = m[92] + t199;
-        const gic_real t201 = m[106] + (m[104] * t195 - m[102] * t199) + (y[17] * t197 - y[15] * t200);
-        const gic_real t202 = m[105] + (m[103] * t199 - m[104] * t194) + (y[16] * t200 - y[17] * t196);
-        const gic_real t203 = y[13] + (t156 * t198 + (t167 * t201 + t175 * t202));
-        const gic_real t204 = y[0] + (t149 * t200 + (t178 * t196 + t179 * t197));
-        const gic_real t205 = y[1] + (t156 * t200 + (t167 * t196 + t175 * t197));
+        /* wheel tire_r_r */
+        const gic_real t194 = t157 + (t158 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t195 = t160 + (t161 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t196 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t194;
+        const gic_real t197 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t195;
+        const gic_real t198 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t194 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t195) + (y[SOLID_AXLE_STATE_OMEGA_X] * t196 - y[SOLID_AXLE_STATE_OMEGA_Y] * t197);
+        const gic_real t199 = t168 + (t169 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t200 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t199;
+        const gic_real t201 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t195 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t199) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t197 - y[SOLID_AXLE_STATE_OMEGA_X] * t200);
+        const gic_real t202 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t199 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t194) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t200 - y[SOLID_AXLE_STATE_OMEGA_Z] * t196);
+        const gic_real t203 = y[SOLID_AXLE_STATE_V_Y] + (t156 * t198 + (t167 * t201 + t175 * t202));
+        const gic_real t204 = y[SOLID_AXLE_STATE_R_X] + (t149 * t200 + (t178 * t196 + t179 * t197));
+        const gic_real t205 = y[SOLID_AXLE_STATE_R_Y] + (t156 * t200 + (t167 * t196 + t175 * t197));
         gic_real road206[3];
         if (!solid_axle_road_height(self, time, t204, t205, road206))
             return GIC_ERROR_ROAD;
-        const gic_real t207 = y[12] + (t149 * t198 + (t178 * t201 + t179 * t202));
-        const gic_real t208 = y[14] + (t153 * t198 + (t184 * t201 + t185 * t202));
+        const gic_real t207 = y[SOLID_AXLE_STATE_V_X] + (t149 * t198 + (t178 * t201 + t179 * t202));
+        const gic_real t208 = y[SOLID_AXLE_STATE_V_Z] + (t153 * t198 + (t184 * t201 + t185 * t202));
         const gic_real t209 = t203 * road206[2] + t207 * road206[1] - t208;
-        const gic_real t210 = y[2] + (t153 * t200 + (t184 * t196 + t185 * t197));
+        const gic_real t210 = y[SOLID_AXLE_STATE_R_Z] + (t153 * t200 + (t184 * t196 + t185 * t197));
         const gic_real t211 = R(0.4699) + road206[0] - t210;
         const gic_real t212 = GIC_MIN(GIC_MAX(R(100.0) * t211, R(0.0)), R(1.0));
         const gic_real t213 = t209 * (R(500.0) * ((R(3.0) - (t212 + t212)) * (t212 * t212)));
         const gic_real t214 = GIC_MAX(t213 + R(283000.0) * t211, R(0.0));
         const gic_real t215 = t153 * t214;
         const gic_real t216 = t193 + t215;
-        const gic_real t217 = m[134] * R(0.09182100000000004) + (m[133] * R(0.12319000000000002) + m[132] * R(-0.004825999999999997));
-        const gic_real t218 = m[131] * R(0.09182100000000004) + (m[130] * R(0.12319000000000002) + m[129] * R(-0.004825999999999997));
-        const gic_real t219 = m[127] + t217;
+        /* wheel tire_f_l */
+        const gic_real t217 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t218 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t219 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t217;
         const gic_real t220 = R(1.653405) + t218;
-        const gic_real t221 = m[143] + (m[138] * t217 - m[139] * t218) + (y[15] * t219 - y[16] * t220);
-        const gic_real t222 = m[137] * R(0.09182100000000004) + (m[136] * R(0.12319000000000002) + m[135] * R(-0.004825999999999997));
-        const gic_real t223 = m[128] + t222;
-        const gic_real t224 = m[142] + (m[140] * t218 - m[138] * t222) + (y[17] * t220 - y[15] * t223);
-        const gic_real t225 = m[139] * t222 - m[140] * t217 + (y[16] * t223 - y[17] * t219);
-        const gic_real t226 = y[13] + (t156 * t221 + (t167 * t224 + t175 * t225));
-        const gic_real t227 = y[0] + (t149 * t223 + (t178 * t219 + t179 * t220));
-        const gic_real t228 = y[1] + (t156 * t223 + (t167 * t219 + t175 * t220));
+        const gic_real t221 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t217 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t218) + (y[SOLID_AXLE_STATE_OMEGA_X] * t219 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t220);
+        const gic_real t222 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t223 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t222;
+        const gic_real t224 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t218 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t222) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t220 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t223);
+        const gic_real t225 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t222 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t217 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t223 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t219);
+        const gic_real t226 = y[SOLID_AXLE_STATE_V_Y] + (t156 * t221 + (t167 * t224 + t175 * t225));
+        const gic_real t227 = y[SOLID_AXLE_STATE_R_X] + (t149 * t223 + (t178 * t219 + t179 * t220));
+        const gic_real t228 = y[SOLID_AXLE_STATE_R_Y] + (t156 * t223 + (t167 * t219 + t175 * t220));
         gic_real road229[3];
         if (!solid_axle_road_height(self, time, t227, t228, road229))
             return GIC_ERROR_ROAD;
-        const gic_real t230 = y[12] + (t149 * t221 + (t178 * t224 + t179 * t225));
-        const gic_real t231 = y[14] + (t153 * t221 + (t184 * t224 + t185 * t225));
+        const gic_real t230 = y[SOLID_AXLE_STATE_V_X] + (t149 * t221 + (t178 * t224 + t179 * t225));
+        const gic_real t231 = y[SOLID_AXLE_STATE_V_Z] + (t153 * t221 + (t184 * t224 + t185 * t225));
         const gic_real t232 = t226 * road229[2] + t230 * road229[1] - t231;
-        const gic_real t233 = y[2] + (t153 * t223 + (t184 * t219 + t185 * t220));
+        const gic_real t233 = y[SOLID_AXLE_STATE_R_Z] + (t153 * t223 + (t184 * t219 + t185 * t220));
         const gic_real t234 = road229[0] + R(0.4699) - t233;
         const gic_real t235 = GIC_MIN(GIC_MAX(t234 * R(100.0), R(0.0)), R(1.0));
         const gic_real t236 = t232 * ((R(3.0) - (t235 + t235)) * (t235 * t235) * R(500.0));
         const gic_real t237 = GIC_MAX(t236 + t234 * R(283000.0), R(0.0));
         const gic_real t238 = t153 * t237;
-        const gic_real t239 = m[170] * R(0.09182100000000004) + (m[169] * R(-0.12319000000000002) + m[168] * R(-0.004825999999999997));
-        const gic_real t240 = m[167] * R(0.09182100000000004) + (m[166] * R(-0.12319000000000002) + m[165] * R(-0.004825999999999997));
-        const gic_real t241 = m[163] + t239;
+        /* wheel tire_f_r */
+        const gic_real t239 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t240 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t241 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t239;
         const gic_real t242 = R(1.653405) + t240;
-        const gic_real t243 = m[179] + (m[174] * t239 - m[175] * t240) + (y[15] * t241 - y[16] * t242);
-        const gic_real t244 = m[173] * R(0.09182100000000004) + (m[172] * R(-0.12319000000000002) + m[171] * R(-0.004825999999999997));
-        const gic_real t245 = m[164] + t244;
-        const gic_real t246 = m[178] + (m[176] * t240 - m[174] * t244) + (y[17] * t242 - y[15] * t245);
-        const gic_real t247 = m[175] * t244 - m[176] * t239 + (y[16] * t245 - y[17] * t241);
-        const gic_real t248 = y[13] + (t156 * t243 + (t167 * t246 + t175 * t247));
-        const gic_real t249 = y[0] + (t149 * t245 + (t178 * t241 + t179 * t242));
-        const gic_real t250 = y[1] + (t156 * t245 + (t167 * t241 + t175 * t242));
+        const gic_real t243 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t239 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t240) + (y[SOLID_AXLE_STATE_OMEGA_X] * t241 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t242);
+        const gic_real t244 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t245 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t244;
+        const gic_real t246 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t240 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t244) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t242 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t245);
+        const gic_real t247 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t244 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t239 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t245 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t241);
+        const gic_real t248 = y[SOLID_AXLE_STATE_V_Y] + (t156 * t243 + (t167 * t246 + t175 * t247));
+        const gic_real t249 = y[SOLID_AXLE_STATE_R_X] + (t149 * t245 + (t178 * t241 + t179 * t242));
+        const gic_real t250 = y[SOLID_AXLE_STATE_R_Y] + (t156 * t245 + (t167 * t241 + t175 * t242));
         gic_real road251[3];
         if (!solid_axle_road_height(self, time, t249, t250, road251))
             return GIC_ERROR_ROAD;
-        const gic_real t252 = y[12] + (t149 * t243 + (t178 * t246 + t179 * t247));
-        const gic_real t253 = y[14] + (t153 * t243 + (t184 * t246 + t185 * t247));
+        const gic_real t252 = y[SOLID_AXLE_STATE_V_X] + (t149 * t243 + (t178 * t246 + t179 * t247));
+        const gic_real t253 = y[SOLID_AXLE_STATE_V_Z] + (t153 * t243 + (t184 * t246 + t185 * t247));
         const gic_real t254 = t248 * road251[2] + t252 * road251[1] - t253;
-        const gic_real t255 = y[2] + (t153 * t245 + (t184 * t241 + t185 * t242));
+        const gic_real t255 = y[SOLID_AXLE_STATE_R_Z] + (t153 * t245 + (t184 * t241 + t185 * t242));
         const gic_real t256 = R(0.4699) + road251[0] - t255;
         const gic_real t257 = GIC_MIN(GIC_MAX(R(100.0) * t256, R(0.0)), R(1.0));
         const gic_real t258 = t254 * (R(500.0) * ((R(3.0) - (t257 + t257)) * (t257 * t257)));
         const gic_real t259 = GIC_MAX(t258 + R(283000.0) * t256, R(0.0));
         const gic_real t260 = t153 * t259;
-        const gic_real t261 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t262 = y[16] * R(0.21300000000000008);
-        const gic_real t263 = n[11] + n[34] + n[57] + n[80] + n[112] + n[144] + R(2086.52) * (y[15] * t261 - y[16] * t262);
+        const gic_real t261 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t262 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t263 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_FORCE_Z] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_FORCE_Z] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_FORCE_Z] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FORCE_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FORCE_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FORCE_Z] + R(2086.52) * (y[SOLID_AXLE_STATE_OMEGA_X] * t261 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t262);
         const gic_real t264 = t184 * t192;
         const gic_real t265 = t184 * t214;
         const gic_real t266 = t159 * t193 - t170 * t264 + (t194 * t215 - t199 * t265);
@@ -2538,14 +3000,30 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t268 = t239 * t260 - t244 * t267;
         const gic_real t269 = t184 * t237;
         const gic_real t270 = t217 * t238 - t222 * t269;
-        const gic_real t271 = t270 + (m[127] * t238 - m[128] * t269) + (m[163] * t260 - m[164] * t267);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t271 = t270 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t238 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t269) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] *
+            t260 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t267);
         const gic_real t272 = t264 + t265;
-        const gic_real t273 = t266 + (t268 + t271 + (m[91] * t216 - m[92] * t272));
-        const gic_real t274 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t275 = y[16] * R(3056.8666525999997);
-        const gic_real t276 = n[12] + n[35] + n[58] + n[81] + n[113] + n[145] + (y[16] * t274 - y[17] * t275);
-        const gic_real t277 = y[16] * R(0.056);
-        const gic_real t278 = n[10] + n[33] + n[56] + n[79] + n[111] + n[143] + R(2086.52) * (y[15] * t277 + y[17] * t262);
+        const gic_real t273 = t266 + (t268 + t271 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t216 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t272));
+        const gic_real t274 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(3576.74332672) + y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t275 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t276 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_MOMENT_X] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_MOMENT_X] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_MOMENT_X] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_MOMENT_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_MOMENT_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_MOMENT_X] + (y[SOLID_AXLE_STATE_OMEGA_Y] * t274 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t275);
+        const gic_real t277 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t278 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_FORCE_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_FORCE_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_FORCE_Y] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FORCE_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FORCE_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FORCE_Y] + R(2086.52) * (y[SOLID_AXLE_STATE_OMEGA_X] * t277 +
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t262);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
         const gic_real t279 = t272 + (t269 + t267) - t278;
         const gic_real t280 = t185 * t192;
         const gic_real t281 = t185 * t214;
@@ -2554,109 +3032,169 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
         const gic_real t284 = t240 * t267 - t239 * t283;
         const gic_real t285 = t185 * t237;
         const gic_real t286 = t218 * t269 - t217 * t285;
-        const gic_real t287 = t286 + (R(1.653405) * t269 - m[127] * t285) + (R(1.653405) * t267 - m[163] * t283);
+        const gic_real t287 = t286 + (R(1.653405) * t269 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t285) +
+            (R(1.653405) * t267 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t283);
         const gic_real t288 = t280 + t281;
-        const gic_real t289 = t282 + (t284 + t287 + (m[90] * t272 - m[91] * t288));
-        const gic_real t290 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
-        const gic_real t291 = n[14] + n[37] + n[60] + n[83] + n[115] + n[147] + (y[15] * t275 - y[16] * t290);
-        const gic_real t292 = n[9] + n[32] + n[55] + n[78] + n[110] + n[142] - R(2086.52) * (y[17] * t261 + y[16] * t277);
+        const gic_real t289 = t282 + (t284 + t287 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t272 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t288));
+        const gic_real t290 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(-24.88801056000001) + y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(1173.18332588);
+        const gic_real t291 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_MOMENT_Z] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_MOMENT_Z] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_MOMENT_Z] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_MOMENT_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_MOMENT_Z] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_MOMENT_Z] + (y[SOLID_AXLE_STATE_OMEGA_X] * t275 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t290);
+        const gic_real t292 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_FORCE_X] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_FORCE_X] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_FORCE_X] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_FORCE_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_FORCE_X] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_FORCE_X] - R(2086.52) * (y[SOLID_AXLE_STATE_OMEGA_Z] * t261 +
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t277);
         const gic_real t293 = t288 + (t285 + t283) - t292;
+        /* accelerations */
         const gic_real t294 = t289 - t291 + t293 * t3 - t279 * t5;
         const gic_real t295 = t273 - t276 + t279 * t9 - t14 * t294;
         const gic_real t296 = t170 * t280 - t162 * t193 + (t199 * t281 - t195 * t215);
         const gic_real t297 = t244 * t283 - t240 * t260;
         const gic_real t298 = t222 * t285 - t218 * t238;
-        const gic_real t299 = t298 + (m[128] * t285 - R(1.653405) * t238) + (m[164] * t283 - R(1.653405) * t260);
-        const gic_real t300 = t296 + (t297 + t299 + (m[92] * t288 - m[90] * t216));
-        const gic_real t301 = n[13] + n[36] + n[59] + n[82] + n[114] + n[146] + (y[17] * t290 - y[15] * t274);
+        const gic_real t299 = t298 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t285 - R(1.653405) * t238) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t283 - R(1.653405) * t260);
+        const gic_real t300 = t296 + (t297 + t299 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t288 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t216));
+        const gic_real t301 = n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_MOMENT_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_MOMENT_Y] +
+            n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_MOMENT_Y] + n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_MOMENT_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_MOMENT_Y] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_MOMENT_Y] + (y[SOLID_AXLE_STATE_OMEGA_Z] * t290 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t274);
         const gic_real t302 = t300 - t301 - t293 * t9 - t18 * t294 - t21 * t295;
         const gic_real t303 = t216 + (t238 + t260) - t263 - t23 * t295 + t26 * t302;
-        const gic_real t304 = m[161] * t238 + m[160] * t269 + (m[158] * t286 + (m[157] * t298 + m[156] * t270));
-        const gic_real t305 = t304 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)) - (n[44] + n[129]);
+        const gic_real t304 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] * t238 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] * t269 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t286 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t298 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t270));
+        const gic_real t305 = t304 - ((x[SOLID_AXLE_X_SPRING_F_L] - R(0.31907)) * R(167070.9) +
+            xd[SOLID_AXLE_X_SPRING_F_L] * R(17490.8)) - (n[SOLID_AXLE_INERTIA_LCA_F_L + SOLID_AXLE_I_COORDINATE + 6] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 13]);
         const gic_real t306 = t305 - t293 * t29 - t279 * t31 - t33 * t294;
         const gic_real t307 = t306 - t36 * t295 - t38 * t302;
-        const gic_real t308 = m[197] * t260 + m[196] * t267 + (m[194] * t284 + (m[193] * t297 + m[192] * t268));
-        const gic_real t309 = t308 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)) - (n[67] + n[161]);
+        const gic_real t308 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] * t260 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] * t267 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t284 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t297 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t268));
+        const gic_real t309 = t308 - (R(167070.9) * (x[SOLID_AXLE_X_SPRING_F_R] - R(0.31907)) +
+            xd[SOLID_AXLE_X_SPRING_F_R] * R(17490.8)) - (n[SOLID_AXLE_INERTIA_LCA_F_R + SOLID_AXLE_I_COORDINATE + 6] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 13]);
         const gic_real t310 = t309 - t293 * t41 - t279 * t43 - t45 * t294;
         const gic_real t311 = t310 - t48 * t295 - t50 * t302;
         const gic_real t312 = R(1.0) / t137;
-        const gic_real t313 = m[119] * t216 + (m[118] * t272 + m[117] * t288) + (m[116] * t282 + (m[115] * t296 + m[114] * t266));
-        const gic_real t314 = t313 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)) - n[90];
+        const gic_real t313 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] * t216 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] * t272 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] *
+            t288) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t282 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t296 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t266));
+        const gic_real t314 = t313 - ((x[SOLID_AXLE_X_SPRING_R_L] - R(0.41347)) * R(63000.0) +
+            xd[SOLID_AXLE_X_SPRING_R_L] * R(4100.0)) - n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 6];
         const gic_real t315 = t314 - t293 * t63 - t279 * t64 - t67 * t294;
         const gic_real t316 = t75 * (t127 * t303 - t128 * t307 - t129 * t311);
         const gic_real t317 = t315 - t71 * t295 - t74 * t302 - t316;
-        const gic_real t318 = m[125] * t216 + (m[124] * t272 + m[123] * t288) + (m[122] * t282 + (m[121] * t296 + m[120] * t266));
-        const gic_real t319 = t318 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)) - n[97];
+        const gic_real t318 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] * t216 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] * t272 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] *
+            t288) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t282 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t296 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            t266));
+        const gic_real t319 = t318 - (R(63000.0) * (x[SOLID_AXLE_X_SPRING_R_R] - R(0.41347)) +
+            xd[SOLID_AXLE_X_SPRING_R_R] * R(4100.0)) - n[SOLID_AXLE_INERTIA_AXLE + SOLID_AXLE_I_COORDINATE + 13];
         const gic_real t320 = t319 - t293 * t108 - t279 * t109 - t110 * t294;
         const gic_real t321 = t75 * (t82 * t303 - t86 * t307 - t89 * t311);
         const gic_real t322 = t320 - t111 * t295 - t113 * t302 - t321;
-        const gic_real t323 = m[152] * t286 + (m[151] * t298 + m[150] * t270) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t324 = t323 + (m[188] * t284 + (m[187] * t297 + m[186] * t268));
-        const gic_real t325 = t324 - (n[21] + n[122] + n[154]) - t293 * t117 - t279 * t118;
+        const gic_real t323 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t286 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t298 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t270) - (x[SOLID_AXLE_X_RACK] * R(100000.0) +
+            xd[SOLID_AXLE_X_RACK] * R(12000.0));
+        const gic_real t324 = t323 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t284 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t297 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t268));
+        const gic_real t325 = t324 - (n[SOLID_AXLE_INERTIA_RACK + SOLID_AXLE_I_COORDINATE + 6] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_L + SOLID_AXLE_I_COORDINATE + 6] +
+            n[SOLID_AXLE_INERTIA_WHEEL_F_R + SOLID_AXLE_I_COORDINATE + 6]) - t293 * t117 - t279 * t118;
         const gic_real t326 = t325 - t119 * t294 - t121 * t295 - t122 * t302;
         const gic_real t327 = t75 * (t103 * t303 + t104 * t307 + t105 * t311);
         const gic_real t328 = t326 - t327;
-        const gic_real t329 = t312 * (t135 * t317 + t125 * t322 + t136 * t328);
-        const gic_real t330 = t54 * t303 - t57 * t307 - t58 * t311 - t127 * t329;
+        const gic_real rate_of_spring_r_l_rate = t312 * (t135 * t317 + t125 * t322 + t136 * t328);
+        const gic_real t330 = t54 * t303 - t57 * t307 - t58 * t311 - t127 * rate_of_spring_r_l_rate;
         const gic_real t331 = t131 * t115 - t91 * t107;
-        const gic_real t332 = t312 * (t125 * t317 + t140 * t322 + t331 * t328);
-        const gic_real t333 = t312 * (t136 * t317 + t331 * t322 + t139 * t328);
-        const gic_real t334 = t75 * (t330 - t82 * t332 - t103 * t333);
-        const gic_real t335 = t62 * t307 - t57 * t303 + t85 * t311 + t128 * t329;
-        const gic_real t336 = t75 * (t335 + t86 * t332 - t104 * t333);
-        const gic_real t337 = t85 * t307 - t58 * t303 + t61 * t311 + t129 * t329;
-        const gic_real t338 = t75 * (t337 + t89 * t332 - t105 * t333);
-        const gic_real t339 = t25 * t302 + t26 * t334 - t38 * t336 - t50 * t338;
-        const gic_real t340 = t339 - t74 * t329 - t113 * t332 - t122 * t333;
-        const gic_real t341 = t20 * t295 - t21 * t340 - t23 * t334 - t36 * t336;
-        const gic_real t342 = t341 - t48 * t338 - t71 * t329 - t111 * t332;
-        const gic_real t343 = t342 - t121 * t333;
-        const gic_real t344 = t13 * t294 - t14 * t343 - t18 * t340 - t33 * t336;
-        const gic_real t345 = t344 - t45 * t338 - t67 * t329 - t110 * t332;
-        const gic_real t346 = t345 - t119 * t333;
-        const gic_real t347 = t279 * R(0.00038524629951667) - t5 * t346 + t9 * t343 - t31 * t336;
-        const gic_real t348 = t347 - t43 * t338 - t64 * t329 - t109 * t332;
-        const gic_real t349 = t348 - t118 * t333;
-        const gic_real t350 = t293 * R(0.00038524629951667) + t3 * t346 - t9 * t340 - t29 * t336;
-        const gic_real t351 = t350 - t41 * t338 - t63 * t329 - t108 * t332;
-        const gic_real t352 = t351 - t117 * t333;
-        const gic_real t353 = R(-9.81) + (t153 * t334 + (t184 * t349 + t185 * t352));
-        const gic_real t354 = y[12];
-        const gic_real t355 = y[13];
-        const gic_real t356 = y[14];
-        const gic_real t357 = e[2] * t141 - e[3] * t142 + e[0] * t143;
-        const gic_real t358 = e[3] * t143 - e[1] * t141 + e[0] * t142;
-        const gic_real t359 = e[1] * t142 - e[2] * t143 + e[0] * t141;
-        const gic_real t360 = t149 * t334 + (t178 * t349 + t179 * t352);
-        const gic_real t361 = t156 * t334 + (t167 * t349 + t175 * t352);
-        const gic_real t362 = xd[0];
-        const gic_real t363 = xd[1];
-        const gic_real t364 = xd[2];
-        const gic_real t365 = xd[3];
-        const gic_real t366 = xd[4];
-        rate[0] = t354;
-        rate[1] = t355;
-        rate[2] = t356;
-        rate[3] = t144;
-        rate[4] = t357;
-        rate[5] = t358;
-        rate[6] = t359;
-        rate[12] = t360;
-        rate[15] = t343;
-        rate[13] = t361;
-        rate[16] = t340;
-        rate[14] = t353;
-        rate[17] = t346;
-        rate[7] = t362;
-        rate[18] = t336;
-        rate[8] = t363;
-        rate[19] = t338;
-        rate[9] = t364;
-        rate[20] = t329;
-        rate[10] = t365;
-        rate[21] = t332;
-        rate[11] = t366;
-        rate[22] = t333;
+        const gic_real rate_of_spring_r_r_rate = t312 * (t125 * t317 + t140 * t322 + t331 * t328);
+        const gic_real rate_of_rack_rate = t312 * (t136 * t317 + t331 * t322 + t139 * t328);
+        const gic_real t334 = t75 * (t330 - t82 * rate_of_spring_r_r_rate - t103 * rate_of_rack_rate);
+        const gic_real t335 = t62 * t307 - t57 * t303 + t85 * t311 + t128 * rate_of_spring_r_l_rate;
+        const gic_real rate_of_spring_f_l_rate = t75 * (t335 + t86 * rate_of_spring_r_r_rate - t104 *
+            rate_of_rack_rate);
+        const gic_real t337 = t85 * t307 - t58 * t303 + t61 * t311 + t129 * rate_of_spring_r_l_rate;
+        const gic_real rate_of_spring_f_r_rate = t75 * (t337 + t89 * rate_of_spring_r_r_rate - t105 *
+            rate_of_rack_rate);
+        const gic_real t339 = t25 * t302 + t26 * t334 - t38 * rate_of_spring_f_l_rate - t50 * rate_of_spring_f_r_rate;
+        const gic_real rate_of_omega_y = t339 - t74 * rate_of_spring_r_l_rate - t113 * rate_of_spring_r_r_rate - t122 *
+            rate_of_rack_rate;
+        const gic_real t341 = t20 * t295 - t21 * rate_of_omega_y - t23 * t334 - t36 * rate_of_spring_f_l_rate;
+        const gic_real t342 = t341 - t48 * rate_of_spring_f_r_rate - t71 * rate_of_spring_r_l_rate - t111 *
+            rate_of_spring_r_r_rate;
+        const gic_real rate_of_omega_x = t342 - t121 * rate_of_rack_rate;
+        const gic_real t344 = t13 * t294 - t14 * rate_of_omega_x - t18 * rate_of_omega_y - t33 *
+            rate_of_spring_f_l_rate;
+        const gic_real t345 = t344 - t45 * rate_of_spring_f_r_rate - t67 * rate_of_spring_r_l_rate - t110 *
+            rate_of_spring_r_r_rate;
+        const gic_real rate_of_omega_z = t345 - t119 * rate_of_rack_rate;
+        const gic_real t347 = t279 * R(0.00038524629951667) - t5 * rate_of_omega_z + t9 * rate_of_omega_x - t31 *
+            rate_of_spring_f_l_rate;
+        const gic_real t348 = t347 - t43 * rate_of_spring_f_r_rate - t64 * rate_of_spring_r_l_rate - t109 *
+            rate_of_spring_r_r_rate;
+        const gic_real t349 = t348 - t118 * rate_of_rack_rate;
+        const gic_real t350 = t293 * R(0.00038524629951667) + t3 * rate_of_omega_z - t9 * rate_of_omega_y - t29 *
+            rate_of_spring_f_l_rate;
+        const gic_real t351 = t350 - t41 * rate_of_spring_f_r_rate - t63 * rate_of_spring_r_l_rate - t108 *
+            rate_of_spring_r_r_rate;
+        const gic_real t352 = t351 - t117 * rate_of_rack_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t153 * t334 + (t184 * t349 + t185 * t352));
+        const gic_real rate_of_r_x = y[SOLID_AXLE_STATE_V_X];
+        const gic_real rate_of_r_y = y[SOLID_AXLE_STATE_V_Y];
+        const gic_real rate_of_r_z = y[SOLID_AXLE_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t141 - e[3] * t142 + e[0] * t143;
+        const gic_real rate_of_e2 = e[3] * t143 - e[1] * t141 + e[0] * t142;
+        const gic_real rate_of_e3 = e[1] * t142 - e[2] * t143 + e[0] * t141;
+        const gic_real rate_of_v_x = t149 * t334 + (t178 * t349 + t179 * t352);
+        const gic_real rate_of_v_y = t156 * t334 + (t167 * t349 + t175 * t352);
+        const gic_real rate_of_spring_f_l = xd[SOLID_AXLE_X_SPRING_F_L];
+        const gic_real rate_of_spring_f_r = xd[SOLID_AXLE_X_SPRING_F_R];
+        const gic_real rate_of_spring_r_l = xd[SOLID_AXLE_X_SPRING_R_L];
+        const gic_real rate_of_spring_r_r = xd[SOLID_AXLE_X_SPRING_R_R];
+        const gic_real rate_of_rack = xd[SOLID_AXLE_X_RACK];
+        rate[SOLID_AXLE_STATE_R_X] = rate_of_r_x;
+        rate[SOLID_AXLE_STATE_R_Y] = rate_of_r_y;
+        rate[SOLID_AXLE_STATE_R_Z] = rate_of_r_z;
+        rate[SOLID_AXLE_STATE_E0] = rate_of_e0;
+        rate[SOLID_AXLE_STATE_E1] = rate_of_e1;
+        rate[SOLID_AXLE_STATE_E2] = rate_of_e2;
+        rate[SOLID_AXLE_STATE_E3] = rate_of_e3;
+        rate[SOLID_AXLE_STATE_V_X] = rate_of_v_x;
+        rate[SOLID_AXLE_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[SOLID_AXLE_STATE_V_Y] = rate_of_v_y;
+        rate[SOLID_AXLE_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[SOLID_AXLE_STATE_V_Z] = rate_of_v_z;
+        rate[SOLID_AXLE_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[SOLID_AXLE_STATE_SPRING_F_L] = rate_of_spring_f_l;
+        rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] = rate_of_spring_f_l_rate;
+        rate[SOLID_AXLE_STATE_SPRING_F_R] = rate_of_spring_f_r;
+        rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] = rate_of_spring_f_r_rate;
+        rate[SOLID_AXLE_STATE_SPRING_R_L] = rate_of_spring_r_l;
+        rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] = rate_of_spring_r_l_rate;
+        rate[SOLID_AXLE_STATE_SPRING_R_R] = rate_of_spring_r_r;
+        rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] = rate_of_spring_r_r_rate;
+        rate[SOLID_AXLE_STATE_RACK] = rate_of_rack;
+        rate[SOLID_AXLE_STATE_RACK_RATE] = rate_of_rack_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -2668,8 +3206,8 @@ static GIC_APART int solid_axle_dynamics(solid_axle *self, gic_real time, const 
     return GIC_OK;
 }
 
-static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -2686,426 +3224,569 @@ static int solid_axle_measure(const solid_axle *self, gic_real time, const gic_r
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[14] - R(-9.81);
+        const gic_real t10 = rate[SOLID_AXLE_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[13] + t5 * rate[12]));
+        /* output chassis_acceleration */
+        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[SOLID_AXLE_STATE_V_Y] + t5 *
+            rate[SOLID_AXLE_STATE_V_X]));
         const gic_real t15 = e[2] * t6;
         const gic_real t16 = e[0] * t1;
         const gic_real t17 = t15 - t16;
         const gic_real t18 = t11 + t12;
         const gic_real t19 = e[3] * t1;
         const gic_real t20 = R(1.0) - (t7 + t19);
-        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[13] + t17 * rate[12]));
+        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[SOLID_AXLE_STATE_V_Y] + t17 *
+            rate[SOLID_AXLE_STATE_V_X]));
         const gic_real t22 = R(1.0) - (t8 + t19);
         const gic_real t23 = t2 - t4;
         const gic_real t24 = t15 + t16;
-        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[13] + t22 * rate[12]));
-        const gic_real t26 = m[137] * R(0.09182100000000004);
-        const gic_real t27 = m[135] * R(-0.004825999999999997);
-        const gic_real t28 = t26 + (m[136] * R(0.12319000000000002) + t27);
-        const gic_real t29 = m[128] + t28;
-        const gic_real t30 = m[134] * R(0.09182100000000004);
-        const gic_real t31 = m[132] * R(-0.004825999999999997);
-        const gic_real t32 = t30 + (m[133] * R(0.12319000000000002) + t31);
-        const gic_real t33 = m[127] + t32;
-        const gic_real t34 = m[131] * R(0.09182100000000004);
-        const gic_real t35 = m[129] * R(-0.004825999999999997);
-        const gic_real t36 = t34 + (m[130] * R(0.12319000000000002) + t35);
+        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[SOLID_AXLE_STATE_V_Y] + t22 *
+            rate[SOLID_AXLE_STATE_V_X]));
+        /* wheel tire_f_l */
+        const gic_real t26 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t27 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t28 = t26 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) + t27);
+        const gic_real t29 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t28;
+        const gic_real t30 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t31 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t32 = t30 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) + t31);
+        const gic_real t33 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t32;
+        const gic_real t34 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t35 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = t34 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) + t35);
         const gic_real t37 = R(1.653405) + t36;
-        const gic_real t38 = y[0] + (t5 * t29 + (t17 * t33 + t22 * t37));
-        const gic_real t39 = y[1] + (t13 * t29 + (t20 * t33 + t24 * t37));
-        const gic_real t40 = y[2] + (t9 * t29 + (t18 * t33 + t23 * t37));
-        const gic_real t41 = m[173] * R(0.09182100000000004);
-        const gic_real t42 = m[171] * R(-0.004825999999999997);
-        const gic_real t43 = t41 + (m[172] * R(-0.12319000000000002) + t42);
-        const gic_real t44 = m[164] + t43;
-        const gic_real t45 = m[170] * R(0.09182100000000004);
-        const gic_real t46 = m[168] * R(-0.004825999999999997);
-        const gic_real t47 = t45 + (m[169] * R(-0.12319000000000002) + t46);
-        const gic_real t48 = m[163] + t47;
-        const gic_real t49 = m[167] * R(0.09182100000000004);
-        const gic_real t50 = m[165] * R(-0.004825999999999997);
-        const gic_real t51 = t49 + (m[166] * R(-0.12319000000000002) + t50);
+        const gic_real output_wheel_f_l_x = y[SOLID_AXLE_STATE_R_X] + (t5 * t29 + (t17 * t33 + t22 * t37));
+        const gic_real output_wheel_f_l_y = y[SOLID_AXLE_STATE_R_Y] + (t13 * t29 + (t20 * t33 + t24 * t37));
+        const gic_real output_wheel_f_l_z = y[SOLID_AXLE_STATE_R_Z] + (t9 * t29 + (t18 * t33 + t23 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t42 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t43 = t41 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) + t42);
+        const gic_real t44 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t43;
+        const gic_real t45 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t46 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t47 = t45 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) + t46);
+        const gic_real t48 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t47;
+        const gic_real t49 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t50 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t51 = t49 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) + t50);
         const gic_real t52 = R(1.653405) + t51;
-        const gic_real t53 = y[0] + (t5 * t44 + (t17 * t48 + t22 * t52));
-        const gic_real t54 = y[1] + (t13 * t44 + (t20 * t48 + t24 * t52));
-        const gic_real t55 = y[2] + (t9 * t44 + (t18 * t48 + t23 * t52));
-        const gic_real t56 = m[101] * R(-0.17228899999999997);
-        const gic_real t57 = m[99] * R(-0.03340499999999991);
-        const gic_real t58 = t56 + (m[100] * R(1.029701) + t57);
-        const gic_real t59 = m[92] + t58;
-        const gic_real t60 = m[98] * R(-0.17228899999999997);
-        const gic_real t61 = m[96] * R(-0.03340499999999991);
-        const gic_real t62 = t60 + (m[97] * R(1.029701) + t61);
-        const gic_real t63 = m[91] + t62;
-        const gic_real t64 = m[95] * R(-0.17228899999999997);
-        const gic_real t65 = m[93] * R(-0.03340499999999991);
-        const gic_real t66 = t64 + (m[94] * R(1.029701) + t65);
-        const gic_real t67 = m[90] + t66;
-        const gic_real t68 = y[0] + (t5 * t59 + (t17 * t63 + t22 * t67));
-        const gic_real t69 = y[1] + (t13 * t59 + (t20 * t63 + t24 * t67));
-        const gic_real t70 = y[2] + (t9 * t59 + (t18 * t63 + t23 * t67));
-        const gic_real t71 = t56 + (t57 + m[100] * R(-0.789701));
-        const gic_real t72 = m[92] + t71;
-        const gic_real t73 = t60 + (t61 + m[97] * R(-0.789701));
-        const gic_real t74 = m[91] + t73;
-        const gic_real t75 = t64 + (t65 + m[94] * R(-0.789701));
-        const gic_real t76 = m[90] + t75;
-        const gic_real t77 = y[0] + (t5 * t72 + (t17 * t74 + t22 * t76));
-        const gic_real t78 = y[1] + (t13 * t72 + (t20 * t74 + t24 * t76));
-        const gic_real t79 = y[2] + (t9 * t72 + (t18 * t74 + t23 * t76));
-        const gic_real t80 = GIC_ATAN2(m[100] * t9 + (m[97] * t18 + m[94] * t23), m[101] * t9 + (m[98] * t18 + m[95] * t23));
-        const gic_real t81 = -(m[99] * t9 + (m[96] * t18 + m[93] * t23));
-        const gic_real t82 = GIC_ATAN2(m[99] * t13 + (m[96] * t20 + m[93] * t24), m[99] * t5 + (m[96] * t17 + m[93] * t22));
-        const gic_real t83 = x[0] - R(0.31907);
+        const gic_real output_wheel_f_r_x = y[SOLID_AXLE_STATE_R_X] + (t5 * t44 + (t17 * t48 + t22 * t52));
+        const gic_real output_wheel_f_r_y = y[SOLID_AXLE_STATE_R_Y] + (t13 * t44 + (t20 * t48 + t24 * t52));
+        const gic_real output_wheel_f_r_z = y[SOLID_AXLE_STATE_R_Z] + (t9 * t44 + (t18 * t48 + t23 * t52));
+        /* wheel tire_r_l */
+        const gic_real t56 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t57 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t58 = t56 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t57);
+        const gic_real t59 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t58;
+        const gic_real t60 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t61 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t62 = t60 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t61);
+        const gic_real t63 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t62;
+        const gic_real t64 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t65 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t66 = t64 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t65);
+        const gic_real t67 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t66;
+        const gic_real output_wheel_r_l_x = y[SOLID_AXLE_STATE_R_X] + (t5 * t59 + (t17 * t63 + t22 * t67));
+        const gic_real output_wheel_r_l_y = y[SOLID_AXLE_STATE_R_Y] + (t13 * t59 + (t20 * t63 + t24 * t67));
+        const gic_real output_wheel_r_l_z = y[SOLID_AXLE_STATE_R_Z] + (t9 * t59 + (t18 * t63 + t23 * t67));
+        /* wheel tire_r_r */
+        const gic_real t71 = t56 + (t57 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t72 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t71;
+        const gic_real t73 = t60 + (t61 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t74 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t73;
+        const gic_real t75 = t64 + (t65 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t76 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t75;
+        const gic_real output_wheel_r_r_x = y[SOLID_AXLE_STATE_R_X] + (t5 * t72 + (t17 * t74 + t22 * t76));
+        const gic_real output_wheel_r_r_y = y[SOLID_AXLE_STATE_R_Y] + (t13 * t72 + (t20 * t74 + t24 * t76));
+        const gic_real output_wheel_r_r_z = y[SOLID_AXLE_STATE_R_Z] + (t9 * t72 + (t18 * t74 + t23 * t76));
+        /* output axle_attitude */
+        const gic_real output_axle_attitude_roll = GIC_ATAN2(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t9 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t18 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * t23),
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t9 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t18 +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * t23));
+        const gic_real t81 = -(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t9 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t18 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t23));
+        const gic_real output_axle_attitude_yaw = GIC_ATAN2(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t13 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t20 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t24),
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t5 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t17 +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t22));
+        /* force spring_f_l */
+        const gic_real t83 = x[SOLID_AXLE_X_SPRING_F_L] - R(0.31907);
         const gic_real t84 = t83 * R(167070.9);
-        const gic_real t85 = xd[0] * R(17490.8);
-        const gic_real t86 = x[1] - R(0.31907);
+        const gic_real t85 = xd[SOLID_AXLE_X_SPRING_F_L] * R(17490.8);
+        /* force spring_f_r */
+        const gic_real t86 = x[SOLID_AXLE_X_SPRING_F_R] - R(0.31907);
         const gic_real t87 = R(167070.9) * t86;
-        const gic_real t88 = xd[1] * R(17490.8);
-        const gic_real t89 = x[2] - R(0.41347);
+        const gic_real t88 = xd[SOLID_AXLE_X_SPRING_F_R] * R(17490.8);
+        /* force spring_r_l */
+        const gic_real t89 = x[SOLID_AXLE_X_SPRING_R_L] - R(0.41347);
         const gic_real t90 = t89 * R(63000.0);
-        const gic_real t91 = xd[2] * R(4100.0);
-        const gic_real t92 = x[3] - R(0.41347);
+        const gic_real t91 = xd[SOLID_AXLE_X_SPRING_R_L] * R(4100.0);
+        /* force spring_r_r */
+        const gic_real t92 = x[SOLID_AXLE_X_SPRING_R_R] - R(0.41347);
         const gic_real t93 = R(63000.0) * t92;
-        const gic_real t94 = xd[3] * R(4100.0);
-        const gic_real t95 = x[4] * R(100000.0);
-        const gic_real t96 = xd[4] * R(12000.0);
-        const gic_real t97 = m[143] + (m[138] * t32 - m[139] * t36) + (y[15] * t33 - y[16] * t37);
-        const gic_real t98 = m[142] + (m[140] * t36 - m[138] * t28) + (y[17] * t37 - y[15] * t29);
-        const gic_real t99 = m[139] * t28 - m[140] * t32 + (y[16] * t29 - y[17] * t33);
-        const gic_real t100 = y[13] + (t13 * t97 + (t20 * t98 + t24 * t99));
+        const gic_real t94 = xd[SOLID_AXLE_X_SPRING_R_R] * R(4100.0);
+        /* force rack */
+        const gic_real t95 = x[SOLID_AXLE_X_RACK] * R(100000.0);
+        const gic_real t96 = xd[SOLID_AXLE_X_RACK] * R(12000.0);
+        const gic_real t97 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t32 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t36) + (y[SOLID_AXLE_STATE_OMEGA_X] * t33 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t37);
+        const gic_real t98 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t36 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t28) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t37 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t29);
+        const gic_real t99 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t28 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t32 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t29 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t33);
+        const gic_real t100 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t97 + (t20 * t98 + t24 * t99));
         gic_real road101[3];
-        if (!solid_axle_road_height(self, time, t38, t39, road101))
+        if (!solid_axle_road_height(self, time, output_wheel_f_l_x, output_wheel_f_l_y, road101))
             return GIC_ERROR_ROAD;
-        const gic_real t102 = y[12] + (t5 * t97 + (t17 * t98 + t22 * t99));
-        const gic_real t103 = y[14] + (t9 * t97 + (t18 * t98 + t23 * t99));
-        const gic_real t104 = t100 * road101[2] + t102 * road101[1] - t103;
-        const gic_real t105 = road101[0] + R(0.4699) - t40;
-        const gic_real t106 = GIC_MIN(GIC_MAX(t105 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t107 = t104 * ((R(3.0) - (t106 + t106)) * (t106 * t106) * R(500.0));
-        const gic_real t108 = GIC_MAX(t107 + t105 * R(283000.0), R(0.0));
-        const gic_real t109 = m[179] + (m[174] * t47 - m[175] * t51) + (y[15] * t48 - y[16] * t52);
-        const gic_real t110 = m[178] + (m[176] * t51 - m[174] * t43) + (y[17] * t52 - y[15] * t44);
-        const gic_real t111 = m[175] * t43 - m[176] * t47 + (y[16] * t44 - y[17] * t48);
-        const gic_real t112 = y[13] + (t13 * t109 + (t20 * t110 + t24 * t111));
+        const gic_real t102 = y[SOLID_AXLE_STATE_V_X] + (t5 * t97 + (t17 * t98 + t22 * t99));
+        const gic_real t103 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t97 + (t18 * t98 + t23 * t99));
+        const gic_real output_tire_f_l_deflection_rate = t100 * road101[2] + t102 * road101[1] - t103;
+        const gic_real output_tire_f_l_deflection = road101[0] + R(0.4699) - output_wheel_f_l_z;
+        const gic_real t106 = GIC_MIN(GIC_MAX(output_tire_f_l_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t107 = output_tire_f_l_deflection_rate * ((R(3.0) - (t106 + t106)) * (t106 * t106) * R(500.0));
+        const gic_real output_tire_f_l_fz = GIC_MAX(t107 + output_tire_f_l_deflection * R(283000.0), R(0.0));
+        const gic_real t109 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t47 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t51) + (y[SOLID_AXLE_STATE_OMEGA_X] * t48 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t52);
+        const gic_real t110 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t51 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t43) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t52 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t44);
+        const gic_real t111 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t43 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t47 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t44 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t48);
+        const gic_real t112 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t109 + (t20 * t110 + t24 * t111));
         gic_real road113[3];
-        if (!solid_axle_road_height(self, time, t53, t54, road113))
+        if (!solid_axle_road_height(self, time, output_wheel_f_r_x, output_wheel_f_r_y, road113))
             return GIC_ERROR_ROAD;
-        const gic_real t114 = y[12] + (t5 * t109 + (t17 * t110 + t22 * t111));
-        const gic_real t115 = y[14] + (t9 * t109 + (t18 * t110 + t23 * t111));
-        const gic_real t116 = t112 * road113[2] + t114 * road113[1] - t115;
-        const gic_real t117 = R(0.4699) + road113[0] - t55;
-        const gic_real t118 = GIC_MIN(GIC_MAX(R(100.0) * t117, R(0.0)), R(1.0));
-        const gic_real t119 = t116 * (R(500.0) * ((R(3.0) - (t118 + t118)) * (t118 * t118)));
-        const gic_real t120 = GIC_MAX(t119 + R(283000.0) * t117, R(0.0));
-        const gic_real t121 = m[107] + (m[102] * t62 - m[103] * t66) + (y[15] * t63 - y[16] * t67);
-        const gic_real t122 = m[106] + (m[104] * t66 - m[102] * t58) + (y[17] * t67 - y[15] * t59);
-        const gic_real t123 = m[105] + (m[103] * t58 - m[104] * t62) + (y[16] * t59 - y[17] * t63);
-        const gic_real t124 = y[13] + (t13 * t121 + (t20 * t122 + t24 * t123));
+        const gic_real t114 = y[SOLID_AXLE_STATE_V_X] + (t5 * t109 + (t17 * t110 + t22 * t111));
+        const gic_real t115 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t109 + (t18 * t110 + t23 * t111));
+        const gic_real output_tire_f_r_deflection_rate = t112 * road113[2] + t114 * road113[1] - t115;
+        const gic_real output_tire_f_r_deflection = R(0.4699) + road113[0] - output_wheel_f_r_z;
+        const gic_real t118 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_f_r_deflection, R(0.0)), R(1.0));
+        const gic_real t119 = output_tire_f_r_deflection_rate * (R(500.0) * ((R(3.0) - (t118 + t118)) * (t118 * t118)));
+        const gic_real output_tire_f_r_fz = GIC_MAX(t119 + R(283000.0) * output_tire_f_r_deflection, R(0.0));
+        const gic_real t121 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t62 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t66) + (y[SOLID_AXLE_STATE_OMEGA_X] * t63 - y[SOLID_AXLE_STATE_OMEGA_Y] * t67);
+        const gic_real t122 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t66 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t58) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t67 - y[SOLID_AXLE_STATE_OMEGA_X] * t59);
+        const gic_real t123 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t58 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t62) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t59 - y[SOLID_AXLE_STATE_OMEGA_Z] * t63);
+        const gic_real t124 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t121 + (t20 * t122 + t24 * t123));
         gic_real road125[3];
-        if (!solid_axle_road_height(self, time, t68, t69, road125))
+        if (!solid_axle_road_height(self, time, output_wheel_r_l_x, output_wheel_r_l_y, road125))
             return GIC_ERROR_ROAD;
-        const gic_real t126 = y[12] + (t5 * t121 + (t17 * t122 + t22 * t123));
-        const gic_real t127 = y[14] + (t9 * t121 + (t18 * t122 + t23 * t123));
-        const gic_real t128 = t124 * road125[2] + t126 * road125[1] - t127;
-        const gic_real t129 = R(0.4699) + road125[0] - t70;
-        const gic_real t130 = GIC_MIN(GIC_MAX(R(100.0) * t129, R(0.0)), R(1.0));
-        const gic_real t131 = t128 * (R(500.0) * ((R(3.0) - (t130 + t130)) * (t130 * t130)));
-        const gic_real t132 = GIC_MAX(t131 + R(283000.0) * t129, R(0.0));
-        const gic_real t133 = m[107] + (m[102] * t73 - m[103] * t75) + (y[15] * t74 - y[16] * t76);
-        const gic_real t134 = m[106] + (m[104] * t75 - m[102] * t71) + (y[17] * t76 - y[15] * t72);
-        const gic_real t135 = m[105] + (m[103] * t71 - m[104] * t73) + (y[16] * t72 - y[17] * t74);
-        const gic_real t136 = y[13] + (t13 * t133 + (t20 * t134 + t24 * t135));
+        const gic_real t126 = y[SOLID_AXLE_STATE_V_X] + (t5 * t121 + (t17 * t122 + t22 * t123));
+        const gic_real t127 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t121 + (t18 * t122 + t23 * t123));
+        const gic_real output_tire_r_l_deflection_rate = t124 * road125[2] + t126 * road125[1] - t127;
+        const gic_real output_tire_r_l_deflection = R(0.4699) + road125[0] - output_wheel_r_l_z;
+        const gic_real t130 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_l_deflection, R(0.0)), R(1.0));
+        const gic_real t131 = output_tire_r_l_deflection_rate * (R(500.0) * ((R(3.0) - (t130 + t130)) * (t130 * t130)));
+        const gic_real output_tire_r_l_fz = GIC_MAX(t131 + R(283000.0) * output_tire_r_l_deflection, R(0.0));
+        const gic_real t133 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t73 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t75) + (y[SOLID_AXLE_STATE_OMEGA_X] * t74 - y[SOLID_AXLE_STATE_OMEGA_Y] * t76);
+        const gic_real t134 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t75 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t71) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t76 - y[SOLID_AXLE_STATE_OMEGA_X] * t72);
+        const gic_real t135 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t71 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t73) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t72 - y[SOLID_AXLE_STATE_OMEGA_Z] * t74);
+        const gic_real t136 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t133 + (t20 * t134 + t24 * t135));
         gic_real road137[3];
-        if (!solid_axle_road_height(self, time, t77, t78, road137))
+        if (!solid_axle_road_height(self, time, output_wheel_r_r_x, output_wheel_r_r_y, road137))
             return GIC_ERROR_ROAD;
-        const gic_real t138 = y[12] + (t5 * t133 + (t17 * t134 + t22 * t135));
-        const gic_real t139 = y[14] + (t9 * t133 + (t18 * t134 + t23 * t135));
-        const gic_real t140 = t136 * road137[2] + t138 * road137[1] - t139;
-        const gic_real t141 = R(0.4699) + road137[0] - t79;
-        const gic_real t142 = GIC_MIN(GIC_MAX(R(100.0) * t141, R(0.0)), R(1.0));
-        const gic_real t143 = t140 * (R(500.0) * ((R(3.0) - (t142 + t142)) * (t142 * t142)));
-        const gic_real t144 = GIC_MAX(t143 + R(283000.0) * t141, R(0.0));
-        const gic_real t145 = y[17] * (y[17] * R(3570.2)) + (y[16] * (y[16] * R(2955.66)) + y[15] * (y[15] * R(1078.52)));
-        const gic_real t146 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t147 = y[16] * R(0.21300000000000008);
-        const gic_real t148 = y[16] * R(0.056);
-        const gic_real t149 = y[14] + (t18 * t146 + t23 * t147 - t9 * t148);
-        const gic_real t150 = y[13] + (t20 * t146 + t24 * t147 - t13 * t148);
-        const gic_real t151 = y[12] + (t17 * t146 + t22 * t147 - t5 * t148);
+        const gic_real t138 = y[SOLID_AXLE_STATE_V_X] + (t5 * t133 + (t17 * t134 + t22 * t135));
+        const gic_real t139 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t133 + (t18 * t134 + t23 * t135));
+        const gic_real output_tire_r_r_deflection_rate = t136 * road137[2] + t138 * road137[1] - t139;
+        const gic_real output_tire_r_r_deflection = R(0.4699) + road137[0] - output_wheel_r_r_z;
+        const gic_real t142 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_r_deflection, R(0.0)), R(1.0));
+        const gic_real t143 = output_tire_r_r_deflection_rate * (R(500.0) * ((R(3.0) - (t142 + t142)) * (t142 * t142)));
+        const gic_real output_tire_r_r_fz = GIC_MAX(t143 + R(283000.0) * output_tire_r_r_deflection, R(0.0));
+        /* output energy */
+        const gic_real t145 = y[SOLID_AXLE_STATE_OMEGA_Z] * (y[SOLID_AXLE_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[SOLID_AXLE_STATE_OMEGA_Y] * (y[SOLID_AXLE_STATE_OMEGA_Y] * R(2955.66)) + y[SOLID_AXLE_STATE_OMEGA_X] *
+            (y[SOLID_AXLE_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t146 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t147 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t148 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t149 = y[SOLID_AXLE_STATE_V_Z] + (t18 * t146 + t23 * t147 - t9 * t148);
+        const gic_real t150 = y[SOLID_AXLE_STATE_V_Y] + (t20 * t146 + t24 * t147 - t13 * t148);
+        const gic_real t151 = y[SOLID_AXLE_STATE_V_X] + (t17 * t146 + t22 * t147 - t5 * t148);
         const gic_real t152 = R(2086.52) * (t149 * t149 + (t150 * t150 + t151 * t151));
-        const gic_real t153 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t154 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t155 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t156 = y[14] + (t9 * t153 + (t18 * t154 + t23 * t155));
-        const gic_real t157 = y[13] + (t13 * t153 + (t20 * t154 + t24 * t155));
-        const gic_real t158 = y[12] + (t5 * t153 + (t17 * t154 + t22 * t155));
+        const gic_real t153 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t154 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] + (R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Z] - R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t155 = R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t156 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t153 + (t18 * t154 + t23 * t155));
+        const gic_real t157 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t153 + (t20 * t154 + t24 * t155));
+        const gic_real t158 = y[SOLID_AXLE_STATE_V_X] + (t5 * t153 + (t17 * t154 + t22 * t155));
         const gic_real t159 = R(9.072) * (t156 * t156 + (t157 * t157 + t158 * t158));
-        const gic_real t160 = y[17] * y[17] + (y[16] * y[16] + y[15] * y[15]) + t159;
-        const gic_real t161 = y[17] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t162 = m[38] * R(0.8938);
-        const gic_real t163 = m[37] * R(0.4469);
-        const gic_real t164 = m[41] * t162 + m[40] * t163;
-        const gic_real t165 = y[17] * t164 + y[16] * (m[38] * t162 + m[37] * t163);
-        const gic_real t166 = m[42] + y[15];
-        const gic_real t167 = y[17] * (t161 + y[16] * t164) + (y[16] * t165 + t166 * (t166 * R(0.4469)));
-        const gic_real t168 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t160 = y[SOLID_AXLE_STATE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Z] + (y[SOLID_AXLE_STATE_OMEGA_Y] *
+            y[SOLID_AXLE_STATE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_X]) + t159;
+        const gic_real t161 = y[SOLID_AXLE_STATE_OMEGA_Z] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] *
+            R(0.4469)));
+        const gic_real t162 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t163 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t164 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * t162 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * t163;
+        const gic_real t165 = y[SOLID_AXLE_STATE_OMEGA_Z] * t164 + y[SOLID_AXLE_STATE_OMEGA_Y] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * t162 + m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] *
+            t163);
+        const gic_real t166 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t167 = y[SOLID_AXLE_STATE_OMEGA_Z] * (t161 + y[SOLID_AXLE_STATE_OMEGA_Y] * t164) +
+            (y[SOLID_AXLE_STATE_OMEGA_Y] * t165 + t166 * (t166 * R(0.4469)));
+        const gic_real t168 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.24689200985615367);
         const gic_real t169 = R(0.307086) + t168;
-        const gic_real t170 = R(1.688965) * y[16];
-        const gic_real t171 = m[42] * t168 + (y[15] * t169 - t170);
-        const gic_real t172 = R(1.688965) * y[17];
-        const gic_real t173 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t174 = t172 - y[15] * t173 - m[42] * t173;
-        const gic_real t175 = y[16] * t173 - y[17] * t169;
-        const gic_real t176 = y[14] + (t9 * t171 + (t18 * t174 + t23 * t175));
-        const gic_real t177 = y[13] + (t13 * t171 + (t20 * t174 + t24 * t175));
-        const gic_real t178 = y[12] + (t5 * t171 + (t17 * t174 + t22 * t175));
+        const gic_real t170 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t171 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t168 + (y[SOLID_AXLE_STATE_OMEGA_X] *
+            t169 - t170);
+        const gic_real t172 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t173 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t174 = t172 - y[SOLID_AXLE_STATE_OMEGA_X] * t173 -
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t173;
+        const gic_real t175 = y[SOLID_AXLE_STATE_OMEGA_Y] * t173 - y[SOLID_AXLE_STATE_OMEGA_Z] * t169;
+        const gic_real t176 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t171 + (t18 * t174 + t23 * t175));
+        const gic_real t177 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t171 + (t20 * t174 + t24 * t175));
+        const gic_real t178 = y[SOLID_AXLE_STATE_V_X] + (t5 * t171 + (t17 * t174 + t22 * t175));
         const gic_real t179 = R(23.965) * (t176 * t176 + (t177 * t177 + t178 * t178));
         const gic_real t180 = R(0.5) * (t145 + t152) + R(0.5) * t160 + R(0.5) * (t167 + t179);
-        const gic_real t181 = y[17] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t182 = m[68] * R(0.8938);
-        const gic_real t183 = m[67] * R(0.4469);
-        const gic_real t184 = m[71] * t182 + m[70] * t183;
-        const gic_real t185 = y[17] * t184 + y[16] * (m[68] * t182 + m[67] * t183);
-        const gic_real t186 = m[72] + y[15];
-        const gic_real t187 = y[17] * (t181 + y[16] * t184) + (y[16] * t185 + t186 * (R(0.4469) * t186));
-        const gic_real t188 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t181 = y[SOLID_AXLE_STATE_OMEGA_Z] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] *
+            R(0.4469)));
+        const gic_real t182 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t183 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t184 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * t182 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * t183;
+        const gic_real t185 = y[SOLID_AXLE_STATE_OMEGA_Z] * t184 + y[SOLID_AXLE_STATE_OMEGA_Y] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * t182 + m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] *
+            t183);
+        const gic_real t186 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t187 = y[SOLID_AXLE_STATE_OMEGA_Z] * (t181 + y[SOLID_AXLE_STATE_OMEGA_Y] * t184) +
+            (y[SOLID_AXLE_STATE_OMEGA_Y] * t185 + t186 * (R(0.4469) * t186));
+        const gic_real t188 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(-0.24689200985615367);
         const gic_real t189 = R(-0.307086) + t188;
-        const gic_real t190 = m[72] * t188 + (y[15] * t189 - t170);
-        const gic_real t191 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t192 = t172 - y[15] * t191 - m[72] * t191;
-        const gic_real t193 = y[16] * t191 - y[17] * t189;
-        const gic_real t194 = y[14] + (t9 * t190 + (t18 * t192 + t23 * t193));
-        const gic_real t195 = y[13] + (t13 * t190 + (t20 * t192 + t24 * t193));
-        const gic_real t196 = y[12] + (t5 * t190 + (t17 * t192 + t22 * t193));
+        const gic_real t190 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t188 + (y[SOLID_AXLE_STATE_OMEGA_X] *
+            t189 - t170);
+        const gic_real t191 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t192 = t172 - y[SOLID_AXLE_STATE_OMEGA_X] * t191 -
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t191;
+        const gic_real t193 = y[SOLID_AXLE_STATE_OMEGA_Y] * t191 - y[SOLID_AXLE_STATE_OMEGA_Z] * t189;
+        const gic_real t194 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t190 + (t18 * t192 + t23 * t193));
+        const gic_real t195 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t190 + (t20 * t192 + t24 * t193));
+        const gic_real t196 = y[SOLID_AXLE_STATE_V_X] + (t5 * t190 + (t17 * t192 + t22 * t193));
         const gic_real t197 = R(23.965) * (t194 * t194 + (t195 * t195 + t196 * t196));
-        const gic_real t198 = m[140] + y[17];
-        const gic_real t199 = m[137] * (m[137] * R(4.7728205)) + (m[136] * (m[136] * R(7.58122)) + m[135] * (m[135] * R(4.8947505)));
-        const gic_real t200 = m[139] + y[16];
-        const gic_real t201 = m[134] * R(4.7728205);
-        const gic_real t202 = m[133] * R(7.58122);
-        const gic_real t203 = m[132] * R(4.8947505);
-        const gic_real t204 = m[137] * t201 + (m[136] * t202 + m[135] * t203);
-        const gic_real t205 = m[138] + y[15];
-        const gic_real t206 = m[131] * R(4.7728205);
-        const gic_real t207 = m[130] * R(7.58122);
-        const gic_real t208 = m[129] * R(4.8947505);
-        const gic_real t209 = m[137] * t206 + (m[136] * t207 + m[135] * t208);
+        const gic_real t198 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t199 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t200 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t201 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t202 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t203 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t204 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t201 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t202 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * t203);
+        const gic_real t205 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t206 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t207 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t208 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t209 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t206 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t207 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * t208);
         const gic_real t210 = t198 * (t198 * t199 + (t200 * t204 + t205 * t209));
-        const gic_real t211 = t200 * (m[134] * t201 + (m[133] * t202 + m[132] * t203));
-        const gic_real t212 = m[134] * t206 + (m[133] * t207 + m[132] * t208);
-        const gic_real t213 = t205 * (m[131] * t206 + (m[130] * t207 + m[129] * t208));
+        const gic_real t211 = t200 * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t201 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t202 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * t203));
+        const gic_real t212 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t206 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t207 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * t208);
+        const gic_real t213 = t205 * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * t206 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * t207 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * t208));
         const gic_real t214 = t200 * (t198 * t204 + (t211 + t205 * t212)) + t205 * (t198 * t209 + (t200 * t212 + t213));
-        const gic_real t215 = t30 + (t31 + m[133] * R(0.08910630000000008));
-        const gic_real t216 = t34 + (t35 + m[130] * R(0.08910630000000008));
-        const gic_real t217 = m[127] + t215;
+        const gic_real t215 = t30 + (t31 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.08910630000000008));
+        const gic_real t216 = t34 + (t35 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.08910630000000008));
+        const gic_real t217 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t215;
         const gic_real t218 = R(1.653405) + t216;
-        const gic_real t219 = m[143] + (m[138] * t215 - m[139] * t216) + (y[15] * t217 - y[16] * t218);
-        const gic_real t220 = t26 + (t27 + m[136] * R(0.08910630000000008));
-        const gic_real t221 = m[128] + t220;
-        const gic_real t222 = m[142] + (m[140] * t216 - m[138] * t220) + (y[17] * t218 - y[15] * t221);
-        const gic_real t223 = m[139] * t220 - m[140] * t215 + (y[16] * t221 - y[17] * t217);
-        const gic_real t224 = y[14] + (t9 * t219 + (t18 * t222 + t23 * t223));
-        const gic_real t225 = y[13] + (t13 * t219 + (t20 * t222 + t24 * t223));
-        const gic_real t226 = y[12] + (t5 * t219 + (t17 * t222 + t22 * t223));
+        const gic_real t219 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t215 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t216) + (y[SOLID_AXLE_STATE_OMEGA_X] * t217 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t218);
+        const gic_real t220 = t26 + (t27 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t221 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t220;
+        const gic_real t222 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t216 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t220) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t218 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t221);
+        const gic_real t223 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t220 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t215 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t221 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t217);
+        const gic_real t224 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t219 + (t18 * t222 + t23 * t223));
+        const gic_real t225 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t219 + (t20 * t222 + t24 * t223));
+        const gic_real t226 = y[SOLID_AXLE_STATE_V_X] + (t5 * t219 + (t17 * t222 + t22 * t223));
         const gic_real t227 = R(90.555) * (t224 * t224 + (t225 * t225 + t226 * t226));
         const gic_real t228 = t180 + R(0.5) * (t187 + t197) + R(0.5) * (t210 + t214 + t227);
-        const gic_real t229 = m[176] + y[17];
-        const gic_real t230 = m[173] * (m[173] * R(4.7728205)) + (m[172] * (m[172] * R(7.58122)) + m[171] * (m[171] * R(4.8947505)));
-        const gic_real t231 = m[175] + y[16];
-        const gic_real t232 = m[170] * R(4.7728205);
-        const gic_real t233 = m[169] * R(7.58122);
-        const gic_real t234 = m[168] * R(4.8947505);
-        const gic_real t235 = m[173] * t232 + (m[172] * t233 + m[171] * t234);
-        const gic_real t236 = m[174] + y[15];
-        const gic_real t237 = m[167] * R(4.7728205);
-        const gic_real t238 = m[166] * R(7.58122);
-        const gic_real t239 = m[165] * R(4.8947505);
-        const gic_real t240 = m[173] * t237 + (m[172] * t238 + m[171] * t239);
+        const gic_real t229 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t230 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t231 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t232 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t233 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t234 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t235 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t232 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t233 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t234);
+        const gic_real t236 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t237 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t238 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t239 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t240 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t237 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t238 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t239);
         const gic_real t241 = t229 * (t229 * t230 + (t231 * t235 + t236 * t240));
-        const gic_real t242 = t231 * (m[170] * t232 + (m[169] * t233 + m[168] * t234));
-        const gic_real t243 = m[170] * t237 + (m[169] * t238 + m[168] * t239);
-        const gic_real t244 = t236 * (m[167] * t237 + (m[166] * t238 + m[165] * t239));
+        const gic_real t242 = t231 * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t232 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t233 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t234));
+        const gic_real t243 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t237 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t238 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t239);
+        const gic_real t244 = t236 * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * t237 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * t238 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * t239));
         const gic_real t245 = t231 * (t229 * t235 + (t242 + t236 * t243)) + t236 * (t229 * t240 + (t231 * t243 + t244));
-        const gic_real t246 = t45 + (t46 + m[169] * R(-0.08910630000000008));
-        const gic_real t247 = t49 + (t50 + m[166] * R(-0.08910630000000008));
-        const gic_real t248 = m[163] + t246;
+        const gic_real t246 = t45 + (t46 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.08910630000000008));
+        const gic_real t247 = t49 + (t50 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.08910630000000008));
+        const gic_real t248 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t246;
         const gic_real t249 = R(1.653405) + t247;
-        const gic_real t250 = m[179] + (m[174] * t246 - m[175] * t247) + (y[15] * t248 - y[16] * t249);
-        const gic_real t251 = t41 + (t42 + m[172] * R(-0.08910630000000008));
-        const gic_real t252 = m[164] + t251;
-        const gic_real t253 = m[178] + (m[176] * t247 - m[174] * t251) + (y[17] * t249 - y[15] * t252);
-        const gic_real t254 = m[175] * t251 - m[176] * t246 + (y[16] * t252 - y[17] * t248);
-        const gic_real t255 = y[14] + (t9 * t250 + (t18 * t253 + t23 * t254));
-        const gic_real t256 = y[13] + (t13 * t250 + (t20 * t253 + t24 * t254));
-        const gic_real t257 = y[12] + (t5 * t250 + (t17 * t253 + t22 * t254));
+        const gic_real t250 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t246 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t247) + (y[SOLID_AXLE_STATE_OMEGA_X] * t248 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t249);
+        const gic_real t251 = t41 + (t42 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.08910630000000008));
+        const gic_real t252 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t251;
+        const gic_real t253 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t247 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t251) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t249 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t252);
+        const gic_real t254 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t251 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t246 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t252 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t248);
+        const gic_real t255 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t250 + (t18 * t253 + t23 * t254));
+        const gic_real t256 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t250 + (t20 * t253 + t24 * t254));
+        const gic_real t257 = y[SOLID_AXLE_STATE_V_X] + (t5 * t250 + (t17 * t253 + t22 * t254));
         const gic_real t258 = R(90.555) * (t255 * t255 + (t256 * t256 + t257 * t257));
-        const gic_real t259 = m[104] + y[17];
-        const gic_real t260 = m[101] * (m[101] * R(163.103702)) + (m[100] * (m[100] * R(15.48644)) + m[99] * (m[99] * R(163.347562)));
-        const gic_real t261 = m[103] + y[16];
-        const gic_real t262 = m[98] * R(163.103702);
-        const gic_real t263 = m[97] * R(15.48644);
-        const gic_real t264 = m[96] * R(163.347562);
-        const gic_real t265 = m[101] * t262 + (m[100] * t263 + m[99] * t264);
-        const gic_real t266 = m[102] + y[15];
-        const gic_real t267 = m[95] * R(163.103702);
-        const gic_real t268 = m[94] * R(15.48644);
-        const gic_real t269 = m[93] * R(163.347562);
-        const gic_real t270 = m[101] * t267 + (m[100] * t268 + m[99] * t269);
+        const gic_real t259 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t260 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(163.103702)) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(15.48644)) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] *
+            R(163.347562)));
+        const gic_real t261 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t262 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(163.103702);
+        const gic_real t263 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(15.48644);
+        const gic_real t264 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(163.347562);
+        const gic_real t265 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t262 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t263 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t264);
+        const gic_real t266 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t267 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(163.103702);
+        const gic_real t268 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(15.48644);
+        const gic_real t269 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(163.347562);
+        const gic_real t270 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t267 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t268 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t269);
         const gic_real t271 = t259 * (t259 * t260 + (t261 * t265 + t266 * t270));
-        const gic_real t272 = t261 * (m[98] * t262 + (m[97] * t263 + m[96] * t264));
-        const gic_real t273 = m[98] * t267 + (m[97] * t268 + m[96] * t269);
-        const gic_real t274 = t266 * (m[95] * t267 + (m[94] * t268 + m[93] * t269));
+        const gic_real t272 = t261 * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t262 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t263 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t264));
+        const gic_real t273 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t267 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t268 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t269);
+        const gic_real t274 = t266 * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * t267 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * t268 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t269));
         const gic_real t275 = t261 * (t259 * t265 + (t272 + t266 * t273)) + t266 * (t259 * t270 + (t261 * t273 + t274));
-        const gic_real t276 = t60 + (t61 + m[97] * R(0.12));
-        const gic_real t277 = t64 + (t65 + m[94] * R(0.12));
-        const gic_real t278 = m[91] + t276;
-        const gic_real t279 = m[90] + t277;
-        const gic_real t280 = m[107] + (m[102] * t276 - m[103] * t277) + (y[15] * t278 - y[16] * t279);
-        const gic_real t281 = t56 + (t57 + m[100] * R(0.12));
-        const gic_real t282 = m[92] + t281;
-        const gic_real t283 = m[106] + (m[104] * t277 - m[102] * t281) + (y[17] * t279 - y[15] * t282);
-        const gic_real t284 = m[105] + (m[103] * t281 - m[104] * t276) + (y[16] * t282 - y[17] * t278);
-        const gic_real t285 = y[14] + (t9 * t280 + (t18 * t283 + t23 * t284));
-        const gic_real t286 = y[13] + (t13 * t280 + (t20 * t283 + t24 * t284));
-        const gic_real t287 = y[12] + (t5 * t280 + (t17 * t283 + t22 * t284));
+        const gic_real t276 = t60 + (t61 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(0.12));
+        const gic_real t277 = t64 + (t65 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(0.12));
+        const gic_real t278 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t276;
+        const gic_real t279 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t277;
+        const gic_real t280 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t276 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t277) + (y[SOLID_AXLE_STATE_OMEGA_X] * t278 - y[SOLID_AXLE_STATE_OMEGA_Y] * t279);
+        const gic_real t281 = t56 + (t57 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(0.12));
+        const gic_real t282 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t281;
+        const gic_real t283 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t277 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t281) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t279 - y[SOLID_AXLE_STATE_OMEGA_X] * t282);
+        const gic_real t284 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t281 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t276) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t282 - y[SOLID_AXLE_STATE_OMEGA_Z] * t278);
+        const gic_real t285 = y[SOLID_AXLE_STATE_V_Z] + (t9 * t280 + (t18 * t283 + t23 * t284));
+        const gic_real t286 = y[SOLID_AXLE_STATE_V_Y] + (t13 * t280 + (t20 * t283 + t24 * t284));
+        const gic_real t287 = y[SOLID_AXLE_STATE_V_X] + (t5 * t280 + (t17 * t283 + t22 * t284));
         const gic_real t288 = R(271.11) * (t285 * t285 + (t286 * t286 + t287 * t287));
-        const gic_real t289 = t228 + R(0.5) * (t241 + t245 + t258) + R(0.5) * (t271 + t275 + t288);
+        const gic_real output_energy_kinetic = t228 + R(0.5) * (t241 + t245 + t258) + R(0.5) * (t271 + t275 + t288);
         const gic_real t290 = t83 * t84 * R(0.5) + R(0.5) * (t86 * t87) + R(0.5) * (t89 * t90);
-        const gic_real t291 = t290 + R(0.5) * (t92 * t93) + R(0.5) * (x[4] * t95);
-        const gic_real t292 = t291 - (y[2] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) * R(-20468.7612);
-        const gic_real t293 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t18 + R(1.438648) * t23));
+        const gic_real t291 = t290 + R(0.5) * (t92 * t93) + R(0.5) * (x[SOLID_AXLE_X_RACK] * t95);
+        const gic_real t292 = t291 - (y[SOLID_AXLE_STATE_R_Z] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) *
+            R(-20468.7612);
+        const gic_real t293 = y[SOLID_AXLE_STATE_R_Z] + (R(0.05422899999999997) * t9 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t18 + R(1.438648) * t23));
         const gic_real t294 = R(1.688965) * t23;
-        const gic_real t295 = (y[2] + (t9 * t173 + (t18 * t169 + t294))) * R(-235.09665);
-        const gic_real t296 = R(-235.09665) * (y[2] + (t9 * t191 + (t294 + t18 * t189)));
-        const gic_real t297 = y[2] + (t9 * t221 + (t18 * t217 + t23 * t218));
+        const gic_real t295 = (y[SOLID_AXLE_STATE_R_Z] + (t9 * t173 + (t18 * t169 + t294))) * R(-235.09665);
+        const gic_real t296 = R(-235.09665) * (y[SOLID_AXLE_STATE_R_Z] + (t9 * t191 + (t294 + t18 * t189)));
+        const gic_real t297 = y[SOLID_AXLE_STATE_R_Z] + (t9 * t221 + (t18 * t217 + t23 * t218));
         const gic_real t298 = t292 - t293 * R(-88.99632) - t295 - t296 - t297 * R(-888.3445500000001);
-        const gic_real t299 = y[2] + (t9 * t252 + (t18 * t248 + t23 * t249));
-        const gic_real t300 = y[2] + (t9 * t282 + (t18 * t278 + t23 * t279));
-        const gic_real t301 = xd[0] * t85 + xd[1] * t88 + xd[2] * t91 + xd[3] * t94;
-        const gic_real t302 = t103 * t108 - (t301 + xd[4] * t96) + t115 * t120;
-        const gic_real t303 = y[0];
-        const gic_real t304 = y[1];
-        const gic_real t305 = y[2];
-        const gic_real t306 = y[12];
-        const gic_real t307 = y[13];
-        const gic_real t308 = y[14];
-        const gic_real t309 = t5 * t14 + (t17 * t21 + t22 * t25);
-        const gic_real t310 = t13 * t14 + (t20 * t21 + t24 * t25);
-        const gic_real t311 = t9 * t14 + (t18 * t21 + t23 * t25);
-        const gic_real t312 = e[0];
-        const gic_real t313 = e[1];
-        const gic_real t314 = e[2];
-        const gic_real t315 = e[3];
-        const gic_real t316 = GIC_ATAN2(t18, t9);
-        const gic_real t317 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t318 = GIC_ATAN2(t24, t22);
-        const gic_real t319 = y[15];
-        const gic_real t320 = y[16];
-        const gic_real t321 = y[17];
-        const gic_real t322 = GIC_ASIN(GIC_MIN(GIC_MAX(t81, R(-1.0)), R(1.0)));
-        const gic_real t323 = x[0];
-        const gic_real t324 = xd[0];
-        const gic_real t325 = rate[18];
-        const gic_real t326 = x[1];
-        const gic_real t327 = xd[1];
-        const gic_real t328 = rate[19];
-        const gic_real t329 = x[2];
-        const gic_real t330 = xd[2];
-        const gic_real t331 = rate[20];
-        const gic_real t332 = x[3];
-        const gic_real t333 = xd[3];
-        const gic_real t334 = rate[21];
-        const gic_real t335 = x[4];
-        const gic_real t336 = xd[4];
-        const gic_real t337 = rate[22];
-        const gic_real t338 = -(t84 + t85);
-        const gic_real t339 = -(t87 + t88);
-        const gic_real t340 = -(t90 + t91);
-        const gic_real t341 = -(t93 + t94);
-        const gic_real t342 = -(t95 + t96);
-        const gic_real t343 = road101[0];
-        const gic_real t344 = road113[0];
-        const gic_real t345 = road125[0];
-        const gic_real t346 = road137[0];
-        const gic_real t347 = t298 - R(-888.3445500000001) * t299 - t300 * R(-2659.5891);
-        const gic_real t348 = t302 + t127 * t132 + t139 * t144;
-        out[0] = t303;
-        out[1] = t304;
-        out[2] = t305;
-        out[3] = t306;
-        out[4] = t307;
-        out[5] = t308;
-        out[6] = t309;
-        out[7] = t310;
-        out[8] = t311;
-        out[9] = t312;
-        out[10] = t313;
-        out[11] = t314;
-        out[12] = t315;
-        out[13] = t316;
-        out[14] = t317;
-        out[15] = t318;
-        out[16] = t319;
-        out[17] = t320;
-        out[18] = t321;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t53;
-        out[23] = t54;
-        out[24] = t55;
-        out[25] = t68;
-        out[26] = t69;
-        out[27] = t70;
-        out[28] = t77;
-        out[29] = t78;
-        out[30] = t79;
-        out[31] = t80;
-        out[32] = t322;
-        out[33] = t82;
-        out[34] = t323;
-        out[35] = t324;
-        out[36] = t325;
-        out[37] = t326;
-        out[38] = t327;
-        out[39] = t328;
-        out[40] = t329;
-        out[41] = t330;
-        out[42] = t331;
-        out[43] = t332;
-        out[44] = t333;
-        out[45] = t334;
-        out[46] = t335;
-        out[47] = t336;
-        out[48] = t337;
-        out[49] = t338;
-        out[50] = t339;
-        out[51] = t340;
-        out[52] = t341;
-        out[53] = t342;
-        out[54] = t108;
-        out[55] = t105;
-        out[56] = t104;
-        out[57] = t343;
-        out[58] = t120;
-        out[59] = t117;
-        out[60] = t116;
-        out[61] = t344;
-        out[62] = t132;
-        out[63] = t129;
-        out[64] = t128;
-        out[65] = t345;
-        out[66] = t144;
-        out[67] = t141;
-        out[68] = t140;
-        out[69] = t346;
-        out[70] = t289;
-        out[71] = t347;
-        out[72] = t348;
+        const gic_real t299 = y[SOLID_AXLE_STATE_R_Z] + (t9 * t252 + (t18 * t248 + t23 * t249));
+        const gic_real t300 = y[SOLID_AXLE_STATE_R_Z] + (t9 * t282 + (t18 * t278 + t23 * t279));
+        const gic_real t301 = xd[SOLID_AXLE_X_SPRING_F_L] * t85 + xd[SOLID_AXLE_X_SPRING_F_R] * t88 +
+            xd[SOLID_AXLE_X_SPRING_R_L] * t91 + xd[SOLID_AXLE_X_SPRING_R_R] * t94;
+        const gic_real t302 = t103 * output_tire_f_l_fz - (t301 + xd[SOLID_AXLE_X_RACK] * t96) + t115 *
+            output_tire_f_r_fz;
+        const gic_real output_chassis_x = y[SOLID_AXLE_STATE_R_X];
+        const gic_real output_chassis_y = y[SOLID_AXLE_STATE_R_Y];
+        const gic_real output_chassis_z = y[SOLID_AXLE_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[SOLID_AXLE_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[SOLID_AXLE_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[SOLID_AXLE_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t14 + (t17 * t21 + t22 * t25);
+        const gic_real output_chassis_acceleration_y = t13 * t14 + (t20 * t21 + t24 * t25);
+        const gic_real output_chassis_acceleration_z = t9 * t14 + (t18 * t21 + t23 * t25);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t18, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t24, t22);
+        const gic_real output_chassis_angular_velocity_x = y[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real output_axle_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t81, R(-1.0)), R(1.0)));
+        const gic_real output_spring_f_l_value = x[SOLID_AXLE_X_SPRING_F_L];
+        const gic_real output_spring_f_l_rate = xd[SOLID_AXLE_X_SPRING_F_L];
+        const gic_real output_spring_f_l_acceleration = rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real output_spring_f_r_value = x[SOLID_AXLE_X_SPRING_F_R];
+        const gic_real output_spring_f_r_rate = xd[SOLID_AXLE_X_SPRING_F_R];
+        const gic_real output_spring_f_r_acceleration = rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real output_spring_r_l_value = x[SOLID_AXLE_X_SPRING_R_L];
+        const gic_real output_spring_r_l_rate = xd[SOLID_AXLE_X_SPRING_R_L];
+        const gic_real output_spring_r_l_acceleration = rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real output_spring_r_r_value = x[SOLID_AXLE_X_SPRING_R_R];
+        const gic_real output_spring_r_r_rate = xd[SOLID_AXLE_X_SPRING_R_R];
+        const gic_real output_spring_r_r_acceleration = rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real output_rack_value = x[SOLID_AXLE_X_RACK];
+        const gic_real output_rack_rate = xd[SOLID_AXLE_X_RACK];
+        const gic_real output_rack_acceleration = rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real force_spring_f_l = -(t84 + t85);
+        const gic_real force_spring_f_r = -(t87 + t88);
+        const gic_real force_spring_r_l = -(t90 + t91);
+        const gic_real force_spring_r_r = -(t93 + t94);
+        const gic_real force_rack = -(t95 + t96);
+        const gic_real output_tire_f_l_height = road101[0];
+        const gic_real output_tire_f_r_height = road113[0];
+        const gic_real output_tire_r_l_height = road125[0];
+        const gic_real output_tire_r_r_height = road137[0];
+        const gic_real output_energy_potential = t298 - R(-888.3445500000001) * t299 - t300 * R(-2659.5891);
+        const gic_real output_energy_power = t302 + t127 * output_tire_r_l_fz + t139 * output_tire_r_r_fz;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[SOLID_AXLE_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[SOLID_AXLE_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[SOLID_AXLE_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[SOLID_AXLE_OUTPUT_AXLE_ATTITUDE_ROLL] = output_axle_attitude_roll;
+        out[SOLID_AXLE_OUTPUT_AXLE_ATTITUDE_PITCH] = output_axle_attitude_pitch;
+        out[SOLID_AXLE_OUTPUT_AXLE_ATTITUDE_YAW] = output_axle_attitude_yaw;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_L_VALUE] = output_spring_f_l_value;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_L_RATE] = output_spring_f_l_rate;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_L_ACCELERATION] = output_spring_f_l_acceleration;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_R_VALUE] = output_spring_f_r_value;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_R_RATE] = output_spring_f_r_rate;
+        out[SOLID_AXLE_OUTPUT_SPRING_F_R_ACCELERATION] = output_spring_f_r_acceleration;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_L_VALUE] = output_spring_r_l_value;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_L_RATE] = output_spring_r_l_rate;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_L_ACCELERATION] = output_spring_r_l_acceleration;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_R_VALUE] = output_spring_r_r_value;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_R_RATE] = output_spring_r_r_rate;
+        out[SOLID_AXLE_OUTPUT_SPRING_R_R_ACCELERATION] = output_spring_r_r_acceleration;
+        out[SOLID_AXLE_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[SOLID_AXLE_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[SOLID_AXLE_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[SOLID_AXLE_OUTPUT_FORCE_F_L] = force_spring_f_l;
+        out[SOLID_AXLE_OUTPUT_FORCE_F_R] = force_spring_f_r;
+        out[SOLID_AXLE_OUTPUT_FORCE_R_L] = force_spring_r_l;
+        out[SOLID_AXLE_OUTPUT_FORCE_R_R] = force_spring_r_r;
+        out[SOLID_AXLE_OUTPUT_FORCE_RACK] = force_rack;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[SOLID_AXLE_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[SOLID_AXLE_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[SOLID_AXLE_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[SOLID_AXLE_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[SOLID_AXLE_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -3127,26 +3808,36 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[SOLID_AXLE_STATE_R_X] + (R(0.05422899999999997) * t5 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[SOLID_AXLE_STATE_R_Y] + (R(0.05422899999999997) * t16 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[SOLID_AXLE_STATE_R_Z] + (R(0.05422899999999997) * t21 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] - (R(1.0) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY]));
+        const gic_real t31 = R(1.0) + (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] - (R(1.0) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ]));
+        const gic_real t32 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -3154,12 +3845,14 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] -
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -3170,11 +3863,17 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] *
+            R(3.0379110359107786e-06) + m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] - (R(1.0) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY]));
+        const gic_real t59 = R(1.0) + (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] - (R(1.0) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ]));
+        const gic_real t60 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -3182,12 +3881,14 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] -
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -3198,34 +3899,52 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[128] + (m[137] * R(0.09182100000000004) + (m[136] * R(0.08910630000000008) + m[135] * R(-0.004825999999999997)));
-        const gic_real t85 = m[127] + (m[134] * R(0.09182100000000004) + (m[133] * R(0.08910630000000008) + m[132] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[131] * R(0.09182100000000004) + (m[130] * R(0.08910630000000008) + m[129] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[137] - (m[129] + m[133]));
-        const gic_real t91 = R(1.0) + (m[133] - (m[129] + m[137]));
-        const gic_real t92 = m[133] + m[137];
-        const gic_real t93 = R(1.0) + (m[129] - t92);
-        const gic_real t94 = R(1.0) + (m[129] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[SOLID_AXLE_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[SOLID_AXLE_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[SOLID_AXLE_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] -
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY]));
+        const gic_real t91 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] -
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ]));
+        const gic_real t92 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[132] - m[130];
+        const gic_real t98 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[131] - m[135];
+        const gic_real t100 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[136] - m[134];
+        const gic_real t102 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[134] + m[136];
-        const gic_real t108 = m[131] + m[135];
+        const gic_real t107 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY];
+        const gic_real t108 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[130] + m[132];
+        const gic_real t111 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -3235,34 +3954,52 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[164] + (m[173] * R(0.09182100000000004) + (m[172] * R(-0.08910630000000008) + m[171] * R(-0.004825999999999997)));
-        const gic_real t122 = m[163] + (m[170] * R(0.09182100000000004) + (m[169] * R(-0.08910630000000008) + m[168] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[167] * R(0.09182100000000004) + (m[166] * R(-0.08910630000000008) + m[165] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[173] - (m[165] + m[169]));
-        const gic_real t128 = R(1.0) + (m[169] - (m[165] + m[173]));
-        const gic_real t129 = m[169] + m[173];
-        const gic_real t130 = R(1.0) + (m[165] - t129);
-        const gic_real t131 = R(1.0) + (m[165] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.08910630000000008) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[SOLID_AXLE_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[SOLID_AXLE_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[SOLID_AXLE_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] -
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY]));
+        const gic_real t128 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] -
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ]));
+        const gic_real t129 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[168] - m[166];
+        const gic_real t135 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[167] - m[171];
+        const gic_real t137 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[172] - m[170];
+        const gic_real t139 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[170] + m[172];
-        const gic_real t145 = m[167] + m[171];
+        const gic_real t144 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY];
+        const gic_real t145 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[166] + m[168];
+        const gic_real t148 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -3272,34 +4009,46 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = m[92] + (m[101] * R(-0.17228899999999997) + (m[100] * R(0.12) + m[99] * R(-0.03340499999999991)));
-        const gic_real t159 = m[91] + (m[98] * R(-0.17228899999999997) + (m[97] * R(0.12) + m[96] * R(-0.03340499999999991)));
-        const gic_real t160 = m[90] + (m[95] * R(-0.17228899999999997) + (m[94] * R(0.12) + m[93] * R(-0.03340499999999991)));
-        const gic_real t161 = y[0] + (t5 * t158 + (t9 * t159 + t12 * t160));
-        const gic_real t162 = y[1] + (t16 * t158 + (t18 * t159 + t19 * t160));
-        const gic_real t163 = y[2] + (t21 * t158 + (t22 * t159 + t23 * t160));
-        const gic_real t164 = R(1.0) + (m[101] - (m[93] + m[97]));
-        const gic_real t165 = R(1.0) + (m[97] - (m[93] + m[101]));
-        const gic_real t166 = m[97] + m[101];
-        const gic_real t167 = R(1.0) + (m[93] - t166);
-        const gic_real t168 = R(1.0) + (m[93] + t166);
+        /* pose of axle */
+        const gic_real t158 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(0.12) + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] *
+            R(-0.03340499999999991)));
+        const gic_real t159 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(0.12) + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] *
+            R(-0.03340499999999991)));
+        const gic_real t160 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(0.12) + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] *
+            R(-0.03340499999999991)));
+        const gic_real t161 = y[SOLID_AXLE_STATE_R_X] + (t5 * t158 + (t9 * t159 + t12 * t160));
+        const gic_real t162 = y[SOLID_AXLE_STATE_R_Y] + (t16 * t158 + (t18 * t159 + t19 * t160));
+        const gic_real t163 = y[SOLID_AXLE_STATE_R_Z] + (t21 * t158 + (t22 * t159 + t23 * t160));
+        const gic_real t164 = R(1.0) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] -
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY]));
+        const gic_real t165 = R(1.0) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] -
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ]));
+        const gic_real t166 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ];
+        const gic_real t167 = R(1.0) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] - t166);
+        const gic_real t168 = R(1.0) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] + t166);
         const gic_real t169 = GIC_MAX(t167, t168);
         const gic_real t170 = GIC_MAX(t165, t169);
         const gic_real t171 = t164 - t170;
-        const gic_real t172 = m[96] - m[94];
+        const gic_real t172 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY];
         const gic_real t173 = t165 - t169;
-        const gic_real t174 = m[95] - m[99];
+        const gic_real t174 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX];
         const gic_real t175 = t167 - t168;
-        const gic_real t176 = m[100] - m[98];
+        const gic_real t176 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ];
         const gic_real t177 = (t171 > GIC_R(0) ? t172 : (t173 > GIC_R(0) ? t174 : (t175 > GIC_R(0) ? t176 : t168)));
         const gic_real t178 = R(0.5) / GIC_SQRT(GIC_MAX(t164, t170));
         const gic_real t179 = t177 * t178;
         const gic_real t180 = e[0] * t179;
-        const gic_real t181 = m[98] + m[100];
-        const gic_real t182 = m[95] + m[99];
+        const gic_real t181 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY];
+        const gic_real t182 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX];
         const gic_real t183 = (t171 > GIC_R(0) ? t164 : (t173 > GIC_R(0) ? t181 : (t175 > GIC_R(0) ? t182 : t172)));
         const gic_real t184 = t183 * t178;
-        const gic_real t185 = m[94] + m[96];
+        const gic_real t185 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX];
         const gic_real t186 = (t171 > GIC_R(0) ? t181 : (t173 > GIC_R(0) ? t165 : (t175 > GIC_R(0) ? t185 : t174)));
         const gic_real t187 = t186 * t178;
         const gic_real t188 = (t171 > GIC_R(0) ? t182 : (t173 > GIC_R(0) ? t185 : (t175 > GIC_R(0) ? t167 : t176)));
@@ -3309,9 +4058,9 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t192 = e[2] * t184 - e[3] * t187 + (e[1] * t179 + e[0] * t189);
         const gic_real t193 = e[3] * t189 - e[1] * t184 + (e[2] * t179 + e[0] * t187);
         const gic_real t194 = e[1] * t187 - e[2] * t189 + (e[3] * t179 + e[0] * t184);
-        const gic_real t195 = y[0];
-        const gic_real t196 = y[1];
-        const gic_real t197 = y[2];
+        const gic_real t195 = y[SOLID_AXLE_STATE_R_X];
+        const gic_real t196 = y[SOLID_AXLE_STATE_R_Y];
+        const gic_real t197 = y[SOLID_AXLE_STATE_R_Z];
         const gic_real t198 = e[0];
         const gic_real t199 = e[1];
         const gic_real t200 = e[2];
@@ -3346,62 +4095,62 @@ static void solid_axle_place(const solid_axle *self, const gic_real *y, const gi
         const gic_real t229 = (t191 > GIC_R(0) ? t192 : -t192);
         const gic_real t230 = (t191 > GIC_R(0) ? t193 : -t193);
         const gic_real t231 = (t191 > GIC_R(0) ? t194 : -t194);
-        pose[0] = t195;
-        pose[1] = t196;
-        pose[2] = t197;
-        pose[3] = t198;
-        pose[4] = t199;
-        pose[5] = t200;
-        pose[6] = t201;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t202;
-        pose[11] = t203;
-        pose[12] = t204;
-        pose[13] = t205;
-        pose[14] = t206;
-        pose[15] = t207;
-        pose[16] = t208;
-        pose[17] = t209;
-        pose[18] = t210;
-        pose[19] = t211;
-        pose[20] = t212;
-        pose[21] = t213;
-        pose[22] = t214;
-        pose[23] = t215;
-        pose[24] = t216;
-        pose[25] = t217;
-        pose[26] = t218;
-        pose[27] = t219;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t220;
-        pose[32] = t221;
-        pose[33] = t222;
-        pose[34] = t223;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t224;
-        pose[39] = t225;
-        pose[40] = t226;
-        pose[41] = t227;
-        pose[42] = t161;
-        pose[43] = t162;
-        pose[44] = t163;
-        pose[45] = t228;
-        pose[46] = t229;
-        pose[47] = t230;
-        pose[48] = t231;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_X] = t195;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_Y] = t196;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_Z] = t197;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_P0] = t198;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_P1] = t199;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_P2] = t200;
+        pose[SOLID_AXLE_POSE_CHASSIS + SOLID_AXLE_Q_P3] = t201;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_X] = t13;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_Y] = t20;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_Z] = t24;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_P0] = t202;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_P1] = t203;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_P2] = t204;
+        pose[SOLID_AXLE_POSE_RACK + SOLID_AXLE_Q_P3] = t205;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_X] = t206;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_Y] = t207;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_Z] = t208;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_P0] = t209;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_P1] = t210;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_P2] = t211;
+        pose[SOLID_AXLE_POSE_LCA_F_L + SOLID_AXLE_Q_P3] = t212;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_X] = t213;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_Y] = t214;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_Z] = t215;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_P0] = t216;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_P1] = t217;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_P2] = t218;
+        pose[SOLID_AXLE_POSE_LCA_F_R + SOLID_AXLE_Q_P3] = t219;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_X] = t87;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_Y] = t88;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_Z] = t89;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_P0] = t220;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_P1] = t221;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_P2] = t222;
+        pose[SOLID_AXLE_POSE_WHEEL_F_L + SOLID_AXLE_Q_P3] = t223;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_X] = t124;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_Y] = t125;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_Z] = t126;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_P0] = t224;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_P1] = t225;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_P2] = t226;
+        pose[SOLID_AXLE_POSE_WHEEL_F_R + SOLID_AXLE_Q_P3] = t227;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_X] = t161;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_Y] = t162;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_Z] = t163;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_P0] = t228;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_P1] = t229;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_P2] = t230;
+        pose[SOLID_AXLE_POSE_AXLE + SOLID_AXLE_Q_P3] = t231;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int solid_axle_residual(const solid_axle *self, gic_real largest[2])
 {
     solid_axle_links links;
@@ -3410,78 +4159,80 @@ static GIC_COLD GIC_APART int solid_axle_residual(const solid_axle *self, gic_re
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[SOLID_AXLE_X_RACK];
+    links.rate[0] = self->xd[SOLID_AXLE_X_RACK];
+    solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + SOLID_AXLE_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = SOLID_AXLE_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[SOLID_AXLE_X_SPRING_F_L];
+    links.rate[0] = self->xd[SOLID_AXLE_X_SPRING_F_L];
+    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[0], &links, self->motion + SOLID_AXLE_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = SOLID_AXLE_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[SOLID_AXLE_X_SPRING_F_R];
+    links.rate[0] = self->xd[SOLID_AXLE_X_SPRING_F_R];
+    solid_axle_residual_lca_f_l(solid_axle_k_lca_f_l[1], &links, self->motion + SOLID_AXLE_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(6.614208792496358)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = SOLID_AXLE_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    links.x[1] = self->x[3];
-    links.rate[1] = self->xd[3];
-    solid_axle_residual_axle(solid_axle_k_axle[0], &links, self->motion + 90, one);
+    links.x[0] = self->x[SOLID_AXLE_X_SPRING_R_L];
+    links.rate[0] = self->xd[SOLID_AXLE_X_SPRING_R_L];
+    links.x[1] = self->x[SOLID_AXLE_X_SPRING_R_R];
+    links.rate[1] = self->xd[SOLID_AXLE_X_SPRING_R_R];
+    solid_axle_residual_axle(solid_axle_k_axle[0], &links, self->motion + SOLID_AXLE_MOTION_AXLE, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(2.410792498728342)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = SOLID_AXLE_SUBSET_AXLE;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[0], &links, self->motion + 126, one);
+    links.known[0] = self->motion + SOLID_AXLE_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + SOLID_AXLE_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[SOLID_AXLE_X_RACK];
+    links.rate[0] = self->xd[SOLID_AXLE_X_RACK];
+    links.x[1] = self->x[SOLID_AXLE_X_SPRING_F_L];
+    links.rate[1] = self->xd[SOLID_AXLE_X_SPRING_F_L];
+    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[0], &links, self->motion + SOLID_AXLE_MOTION_WHEEL_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = SOLID_AXLE_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[1], &links, self->motion + 162, one);
+    links.known[0] = self->motion + SOLID_AXLE_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + SOLID_AXLE_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[SOLID_AXLE_X_RACK];
+    links.rate[0] = self->xd[SOLID_AXLE_X_RACK];
+    links.x[1] = self->x[SOLID_AXLE_X_SPRING_F_R];
+    links.rate[1] = self->xd[SOLID_AXLE_X_SPRING_F_R];
+    solid_axle_residual_wheel_f_l(solid_axle_k_wheel_f_l[1], &links, self->motion + SOLID_AXLE_MOTION_WHEEL_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = SOLID_AXLE_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than solid_axle_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than solid_axle_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t8 = rate[SOLID_AXLE_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -3489,303 +4240,500 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
-        const gic_real t17 = y[16] * R(0.056);
-        const gic_real t18 = y[16] * R(0.21300000000000008);
-        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[SOLID_AXLE_STATE_V_Y] + t15 * rate[SOLID_AXLE_STATE_V_X]);
+        const gic_real t17 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[SOLID_AXLE_STATE_OMEGA_X] * t17 + y[SOLID_AXLE_STATE_OMEGA_Z] * t18 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - rate[SOLID_AXLE_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[SOLID_AXLE_STATE_OMEGA_Y] * t1 - y[SOLID_AXLE_STATE_OMEGA_Z] * t2 +
+            rate[SOLID_AXLE_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[SOLID_AXLE_STATE_V_Y] + t27 * rate[SOLID_AXLE_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] + (R(1.438648) * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t31 = y[SOLID_AXLE_STATE_OMEGA_X] * t29 - y[SOLID_AXLE_STATE_OMEGA_Y] * t30 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * rate[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            rate[SOLID_AXLE_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t36 = rate[22] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[17] * t37 + y[16] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[17] * t40 + y[16] * t42;
-        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t47 = m[42] * t46;
-        const gic_real t48 = m[48] * t45 - m[42] * t47;
-        const gic_real t49 = R(1.688965) * y[17];
-        const gic_real t50 = t49 - y[15] * t46 - t47 - t47;
+        const gic_real t34 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t35 = y[SOLID_AXLE_STATE_OMEGA_Z] * t30 - y[SOLID_AXLE_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[SOLID_AXLE_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t36 = rate[SOLID_AXLE_STATE_RACK_RATE] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] *
+            R(0.4469));
+        const gic_real t38 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t39 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t40 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * t38 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * t39;
+        const gic_real t41 = y[SOLID_AXLE_STATE_OMEGA_Z] * t37 + y[SOLID_AXLE_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * t38 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * t39;
+        const gic_real t43 = y[SOLID_AXLE_STATE_OMEGA_Z] * t40 + y[SOLID_AXLE_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[SOLID_AXLE_STATE_OMEGA_Y] * t41 - y[SOLID_AXLE_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] + rate[SOLID_AXLE_STATE_OMEGA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_F_L_RATE]);
+        const gic_real t45 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t47 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t46;
+        const gic_real t48 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t45 -
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t47;
+        const gic_real t49 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t50 = t49 - y[SOLID_AXLE_STATE_OMEGA_X] * t46 - t47 - t47;
         const gic_real t51 = R(0.307086) + t45;
-        const gic_real t52 = y[16] * t46 - y[17] * t51;
-        const gic_real t53 = R(1.688965) * rate[16];
-        const gic_real t54 = y[15] * t50 - y[16] * t52 + (rate[15] * t51 - t53);
-        const gic_real t55 = t48 + (t28 + t54) + rate[18] * (m[54] * t45);
+        const gic_real t52 = y[SOLID_AXLE_STATE_OMEGA_Y] * t46 - y[SOLID_AXLE_STATE_OMEGA_Z] * t51;
+        const gic_real t53 = R(1.688965) * rate[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t54 = y[SOLID_AXLE_STATE_OMEGA_X] * t50 - y[SOLID_AXLE_STATE_OMEGA_Y] * t52 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t51 - t53);
+        const gic_real t55 = t48 + (t28 + t54) + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t45);
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[16];
-        const gic_real t59 = t57 + (t57 + (y[15] * t51 - t58));
-        const gic_real t60 = R(1.688965) * rate[17];
-        const gic_real t61 = y[17] * t52 - y[15] * t59 + (t60 - rate[15] * t46);
-        const gic_real t62 = m[42] * t57 + m[48] * t46;
-        const gic_real t63 = t16 + t61 - t62 - rate[18] * (m[54] * t46);
+        const gic_real t57 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[SOLID_AXLE_STATE_OMEGA_X] * t51 - t58));
+        const gic_real t60 = R(1.688965) * rate[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t61 = y[SOLID_AXLE_STATE_OMEGA_Z] * t52 - y[SOLID_AXLE_STATE_OMEGA_X] * t59 + (t60 -
+            rate[SOLID_AXLE_STATE_OMEGA_X] * t46);
+        const gic_real t62 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t57 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t46;
+        const gic_real t63 = t16 + t61 - t62 - rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t46);
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t46 * t64);
-        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[17] * t67 + y[16] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[17] * t70 + y[16] * t72;
-        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = m[78] * t75 - m[72] * t77;
-        const gic_real t79 = t49 - y[15] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[SOLID_AXLE_STATE_OMEGA_X] + (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t33 -
+            t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] *
+            R(0.4469));
+        const gic_real t68 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t69 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t70 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * t68 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * t69;
+        const gic_real t71 = y[SOLID_AXLE_STATE_OMEGA_Z] * t67 + y[SOLID_AXLE_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * t68 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * t69;
+        const gic_real t73 = y[SOLID_AXLE_STATE_OMEGA_Z] * t70 + y[SOLID_AXLE_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[SOLID_AXLE_STATE_OMEGA_Y] * t71 - y[SOLID_AXLE_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] + rate[SOLID_AXLE_STATE_OMEGA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_F_R_RATE]);
+        const gic_real t75 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t76;
+        const gic_real t78 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t75 -
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t77;
+        const gic_real t79 = t49 - y[SOLID_AXLE_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t80 = R(-0.307086) + t75;
-        const gic_real t81 = y[16] * t76 - y[17] * t80;
-        const gic_real t82 = y[15] * t79 - y[16] * t81 + (rate[15] * t80 - t53);
-        const gic_real t83 = t78 + (t28 + t82) + rate[19] * (m[84] * t75);
+        const gic_real t81 = y[SOLID_AXLE_STATE_OMEGA_Y] * t76 - y[SOLID_AXLE_STATE_OMEGA_Z] * t80;
+        const gic_real t82 = y[SOLID_AXLE_STATE_OMEGA_X] * t79 - y[SOLID_AXLE_STATE_OMEGA_Y] * t81 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t80 - t53);
+        const gic_real t83 = t78 + (t28 + t82) + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t75);
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[15] * t80 - t58));
-        const gic_real t87 = y[17] * t81 - y[15] * t86 + (t60 - rate[15] * t76);
-        const gic_real t88 = m[72] * t85 + m[78] * t76;
-        const gic_real t89 = t16 + t87 - t88 - rate[19] * (m[84] * t76);
+        const gic_real t85 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[SOLID_AXLE_STATE_OMEGA_X] * t80 - t58));
+        const gic_real t87 = y[SOLID_AXLE_STATE_OMEGA_Z] * t81 - y[SOLID_AXLE_STATE_OMEGA_X] * t86 + (t60 -
+            rate[SOLID_AXLE_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t85 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t76;
+        const gic_real t89 = t16 + t87 - t88 - rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t76);
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[139] + y[16];
-        const gic_real t93 = m[137] * (m[137] * R(4.7728205)) + (m[136] * (m[136] * R(7.58122)) + m[135] * (m[135] * R(4.8947505)));
-        const gic_real t94 = m[140] + y[17];
-        const gic_real t95 = m[134] * R(4.7728205);
-        const gic_real t96 = m[133] * R(7.58122);
-        const gic_real t97 = m[132] * R(4.8947505);
-        const gic_real t98 = m[137] * t95 + (m[136] * t96 + m[135] * t97);
-        const gic_real t99 = m[131] * R(4.7728205);
-        const gic_real t100 = m[130] * R(7.58122);
-        const gic_real t101 = m[129] * R(4.8947505);
-        const gic_real t102 = m[137] * t99 + (m[136] * t100 + m[135] * t101);
-        const gic_real t103 = m[138] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t92 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t93 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t94 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t95 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t97 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t98 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t95 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t96 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            t97);
+        const gic_real t99 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t100 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t101 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t102 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t99 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t100 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * t101);
+        const gic_real t103 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
-        const gic_real t105 = m[134] * t95 + (m[133] * t96 + m[132] * t97);
-        const gic_real t106 = m[134] * t99 + (m[133] * t100 + m[132] * t101);
+        const gic_real t105 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t95 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t96 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] *
+            t97);
+        const gic_real t106 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t99 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t100 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * t101);
         const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
-        const gic_real t108 = m[146] + (rate[17] + (m[139] * y[15] - m[138] * y[16])) + m[152] * rate[22];
-        const gic_real t109 = t108 + m[158] * rate[18];
-        const gic_real t110 = m[145] + (rate[16] + (m[138] * y[17] - m[140] * y[15])) + m[151] * rate[22];
-        const gic_real t111 = t110 + m[157] * rate[18];
-        const gic_real t112 = m[131] * t99 + (m[130] * t100 + m[129] * t101);
-        const gic_real t113 = m[144] + (rate[15] + (m[140] * y[16] - m[139] * y[17])) + m[150] * rate[22];
-        const gic_real t114 = t113 + m[156] * rate[18];
+        const gic_real t108 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t109 = t108 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t110 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t111 = t110 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t112 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * t99 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * t100 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * t101);
+        const gic_real t113 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t114 = t113 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
         const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[134] * R(0.09182100000000004);
-        const gic_real t117 = m[132] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[133] * R(0.08910630000000008));
-        const gic_real t119 = m[131] * R(0.09182100000000004);
-        const gic_real t120 = m[129] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[130] * R(0.08910630000000008));
-        const gic_real t122 = m[137] * R(0.09182100000000004);
-        const gic_real t123 = m[135] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[136] * R(0.08910630000000008));
-        const gic_real t125 = m[140] * t121 - m[138] * t124;
-        const gic_real t126 = m[139] * t124 - m[140] * t118;
-        const gic_real t127 = m[138] * t125 - m[139] * t126 + (m[144] * t118 - m[145] * t121);
-        const gic_real t128 = m[149] + t127;
-        const gic_real t129 = m[142] + t125;
+        /* wheel tire_f_l */
+        const gic_real t116 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.08910630000000008));
+        const gic_real t119 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.08910630000000008));
+        const gic_real t122 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t125 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t121 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t124;
+        const gic_real t126 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t124 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t118;
+        const gic_real t127 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t125 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t126 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t118 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t121);
+        const gic_real t128 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] + t125;
         const gic_real t130 = R(1.653405) + t121;
-        const gic_real t131 = m[128] + t124;
-        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
-        const gic_real t133 = m[127] + t118;
-        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
-        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[150] * t118 - m[151] * t121);
-        const gic_real t137 = t136 + rate[18] * (m[161] + (m[156] * t118 - m[157] * t121));
+        const gic_real t131 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t130 - y[SOLID_AXLE_STATE_OMEGA_X] * t131));
+        const gic_real t133 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t131 - y[SOLID_AXLE_STATE_OMEGA_Z] * t133));
+        const gic_real t135 = y[SOLID_AXLE_STATE_OMEGA_X] * t132 - y[SOLID_AXLE_STATE_OMEGA_Y] * t134 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t133 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t118 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t121);
+        const gic_real t137 = t136 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            t118 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[138] * t118 - m[139] * t121;
-        const gic_real t140 = m[140] * t126 - m[138] * t139 + (m[146] * t121 - m[144] * t124);
-        const gic_real t141 = m[148] + t140;
-        const gic_real t142 = m[143] + t139;
-        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
-        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[152] * t121 - m[150] * t124);
-        const gic_real t146 = t145 + rate[18] * (m[160] + (m[158] * t121 - m[156] * t124));
+        const gic_real t139 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t118 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t121;
+        const gic_real t140 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t126 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t139 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t121 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t124);
+        const gic_real t141 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[SOLID_AXLE_STATE_OMEGA_X] * t133 - y[SOLID_AXLE_STATE_OMEGA_Y] * t130));
+        const gic_real t144 = y[SOLID_AXLE_STATE_OMEGA_Z] * t134 - y[SOLID_AXLE_STATE_OMEGA_X] * t143 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t130 - rate[SOLID_AXLE_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t121 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t124);
+        const gic_real t146 = t145 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            t121 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[127] * t138 - m[128] * t147));
-        const gic_real t150 = m[175] + y[16];
-        const gic_real t151 = m[173] * (m[173] * R(4.7728205)) + (m[172] * (m[172] * R(7.58122)) + m[171] * (m[171] * R(4.8947505)));
-        const gic_real t152 = m[176] + y[17];
-        const gic_real t153 = m[170] * R(4.7728205);
-        const gic_real t154 = m[169] * R(7.58122);
-        const gic_real t155 = m[168] * R(4.8947505);
-        const gic_real t156 = m[173] * t153 + (m[172] * t154 + m[171] * t155);
-        const gic_real t157 = m[167] * R(4.7728205);
-        const gic_real t158 = m[166] * R(7.58122);
-        const gic_real t159 = m[165] * R(4.8947505);
-        const gic_real t160 = m[173] * t157 + (m[172] * t158 + m[171] * t159);
-        const gic_real t161 = m[174] + y[15];
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t138 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] *
+            t147));
+        /* inertia of wheel_f_r */
+        const gic_real t150 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t151 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t152 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t153 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t155 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t156 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t153 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t154 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t155);
+        const gic_real t157 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t159 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t160 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t157 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t158 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t159);
+        const gic_real t161 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
-        const gic_real t163 = m[170] * t153 + (m[169] * t154 + m[168] * t155);
-        const gic_real t164 = m[170] * t157 + (m[169] * t158 + m[168] * t159);
+        const gic_real t163 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t153 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t154 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t155);
+        const gic_real t164 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t157 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t158 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t159);
         const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
-        const gic_real t166 = m[182] + (rate[17] + (m[175] * y[15] - m[174] * y[16])) + m[188] * rate[22];
-        const gic_real t167 = t166 + m[194] * rate[19];
-        const gic_real t168 = m[181] + (rate[16] + (m[174] * y[17] - m[176] * y[15])) + m[187] * rate[22];
-        const gic_real t169 = t168 + m[193] * rate[19];
-        const gic_real t170 = m[167] * t157 + (m[166] * t158 + m[165] * t159);
-        const gic_real t171 = m[180] + (rate[15] + (m[176] * y[16] - m[175] * y[17])) + m[186] * rate[22];
-        const gic_real t172 = t171 + m[192] * rate[19];
+        const gic_real t166 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t167 = t166 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t168 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t169 = t168 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t170 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * t157 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * t158 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * t159);
+        const gic_real t171 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t172 = t171 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
         const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[170] * R(0.09182100000000004);
-        const gic_real t175 = m[168] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[169] * R(-0.08910630000000008));
-        const gic_real t177 = m[167] * R(0.09182100000000004);
-        const gic_real t178 = m[165] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[166] * R(-0.08910630000000008));
-        const gic_real t180 = m[173] * R(0.09182100000000004);
-        const gic_real t181 = m[171] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[172] * R(-0.08910630000000008));
-        const gic_real t183 = m[176] * t179 - m[174] * t182;
-        const gic_real t184 = m[175] * t182 - m[176] * t176;
-        const gic_real t185 = m[174] * t183 - m[175] * t184 + (m[180] * t176 - m[181] * t179);
-        const gic_real t186 = m[185] + t185;
-        const gic_real t187 = m[178] + t183;
+        /* wheel tire_f_r */
+        const gic_real t174 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t177 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t180 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t183 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t179 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t182;
+        const gic_real t184 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t182 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t176;
+        const gic_real t185 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t183 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t184 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t179);
+        const gic_real t186 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] + t183;
         const gic_real t188 = R(1.653405) + t179;
-        const gic_real t189 = m[164] + t182;
-        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
-        const gic_real t191 = m[163] + t176;
-        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
-        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[186] * t176 - m[187] * t179);
-        const gic_real t195 = t194 + rate[19] * (m[197] + (m[192] * t176 - m[193] * t179));
+        const gic_real t189 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t188 - y[SOLID_AXLE_STATE_OMEGA_X] * t189));
+        const gic_real t191 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t189 - y[SOLID_AXLE_STATE_OMEGA_Z] * t191));
+        const gic_real t193 = y[SOLID_AXLE_STATE_OMEGA_X] * t190 - y[SOLID_AXLE_STATE_OMEGA_Y] * t192 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t191 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t179);
+        const gic_real t195 = t194 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            t176 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[174] * t176 - m[175] * t179;
-        const gic_real t198 = m[176] * t184 - m[174] * t197 + (m[182] * t179 - m[180] * t182);
-        const gic_real t199 = m[184] + t198;
-        const gic_real t200 = m[179] + t197;
-        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
-        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[188] * t179 - m[186] * t182);
-        const gic_real t204 = t203 + rate[19] * (m[196] + (m[194] * t179 - m[192] * t182));
+        const gic_real t197 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t179;
+        const gic_real t198 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t184 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t197 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t179 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t182);
+        const gic_real t199 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[SOLID_AXLE_STATE_OMEGA_X] * t191 - y[SOLID_AXLE_STATE_OMEGA_Y] * t188));
+        const gic_real t202 = y[SOLID_AXLE_STATE_OMEGA_Z] * t192 - y[SOLID_AXLE_STATE_OMEGA_X] * t201 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t188 - rate[SOLID_AXLE_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t179 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t182);
+        const gic_real t204 = t203 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            t179 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[103] + y[16];
-        const gic_real t208 = m[101] * (m[101] * R(163.103702)) + (m[100] * (m[100] * R(15.48644)) + m[99] * (m[99] * R(163.347562)));
-        const gic_real t209 = m[104] + y[17];
-        const gic_real t210 = m[98] * R(163.103702);
-        const gic_real t211 = m[97] * R(15.48644);
-        const gic_real t212 = m[96] * R(163.347562);
-        const gic_real t213 = m[101] * t210 + (m[100] * t211 + m[99] * t212);
-        const gic_real t214 = m[95] * R(163.103702);
-        const gic_real t215 = m[94] * R(15.48644);
-        const gic_real t216 = m[93] * R(163.347562);
-        const gic_real t217 = m[101] * t214 + (m[100] * t215 + m[99] * t216);
-        const gic_real t218 = m[102] + y[15];
+        /* inertia of axle */
+        const gic_real t207 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t208 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(163.103702)) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(15.48644)) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] *
+            R(163.347562)));
+        const gic_real t209 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t210 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(163.103702);
+        const gic_real t211 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(15.48644);
+        const gic_real t212 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(163.347562);
+        const gic_real t213 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t210 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t211 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t212);
+        const gic_real t214 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(163.103702);
+        const gic_real t215 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(15.48644);
+        const gic_real t216 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(163.347562);
+        const gic_real t217 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t214 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t215 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t216);
+        const gic_real t218 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t219 = t208 * t209 + (t213 * t207 + t217 * t218);
-        const gic_real t220 = m[98] * t210 + (m[97] * t211 + m[96] * t212);
-        const gic_real t221 = m[98] * t214 + (m[97] * t215 + m[96] * t216);
+        const gic_real t220 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t210 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t211 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t212);
+        const gic_real t221 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t214 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t215 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t216);
         const gic_real t222 = t213 * t209 + (t220 * t207 + t221 * t218);
-        const gic_real t223 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
-        const gic_real t224 = t223 + m[122] * rate[21];
-        const gic_real t225 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
-        const gic_real t226 = t225 + m[121] * rate[21];
-        const gic_real t227 = m[95] * t214 + (m[94] * t215 + m[93] * t216);
-        const gic_real t228 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
-        const gic_real t229 = t228 + m[120] * rate[21];
+        const gic_real t223 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t224 = t223 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t225 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t226 = t225 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t227 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * t214 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * t215 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t216);
+        const gic_real t228 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t229 = t228 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
         const gic_real t230 = t207 * t219 - t209 * t222 + (t217 * t224 + (t221 * t226 + t227 * t229));
-        const gic_real t231 = m[98] * R(-0.17228899999999997);
-        const gic_real t232 = m[96] * R(-0.03340499999999991);
-        const gic_real t233 = t231 + (t232 + m[97] * R(0.12));
-        const gic_real t234 = m[95] * R(-0.17228899999999997);
-        const gic_real t235 = m[93] * R(-0.03340499999999991);
-        const gic_real t236 = t234 + (t235 + m[94] * R(0.12));
-        const gic_real t237 = m[101] * R(-0.17228899999999997);
-        const gic_real t238 = m[99] * R(-0.03340499999999991);
-        const gic_real t239 = t237 + (t238 + m[100] * R(0.12));
-        const gic_real t240 = m[104] * t236 - m[102] * t239;
-        const gic_real t241 = m[103] * t239 - m[104] * t233;
-        const gic_real t242 = m[102] * t240 - m[103] * t241 + (m[108] * t233 - m[109] * t236);
-        const gic_real t243 = m[113] + t242;
-        const gic_real t244 = m[106] + t240;
-        const gic_real t245 = m[90] + t236;
-        const gic_real t246 = m[92] + t239;
-        const gic_real t247 = t244 + (t244 + (y[17] * t245 - y[15] * t246));
-        const gic_real t248 = m[105] + t241;
-        const gic_real t249 = m[91] + t233;
-        const gic_real t250 = t248 + (t248 + (y[16] * t246 - y[17] * t249));
-        const gic_real t251 = y[15] * t247 - y[16] * t250 + (rate[15] * t249 - rate[16] * t245);
-        const gic_real t252 = t243 + (t28 + t251) + rate[20] * (m[119] + (m[114] * t233 - m[115] * t236));
-        const gic_real t253 = t252 + rate[21] * (m[125] + (m[120] * t233 - m[121] * t236));
+        /* wheel tire_r_l */
+        const gic_real t231 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t232 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t233 = t231 + (t232 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(0.12));
+        const gic_real t234 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t235 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t236 = t234 + (t235 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(0.12));
+        const gic_real t237 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t238 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t239 = t237 + (t238 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(0.12));
+        const gic_real t240 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t236 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t239;
+        const gic_real t241 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t239 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t233;
+        const gic_real t242 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t240 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t241 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] *
+            t233 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] * t236);
+        const gic_real t243 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Z] + t242;
+        const gic_real t244 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] + t240;
+        const gic_real t245 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t236;
+        const gic_real t246 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t239;
+        const gic_real t247 = t244 + (t244 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t245 - y[SOLID_AXLE_STATE_OMEGA_X] * t246));
+        const gic_real t248 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] + t241;
+        const gic_real t249 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t233;
+        const gic_real t250 = t248 + (t248 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t246 - y[SOLID_AXLE_STATE_OMEGA_Z] * t249));
+        const gic_real t251 = y[SOLID_AXLE_STATE_OMEGA_X] * t247 - y[SOLID_AXLE_STATE_OMEGA_Y] * t250 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t249 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t245);
+        const gic_real t252 = t243 + (t28 + t251) + rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * t233 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t236));
+        const gic_real t253 = t252 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t233 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t236));
         const gic_real t254 = t253 * R(271.11);
-        const gic_real t255 = m[102] * t233 - m[103] * t236;
-        const gic_real t256 = m[104] * t241 - m[102] * t255 + (m[110] * t236 - m[108] * t239);
-        const gic_real t257 = m[112] + t256;
-        const gic_real t258 = m[107] + t255;
-        const gic_real t259 = t258 + (t258 + (y[15] * t249 - y[16] * t245));
-        const gic_real t260 = y[17] * t250 - y[15] * t259 + (rate[17] * t245 - rate[15] * t246);
-        const gic_real t261 = t257 + (t16 + t260) + rate[20] * (m[118] + (m[116] * t236 - m[114] * t239));
-        const gic_real t262 = t261 + rate[21] * (m[124] + (m[122] * t236 - m[120] * t239));
+        const gic_real t255 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t233 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t236;
+        const gic_real t256 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t241 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t255 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] *
+            t236 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] * t239);
+        const gic_real t257 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Y] + t256;
+        const gic_real t258 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] + t255;
+        const gic_real t259 = t258 + (t258 + (y[SOLID_AXLE_STATE_OMEGA_X] * t249 - y[SOLID_AXLE_STATE_OMEGA_Y] * t245));
+        const gic_real t260 = y[SOLID_AXLE_STATE_OMEGA_Z] * t250 - y[SOLID_AXLE_STATE_OMEGA_X] * t259 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t245 - rate[SOLID_AXLE_STATE_OMEGA_X] * t246);
+        const gic_real t261 = t257 + (t16 + t260) + rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t236 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * t239));
+        const gic_real t262 = t261 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t236 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t239));
         const gic_real t263 = t262 * R(271.11);
         const gic_real t264 = t230 + (t233 * t254 - t239 * t263);
-        const gic_real t265 = t149 + (t206 + (m[163] * t196 - m[164] * t205)) + (t264 + (m[91] * t254 - m[92] * t263));
-        const gic_real t266 = t231 + (m[97] * R(1.029701) + t232);
-        const gic_real t267 = t234 + (m[94] * R(1.029701) + t235);
-        const gic_real t268 = m[91] + t266;
-        const gic_real t269 = m[90] + t267;
-        const gic_real t270 = m[107] + (m[102] * t266 - m[103] * t267) + (y[15] * t268 - y[16] * t269);
-        const gic_real t271 = t237 + (m[100] * R(1.029701) + t238);
-        const gic_real t272 = m[92] + t271;
-        const gic_real t273 = m[106] + (m[104] * t267 - m[102] * t271) + (y[17] * t269 - y[15] * t272);
+        const gic_real t265 = t149 + (t206 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t196 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t205)) + (t264 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t254 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t263));
+        const gic_real t266 = t231 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t232);
+        const gic_real t267 = t234 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t235);
+        const gic_real t268 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t266;
+        const gic_real t269 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t267;
+        const gic_real t270 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t266 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t267) + (y[SOLID_AXLE_STATE_OMEGA_X] * t268 - y[SOLID_AXLE_STATE_OMEGA_Y] * t269);
+        const gic_real t271 = t237 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t238);
+        const gic_real t272 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t271;
+        const gic_real t273 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t267 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t271) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t269 - y[SOLID_AXLE_STATE_OMEGA_X] * t272);
         const gic_real t274 = t13 + t14;
-        const gic_real t275 = m[105] + (m[103] * t271 - m[104] * t266) + (y[16] * t272 - y[17] * t268);
-        const gic_real t276 = y[13] + (t24 * t270 + (t12 * t273 + t274 * t275));
+        const gic_real t275 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t271 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t266) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t272 - y[SOLID_AXLE_STATE_OMEGA_Z] * t268);
+        const gic_real t276 = y[SOLID_AXLE_STATE_V_Y] + (t24 * t270 + (t12 * t273 + t274 * t275));
         const gic_real t277 = R(1.0) - (t22 + t11);
-        const gic_real t278 = y[0] + (t27 * t272 + (t15 * t268 + t277 * t269));
-        const gic_real t279 = y[1] + (t24 * t272 + (t12 * t268 + t274 * t269));
+        const gic_real t278 = y[SOLID_AXLE_STATE_R_X] + (t27 * t272 + (t15 * t268 + t277 * t269));
+        const gic_real t279 = y[SOLID_AXLE_STATE_R_Y] + (t24 * t272 + (t12 * t268 + t274 * t269));
         gic_real road280[3];
         if (!solid_axle_road_height(self, time, t278, t279, road280))
             return GIC_ERROR_ROAD;
-        const gic_real t281 = y[12] + (t27 * t270 + (t15 * t273 + t277 * t275));
+        const gic_real t281 = y[SOLID_AXLE_STATE_V_X] + (t27 * t270 + (t15 * t273 + t277 * t275));
         const gic_real t282 = t25 - t26;
-        const gic_real t283 = y[14] + (t23 * t270 + (t7 * t273 + t282 * t275));
+        const gic_real t283 = y[SOLID_AXLE_STATE_V_Z] + (t23 * t270 + (t7 * t273 + t282 * t275));
         const gic_real t284 = t276 * road280[2] + t281 * road280[1] - t283;
-        const gic_real t285 = y[2] + (t23 * t272 + (t7 * t268 + t282 * t269));
+        const gic_real t285 = y[SOLID_AXLE_STATE_R_Z] + (t23 * t272 + (t7 * t268 + t282 * t269));
         const gic_real t286 = R(0.4699) + road280[0] - t285;
         const gic_real t287 = GIC_MIN(GIC_MAX(R(100.0) * t286, R(0.0)), R(1.0));
         const gic_real t288 = t284 * (R(500.0) * ((R(3.0) - (t287 + t287)) * (t287 * t287)));
         const gic_real t289 = GIC_MAX(t288 + R(283000.0) * t286, R(0.0));
         const gic_real t290 = t23 * t289;
         const gic_real t291 = t7 * t289;
-        const gic_real t292 = t231 + (t232 + m[97] * R(-0.789701));
-        const gic_real t293 = t234 + (t235 + m[94] * R(-0.789701));
-        const gic_real t294 = m[91] + t292;
-        const gic_real t295 = m[90] + t293;
-        const gic_real t296 = m[107] + (m[102] * t292 - m[103] * t293) + (y[15] * t294 - y[16] * t295);
-        const gic_real t297 = t237 + (t238 + m[100] * R(-0.789701));
-        const gic_real t298 = m[92] + t297;
-        const gic_real t299 = m[106] + (m[104] * t293 - m[102] * t297) + (y[17] * t295 - y[15] * t298);
-        const gic_real t300 = m[105] + (m[103] * t297 - m[104] * t292) + (y[16] * t298 - y[17] * t294);
-        const gic_real t301 = y[13] + (t24 * t296 + (t12 * t299 + t274 * t300));
-        const gic_real t302 = y[0] + (t27 * t298 + (t15 * t294 + t277 * t295));
-        const gic_real t303 = y[1] + (t24 * t298 + (t12 * t294 + t274 * t295));
+        /* wheel tire_r_r */
+        const gic_real t292 = t231 + (t232 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t293 = t234 + (t235 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t294 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t292;
+        const gic_real t295 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t293;
+        const gic_real t296 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t292 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t293) + (y[SOLID_AXLE_STATE_OMEGA_X] * t294 - y[SOLID_AXLE_STATE_OMEGA_Y] * t295);
+        const gic_real t297 = t237 + (t238 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t298 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t297;
+        const gic_real t299 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t293 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t297) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t295 - y[SOLID_AXLE_STATE_OMEGA_X] * t298);
+        const gic_real t300 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t297 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t292) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t298 - y[SOLID_AXLE_STATE_OMEGA_Z] * t294);
+        const gic_real t301 = y[SOLID_AXLE_STATE_V_Y] + (t24 * t296 + (t12 * t299 + t274 * t300));
+        const gic_real t302 = y[SOLID_AXLE_STATE_R_X] + (t27 * t298 + (t15 * t294 + t277 * t295));
+        const gic_real t303 = y[SOLID_AXLE_STATE_R_Y] + (t24 * t298 + (t12 * t294 + t274 * t295));
         gic_real road304[3];
         if (!solid_axle_road_height(self, time, t302, t303, road304))
             return GIC_ERROR_ROAD;
-        const gic_real t305 = y[12] + (t27 * t296 + (t15 * t299 + t277 * t300));
-        const gic_real t306 = y[14] + (t23 * t296 + (t7 * t299 + t282 * t300));
+        const gic_real t305 = y[SOLID_AXLE_STATE_V_X] + (t27 * t296 + (t15 * t299 + t277 * t300));
+        const gic_real t306 = y[SOLID_AXLE_STATE_V_Z] + (t23 * t296 + (t7 * t299 + t282 * t300));
         const gic_real t307 = t301 * road304[2] + t305 * road304[1] - t306;
-        const gic_real t308 = y[2] + (t23 * t298 + (t7 * t294 + t282 * t295));
+        const gic_real t308 = y[SOLID_AXLE_STATE_R_Z] + (t23 * t298 + (t7 * t294 + t282 * t295));
         const gic_real t309 = R(0.4699) + road304[0] - t308;
         const gic_real t310 = GIC_MIN(GIC_MAX(R(100.0) * t309, R(0.0)), R(1.0));
         const gic_real t311 = t307 * (R(500.0) * ((R(3.0) - (t310 + t310)) * (t310 * t310)));
@@ -3793,25 +4741,36 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t313 = t23 * t312;
         const gic_real t314 = t7 * t312;
         const gic_real t315 = t266 * t290 - t271 * t291 + (t292 * t313 - t297 * t314);
-        const gic_real t316 = t174 + (m[169] * R(-0.12319000000000002) + t175);
-        const gic_real t317 = t177 + (m[166] * R(-0.12319000000000002) + t178);
-        const gic_real t318 = m[163] + t316;
+        const gic_real t316 = t174 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) +
+            t175);
+        const gic_real t317 = t177 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) +
+            t178);
+        const gic_real t318 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t316;
         const gic_real t319 = R(1.653405) + t317;
-        const gic_real t320 = m[179] + (m[174] * t316 - m[175] * t317) + (y[15] * t318 - y[16] * t319);
-        const gic_real t321 = t180 + (m[172] * R(-0.12319000000000002) + t181);
-        const gic_real t322 = m[164] + t321;
-        const gic_real t323 = m[178] + (m[176] * t317 - m[174] * t321) + (y[17] * t319 - y[15] * t322);
-        const gic_real t324 = m[175] * t321 - m[176] * t316 + (y[16] * t322 - y[17] * t318);
-        const gic_real t325 = y[13] + (t24 * t320 + (t12 * t323 + t274 * t324));
-        const gic_real t326 = y[0] + (t27 * t322 + (t15 * t318 + t277 * t319));
-        const gic_real t327 = y[1] + (t24 * t322 + (t12 * t318 + t274 * t319));
+        const gic_real t320 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t316 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t317) + (y[SOLID_AXLE_STATE_OMEGA_X] * t318 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t319);
+        const gic_real t321 = t180 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) +
+            t181);
+        const gic_real t322 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t321;
+        const gic_real t323 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t317 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t321) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t319 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t322);
+        const gic_real t324 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t321 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t316 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t322 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t318);
+        const gic_real t325 = y[SOLID_AXLE_STATE_V_Y] + (t24 * t320 + (t12 * t323 + t274 * t324));
+        const gic_real t326 = y[SOLID_AXLE_STATE_R_X] + (t27 * t322 + (t15 * t318 + t277 * t319));
+        const gic_real t327 = y[SOLID_AXLE_STATE_R_Y] + (t24 * t322 + (t12 * t318 + t274 * t319));
         gic_real road328[3];
         if (!solid_axle_road_height(self, time, t326, t327, road328))
             return GIC_ERROR_ROAD;
-        const gic_real t329 = y[12] + (t27 * t320 + (t15 * t323 + t277 * t324));
-        const gic_real t330 = y[14] + (t23 * t320 + (t7 * t323 + t282 * t324));
+        const gic_real t329 = y[SOLID_AXLE_STATE_V_X] + (t27 * t320 + (t15 * t323 + t277 * t324));
+        const gic_real t330 = y[SOLID_AXLE_STATE_V_Z] + (t23 * t320 + (t7 * t323 + t282 * t324));
         const gic_real t331 = t325 * road328[2] + t329 * road328[1] - t330;
-        const gic_real t332 = y[2] + (t23 * t322 + (t7 * t318 + t282 * t319));
+        const gic_real t332 = y[SOLID_AXLE_STATE_R_Z] + (t23 * t322 + (t7 * t318 + t282 * t319));
         const gic_real t333 = R(0.4699) + road328[0] - t332;
         const gic_real t334 = GIC_MIN(GIC_MAX(R(100.0) * t333, R(0.0)), R(1.0));
         const gic_real t335 = t331 * (R(500.0) * ((R(3.0) - (t334 + t334)) * (t334 * t334)));
@@ -3819,25 +4778,33 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t337 = t23 * t336;
         const gic_real t338 = t7 * t336;
         const gic_real t339 = t316 * t337 - t321 * t338;
-        const gic_real t340 = t116 + (m[133] * R(0.12319000000000002) + t117);
-        const gic_real t341 = t119 + (m[130] * R(0.12319000000000002) + t120);
-        const gic_real t342 = m[127] + t340;
+        const gic_real t340 = t116 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) + t117);
+        const gic_real t341 = t119 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) + t120);
+        const gic_real t342 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t340;
         const gic_real t343 = R(1.653405) + t341;
-        const gic_real t344 = m[143] + (m[138] * t340 - m[139] * t341) + (y[15] * t342 - y[16] * t343);
-        const gic_real t345 = t122 + (m[136] * R(0.12319000000000002) + t123);
-        const gic_real t346 = m[128] + t345;
-        const gic_real t347 = m[142] + (m[140] * t341 - m[138] * t345) + (y[17] * t343 - y[15] * t346);
-        const gic_real t348 = m[139] * t345 - m[140] * t340 + (y[16] * t346 - y[17] * t342);
-        const gic_real t349 = y[13] + (t24 * t344 + (t12 * t347 + t274 * t348));
-        const gic_real t350 = y[0] + (t27 * t346 + (t15 * t342 + t277 * t343));
-        const gic_real t351 = y[1] + (t24 * t346 + (t12 * t342 + t274 * t343));
+        const gic_real t344 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t340 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t341) + (y[SOLID_AXLE_STATE_OMEGA_X] * t342 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t343);
+        const gic_real t345 = t122 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) + t123);
+        const gic_real t346 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t345;
+        const gic_real t347 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t341 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t345) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t343 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t346);
+        const gic_real t348 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t345 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t340 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t346 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t342);
+        const gic_real t349 = y[SOLID_AXLE_STATE_V_Y] + (t24 * t344 + (t12 * t347 + t274 * t348));
+        const gic_real t350 = y[SOLID_AXLE_STATE_R_X] + (t27 * t346 + (t15 * t342 + t277 * t343));
+        const gic_real t351 = y[SOLID_AXLE_STATE_R_Y] + (t24 * t346 + (t12 * t342 + t274 * t343));
         gic_real road352[3];
         if (!solid_axle_road_height(self, time, t350, t351, road352))
             return GIC_ERROR_ROAD;
-        const gic_real t353 = y[12] + (t27 * t344 + (t15 * t347 + t277 * t348));
-        const gic_real t354 = y[14] + (t23 * t344 + (t7 * t347 + t282 * t348));
+        const gic_real t353 = y[SOLID_AXLE_STATE_V_X] + (t27 * t344 + (t15 * t347 + t277 * t348));
+        const gic_real t354 = y[SOLID_AXLE_STATE_V_Z] + (t23 * t344 + (t7 * t347 + t282 * t348));
         const gic_real t355 = t349 * road352[2] + t353 * road352[1] - t354;
-        const gic_real t356 = y[2] + (t23 * t346 + (t7 * t342 + t282 * t343));
+        const gic_real t356 = y[SOLID_AXLE_STATE_R_Z] + (t23 * t346 + (t7 * t342 + t282 * t343));
         const gic_real t357 = road352[0] + R(0.4699) - t356;
         const gic_real t358 = GIC_MIN(GIC_MAX(t357 * R(100.0), R(0.0)), R(1.0));
         const gic_real t359 = t355 * ((R(3.0) - (t358 + t358)) * (t358 * t358) * R(500.0));
@@ -3845,47 +4812,60 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t361 = t23 * t360;
         const gic_real t362 = t7 * t360;
         const gic_real t363 = t340 * t361 - t345 * t362;
-        const gic_real t364 = t363 + (m[127] * t361 - m[128] * t362) + (m[163] * t337 - m[164] * t338);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t364 = t363 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t361 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t362) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] *
+            t337 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t338);
         const gic_real t365 = t290 + t313;
         const gic_real t366 = t291 + t314;
-        const gic_real t367 = t315 + (t339 + t364 + (m[91] * t365 - m[92] * t366));
+        const gic_real t367 = t315 + (t339 + t364 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t365 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t366));
         const gic_real t368 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t282);
-        const gic_real t369 = t282 * t8 + (t274 * rate[13] + t277 * rate[12]);
+        const gic_real t369 = t282 * t8 + (t274 * rate[SOLID_AXLE_STATE_V_Y] + t277 * rate[SOLID_AXLE_STATE_V_X]);
         const gic_real t370 = t368 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t369));
-        const gic_real t371 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
-        const gic_real t372 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t371 = GIC_FABS(y[SOLID_AXLE_STATE_OMEGA_Z]) + GIC_FABS(y[SOLID_AXLE_STATE_OMEGA_Y]) +
+            GIC_FABS(y[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t372 = GIC_FABS(rate[SOLID_AXLE_STATE_OMEGA_Z]) + GIC_FABS(rate[SOLID_AXLE_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[SOLID_AXLE_STATE_OMEGA_X]);
         const gic_real t373 = t371 * t371 + t372;
         const gic_real t374 = t370 + t373 * R(0.2690000000000001);
         const gic_real t375 = t374 * R(561.2738800000002) + t373 * R(7604.379999999999);
-        const gic_real t376 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t377 = GIC_FABS(rate[22]);
-        const gic_real t378 = t370 + t373 * t376 + t371 * GIC_FABS(m[16]) + t377;
+        const gic_real t376 = R(1.438648) + (R(0.05422899999999997) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y]));
+        const gic_real t377 = GIC_FABS(rate[SOLID_AXLE_STATE_RACK_RATE]);
+        const gic_real t378 = t370 + t373 * t376 + t371 * GIC_FABS(m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y]) +
+            t377;
         const gic_real t379 = R(9.072) * t378 + t373 * R(0.0005216895628628198);
-        const gic_real t380 = t375 + t374 * R(0.3983301514773894) + (R(3.0) * t373 + t378 * R(0.0005216895628628198) + t376 * t379);
+        const gic_real t380 = t375 + t374 * R(0.3983301514773894) + (R(3.0) * t373 + t378 * R(0.0005216895628628198) +
+            t376 * t379);
         const gic_real t381 = GIC_FABS(t46);
         const gic_real t382 = t381 + GIC_FABS(t45);
-        const gic_real t383 = t371 + GIC_FABS(m[42]);
+        const gic_real t383 = t371 + GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X]);
         const gic_real t384 = t372 + t383 * t383;
-        const gic_real t385 = t370 + t384 * (R(1.688965) + (t381 + GIC_FABS(t51))) + t371 * (GIC_FABS(t57) + GIC_FABS(-t47));
-        const gic_real t386 = GIC_FABS(rate[18]);
-        const gic_real t387 = GIC_FABS(m[54]);
+        const gic_real t385 = t370 + t384 * (R(1.688965) + (t381 + GIC_FABS(t51))) + t371 * (GIC_FABS(t57) +
+            GIC_FABS(-t47));
+        const gic_real t386 = GIC_FABS(rate[SOLID_AXLE_STATE_SPRING_F_L_RATE]);
+        const gic_real t387 = GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0]);
         const gic_real t388 = t386 * t387;
         const gic_real t389 = t385 + (GIC_FABS(t48) + GIC_FABS(-t62)) + t388 * t382;
         const gic_real t390 = R(23.965) * t389;
-        const gic_real t391 = t382 * t390 + (t384 + GIC_FABS(m[48]) + t388) * R(1.7876);
+        const gic_real t391 = t382 * t390 + (t384 + GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X]) +
+            t388) * R(1.7876);
         const gic_real t392 = t391 + t389 * R(0.0006545214587773269);
         const gic_real t393 = t390 + t391 * R(0.00036614536740732094);
         const gic_real t394 = GIC_FABS(t76);
         const gic_real t395 = t394 + GIC_FABS(t75);
-        const gic_real t396 = t371 + GIC_FABS(m[72]);
+        const gic_real t396 = t371 + GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X]);
         const gic_real t397 = t372 + t396 * t396;
-        const gic_real t398 = t370 + t397 * (R(1.688965) + (t394 + GIC_FABS(t80))) + t371 * (GIC_FABS(t85) + GIC_FABS(-t77));
-        const gic_real t399 = GIC_FABS(rate[19]);
-        const gic_real t400 = GIC_FABS(m[84]);
+        const gic_real t398 = t370 + t397 * (R(1.688965) + (t394 + GIC_FABS(t80))) + t371 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
+        const gic_real t399 = GIC_FABS(rate[SOLID_AXLE_STATE_SPRING_F_R_RATE]);
+        const gic_real t400 = GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0]);
         const gic_real t401 = t399 * t400;
         const gic_real t402 = t398 + (GIC_FABS(t78) + GIC_FABS(-t88)) + t401 * t395;
         const gic_real t403 = R(23.965) * t402;
-        const gic_real t404 = t395 * t403 + R(1.7876) * (t397 + GIC_FABS(m[78]) + t401);
+        const gic_real t404 = t395 * t403 + R(1.7876) * (t397 +
+            GIC_FABS(m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X]) + t401);
         const gic_real t405 = t404 + R(0.0006545214587773269) * t402;
         const gic_real t406 = t403 + R(0.00036614536740732094) * t404;
         const gic_real t407 = t380 + (t392 + t393 * R(1.996051)) + (t405 + R(1.996051) * t406);
@@ -3893,48 +4873,74 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t409 = GIC_FABS(t359) + GIC_FABS(t408);
         const gic_real t410 = t409 * (GIC_FABS(t345) + GIC_FABS(t340) + GIC_FABS(t341));
         const gic_real t411 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t412 = t371 + (GIC_FABS(m[140]) + GIC_FABS(m[139]) + GIC_FABS(m[138]));
+        const gic_real t412 = t371 + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X]));
         const gic_real t413 = t372 + t412 * t412;
         const gic_real t414 = t413 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t415 = t371 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t416 = m[139] * t139 - m[140] * t125 + (m[145] * t124 - m[146] * t118);
+        const gic_real t416 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t139 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t125 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t124 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t118);
         const gic_real t417 = t370 + t414 + t415 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t416));
-        const gic_real t418 = GIC_FABS(m[152]) + GIC_FABS(m[151]) + GIC_FABS(m[150]);
+        const gic_real t418 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0]);
         const gic_real t419 = t377 * t418;
-        const gic_real t420 = GIC_FABS(m[158]) + GIC_FABS(m[157]) + GIC_FABS(m[156]);
+        const gic_real t420 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6]);
         const gic_real t421 = t386 * t420;
-        const gic_real t422 = GIC_FABS(m[161]) + GIC_FABS(m[160]);
+        const gic_real t422 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10]);
         const gic_real t423 = t417 + t419 * t411 + t411 * t421 + t386 * t422;
         const gic_real t424 = R(90.555) * t423;
-        const gic_real t425 = t413 + (GIC_FABS(m[146]) + GIC_FABS(m[145]) + GIC_FABS(m[144]));
+        const gic_real t425 = t413 + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X]));
         const gic_real t426 = t410 + (t411 * t424 + (t425 + t419 + t421) * R(17.248790999999997));
         const gic_real t427 = t409 + t424;
         const gic_real t428 = t426 + t427 * R(4.364385583403788e-05);
         const gic_real t429 = t427 + t426 * R(0.00022912732637616755);
-        const gic_real t430 = t428 + t429 * (R(1.653405) + (GIC_FABS(m[128]) + GIC_FABS(m[127])));
+        const gic_real t430 = t428 + t429 * (R(1.653405) + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y])));
         const gic_real t431 = R(283000.0) * (R(0.4699) + (GIC_FABS(t332) + GIC_FABS(road328[0])));
         const gic_real t432 = GIC_FABS(t335) + GIC_FABS(t431);
         const gic_real t433 = t432 * (GIC_FABS(t321) + GIC_FABS(t316) + GIC_FABS(t317));
         const gic_real t434 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t435 = t371 + (GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]));
+        const gic_real t435 = t371 + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X]));
         const gic_real t436 = t372 + t435 * t435;
         const gic_real t437 = t436 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t438 = t371 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t439 = m[175] * t197 - m[176] * t183 + (m[181] * t182 - m[182] * t176);
+        const gic_real t439 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t197 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t183 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t182 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t176);
         const gic_real t440 = t370 + t437 + t438 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t439));
-        const gic_real t441 = GIC_FABS(m[188]) + GIC_FABS(m[187]) + GIC_FABS(m[186]);
+        const gic_real t441 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0]);
         const gic_real t442 = t377 * t441;
-        const gic_real t443 = GIC_FABS(m[194]) + GIC_FABS(m[193]) + GIC_FABS(m[192]);
+        const gic_real t443 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6]);
         const gic_real t444 = t399 * t443;
-        const gic_real t445 = GIC_FABS(m[197]) + GIC_FABS(m[196]);
+        const gic_real t445 = GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10]);
         const gic_real t446 = t440 + t442 * t434 + t434 * t444 + t399 * t445;
         const gic_real t447 = R(90.555) * t446;
-        const gic_real t448 = t436 + (GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]));
+        const gic_real t448 = t436 + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X]));
         const gic_real t449 = t433 + (t434 * t447 + R(17.248790999999997) * (t448 + t442 + t444));
         const gic_real t450 = t432 + t447;
         const gic_real t451 = t449 + R(4.364385583403788e-05) * t450;
         const gic_real t452 = t450 + R(0.00022912732637616755) * t449;
-        const gic_real t453 = t451 + t452 * (R(1.653405) + (GIC_FABS(m[164]) + GIC_FABS(m[163])));
+        const gic_real t453 = t451 + t452 * (R(1.653405) + (GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y])));
         const gic_real t454 = R(283000.0) * (R(0.4699) + (GIC_FABS(t285) + GIC_FABS(road280[0])));
         const gic_real t455 = GIC_FABS(t288) + GIC_FABS(t454);
         const gic_real t456 = t455 * (GIC_FABS(t271) + GIC_FABS(t266) + GIC_FABS(t267));
@@ -3942,51 +4948,88 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t458 = GIC_FABS(t311) + GIC_FABS(t457);
         const gic_real t459 = t458 * (GIC_FABS(t297) + GIC_FABS(t292) + GIC_FABS(t293));
         const gic_real t460 = GIC_FABS(t239) + GIC_FABS(t233) + GIC_FABS(t236);
-        const gic_real t461 = t371 + (GIC_FABS(m[104]) + GIC_FABS(m[103]) + GIC_FABS(m[102]));
+        const gic_real t461 = t371 + (GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X]));
         const gic_real t462 = t372 + t461 * t461;
         const gic_real t463 = t462 * (GIC_FABS(t246) + GIC_FABS(t249) + GIC_FABS(t245));
         const gic_real t464 = t371 * (GIC_FABS(t258) + GIC_FABS(t244) + GIC_FABS(t248));
-        const gic_real t465 = m[103] * t255 - m[104] * t240 + (m[109] * t239 - m[110] * t233);
-        const gic_real t466 = m[111] + t465;
+        const gic_real t465 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t255 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t240 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] *
+            t239 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] * t233);
+        const gic_real t466 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_X] + t465;
         const gic_real t467 = t370 + t463 + t464 + (GIC_FABS(t243) + GIC_FABS(t257) + GIC_FABS(t466));
-        const gic_real t468 = GIC_FABS(rate[20]);
-        const gic_real t469 = GIC_FABS(m[116]) + GIC_FABS(m[115]) + GIC_FABS(m[114]);
+        const gic_real t468 = GIC_FABS(rate[SOLID_AXLE_STATE_SPRING_R_L_RATE]);
+        const gic_real t469 = GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0]);
         const gic_real t470 = t468 * t469;
-        const gic_real t471 = GIC_FABS(m[119]) + GIC_FABS(m[118]) + GIC_FABS(m[117]);
-        const gic_real t472 = GIC_FABS(rate[21]);
-        const gic_real t473 = GIC_FABS(m[122]) + GIC_FABS(m[121]) + GIC_FABS(m[120]);
+        const gic_real t471 = GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3]);
+        const gic_real t472 = GIC_FABS(rate[SOLID_AXLE_STATE_SPRING_R_R_RATE]);
+        const gic_real t473 = GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6]);
         const gic_real t474 = t472 * t473;
         const gic_real t475 = t467 + t470 * t460 + t468 * t471 + t460 * t474;
-        const gic_real t476 = GIC_FABS(m[125]) + GIC_FABS(m[124]) + GIC_FABS(m[123]);
+        const gic_real t476 = GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9]);
         const gic_real t477 = R(271.11) * (t475 + t472 * t476);
-        const gic_real t478 = t462 + (GIC_FABS(m[110]) + GIC_FABS(m[109]) + GIC_FABS(m[108]));
+        const gic_real t478 = t462 + (GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X]));
         const gic_real t479 = t456 + t459 + (t460 * t477 + (t478 + t470 + t474) * R(341.937704));
         const gic_real t480 = t455 + t458 + t477;
         const gic_real t481 = t479 + t480 * R(0.00011230542277952774);
         const gic_real t482 = t480 + t479 * R(8.904289528059112e-05);
-        const gic_real t483 = t482 * (GIC_FABS(m[92]) + GIC_FABS(m[91]) + GIC_FABS(m[90]));
+        const gic_real t483 = t482 * (GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y]) +
+            GIC_FABS(m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X]));
         const gic_real t484 = t407 + t430 + t453 + (t481 + t483);
-        const gic_real t485 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t486 = t369 + (rate[16] * R(0.21300000000000008) - (y[17] * t485 + y[16] * t17));
-        const gic_real t487 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t485 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t486 = t369 + (rate[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[SOLID_AXLE_STATE_OMEGA_Z] * t485 + y[SOLID_AXLE_STATE_OMEGA_Y] * t17));
+        const gic_real t487 = y[SOLID_AXLE_STATE_OMEGA_Y] * t34 - y[SOLID_AXLE_STATE_OMEGA_Z] * t29 +
+            (R(0.05422899999999997) * rate[SOLID_AXLE_STATE_OMEGA_Y] - m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] *
+            rate[SOLID_AXLE_STATE_OMEGA_Z]);
         const gic_real t488 = t369 + t487;
         const gic_real t489 = t488 * R(9.072);
-        const gic_real t490 = y[16] * t59 - y[17] * t50 + (rate[16] * t46 - rate[17] * t51);
+        const gic_real t490 = y[SOLID_AXLE_STATE_OMEGA_Y] * t59 - y[SOLID_AXLE_STATE_OMEGA_Z] * t50 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t46 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t51);
         const gic_real t491 = t369 + t490;
         const gic_real t492 = t491 * R(23.965);
-        const gic_real t493 = y[16] * t86 - y[17] * t79 + (rate[16] * t76 - rate[17] * t80);
+        const gic_real t493 = y[SOLID_AXLE_STATE_OMEGA_Y] * t86 - y[SOLID_AXLE_STATE_OMEGA_Z] * t79 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t76 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t80);
         const gic_real t494 = t369 + t493;
         const gic_real t495 = R(23.965) * t494;
-        const gic_real t496 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
-        const gic_real t497 = t416 + (t369 + t496) + rate[22] * (m[151] * t124 - m[152] * t118);
-        const gic_real t498 = (t497 + rate[18] * (m[157] * t124 - m[158] * t118)) * R(90.555);
-        const gic_real t499 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
-        const gic_real t500 = t439 + (t369 + t499) + rate[22] * (m[187] * t182 - m[188] * t176);
-        const gic_real t501 = R(90.555) * (t500 + rate[19] * (m[193] * t182 - m[194] * t176));
+        const gic_real t496 = y[SOLID_AXLE_STATE_OMEGA_Y] * t143 - y[SOLID_AXLE_STATE_OMEGA_Z] * t132 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t131 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t133);
+        const gic_real t497 = t416 + (t369 + t496) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t124 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t118);
+        const gic_real t498 = (t497 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t124 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t118)) * R(90.555);
+        const gic_real t499 = y[SOLID_AXLE_STATE_OMEGA_Y] * t201 - y[SOLID_AXLE_STATE_OMEGA_Z] * t190 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t189 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t191);
+        const gic_real t500 = t439 + (t369 + t499) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t182 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t176);
+        const gic_real t501 = R(90.555) * (t500 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t182 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t176));
         const gic_real t502 = t486 * R(2086.52) + t489 + t492 + t495 + t498 + t501;
-        const gic_real t503 = y[16] * t259 - y[17] * t247 + (rate[16] * t246 - rate[17] * t249);
-        const gic_real t504 = t466 + (t369 + t503) + rate[20] * (m[117] + (m[115] * t239 - m[116] * t233));
-        const gic_real t505 = t504 + rate[21] * (m[123] + (m[121] * t239 - m[122] * t233));
+        const gic_real t503 = y[SOLID_AXLE_STATE_OMEGA_Y] * t259 - y[SOLID_AXLE_STATE_OMEGA_Z] * t247 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t246 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t249);
+        const gic_real t504 = t466 + (t369 + t503) + rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t239 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t233));
+        const gic_real t505 = t504 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t239 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t233));
         const gic_real t506 = t505 * R(271.11);
         const gic_real t507 = t282 * t289;
         const gic_real t508 = t282 * t312;
@@ -3995,123 +5038,193 @@ static GIC_COLD GIC_APART int solid_axle_balance(const solid_axle *self, gic_rea
         const gic_real t511 = t282 * t336;
         const gic_real t512 = R(2086.52) * t374 + t375 * R(5.2381673650894547e-05) + t379 + t393 + t406;
         const gic_real t513 = t512 + t429 + t452 + t482;
-        const gic_real t514 = y[15] * R(1078.52);
-        const gic_real t515 = t28 + (y[15] * t485 - y[16] * t18 - rate[16] * R(0.056));
-        const gic_real t516 = y[17] * t514 - y[15] * t1 + rate[16] * R(2955.66) + (t486 * R(444.4287600000002) - t515 * R(116.84512));
-        const gic_real t517 = m[42] + y[15];
+        const gic_real t514 = y[SOLID_AXLE_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t515 = t28 + (y[SOLID_AXLE_STATE_OMEGA_X] * t485 - y[SOLID_AXLE_STATE_OMEGA_Y] * t18 -
+            rate[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t516 = y[SOLID_AXLE_STATE_OMEGA_Z] * t514 - y[SOLID_AXLE_STATE_OMEGA_X] * t1 +
+            rate[SOLID_AXLE_STATE_OMEGA_Y] * R(2955.66) + (t486 * R(444.4287600000002) - t515 * R(116.84512));
+        const gic_real t517 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t518 = R(0.4469) * t517;
-        const gic_real t519 = rate[17] - m[42] * y[16];
-        const gic_real t520 = rate[16] + m[42] * y[17];
-        const gic_real t521 = y[17] * t518 - t517 * t41 + (t40 * t519 + t42 * t520);
-        const gic_real t522 = t516 + (rate[16] + (t488 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t521 + t46 * t492 - t55 * R(40.476046225));
-        const gic_real t523 = m[72] + y[15];
+        const gic_real t519 = rate[SOLID_AXLE_STATE_OMEGA_Z] - m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t520 = rate[SOLID_AXLE_STATE_OMEGA_Y] + m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t521 = y[SOLID_AXLE_STATE_OMEGA_Z] * t518 - t517 * t41 + (t40 * t519 + t42 * t520);
+        const gic_real t522 = t516 + (rate[SOLID_AXLE_STATE_OMEGA_Y] + (t488 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t521 + t46 * t492 - t55 * R(40.476046225));
+        const gic_real t523 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t524 = R(0.4469) * t523;
-        const gic_real t525 = rate[17] - m[72] * y[16];
-        const gic_real t526 = rate[16] + m[72] * y[17];
-        const gic_real t527 = y[17] * t524 - t523 * t71 + (t70 * t525 + t72 * t526);
+        const gic_real t525 = rate[SOLID_AXLE_STATE_OMEGA_Z] - m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t526 = rate[SOLID_AXLE_STATE_OMEGA_Y] + m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t527 = y[SOLID_AXLE_STATE_OMEGA_Z] * t524 - t523 * t71 + (t70 * t525 + t72 * t526);
         const gic_real t528 = t102 * t94 + (t106 * t92 + t112 * t103);
         const gic_real t529 = t94 * t528 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t530 = t529 + (t124 * t498 - t121 * t138);
-        const gic_real t531 = t522 + (t527 + t76 * t495 - R(40.476046225) * t83) + (t530 + (m[128] * t498 - t137 * R(149.724089775)));
+        const gic_real t531 = t522 + (t527 + t76 * t495 - R(40.476046225) * t83) + (t530 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t498 - t137 * R(149.724089775)));
         const gic_real t532 = t160 * t152 + (t164 * t150 + t170 * t161);
         const gic_real t533 = t152 * t532 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t534 = t533 + (t182 * t501 - t179 * t196);
         const gic_real t535 = t217 * t209 + (t221 * t207 + t227 * t218);
         const gic_real t536 = t209 * t535 - t218 * t219 + (t213 * t224 + (t220 * t226 + t221 * t229));
         const gic_real t537 = t536 + (t239 * t506 - t236 * t254);
-        const gic_real t538 = t531 + (t534 + (m[164] * t501 - R(149.724089775) * t195)) + (t537 + (m[92] * t506 - m[90] * t254));
+        const gic_real t538 = t531 + (t534 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t501 -
+            R(149.724089775) * t195)) + (t537 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t506 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t254));
         const gic_real t539 = t271 * t507 - t267 * t290 + (t297 * t508 - t293 * t313);
         const gic_real t540 = t321 * t511 - t317 * t337;
         const gic_real t541 = t345 * t510 - t341 * t361;
-        const gic_real t542 = t541 + (m[128] * t510 - R(1.653405) * t361) + (m[164] * t511 - R(1.653405) * t337);
-        const gic_real t543 = t539 + (t540 + t542 + (m[92] * t509 - m[90] * t365));
+        const gic_real t542 = t541 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t510 - R(1.653405) * t361) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t511 - R(1.653405) * t337);
+        const gic_real t543 = t539 + (t540 + t542 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t509 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t365));
         const gic_real t544 = t36 * R(9.072);
         const gic_real t545 = t20 * R(2086.52) + t544 + t64 + t90 + t147 + t205;
-        const gic_real t546 = y[15] * t2 - y[16] * t514 + rate[17] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t547 = t517 * t43 - y[16] * t518 + (t37 * t519 + t40 * t520);
+        const gic_real t546 = y[SOLID_AXLE_STATE_OMEGA_X] * t2 - y[SOLID_AXLE_STATE_OMEGA_Y] * t514 +
+            rate[SOLID_AXLE_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t547 = t517 * t43 - y[SOLID_AXLE_STATE_OMEGA_Y] * t518 + (t37 * t519 + t40 * t520);
         const gic_real t548 = t547 - t45 * t492 + (t63 * R(40.476046225) - t491 * R(7.359315990000001));
-        const gic_real t549 = t546 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t489)) + t548;
-        const gic_real t550 = t523 * t73 - y[16] * t524 + (t67 * t525 + t70 * t526);
+        const gic_real t549 = t546 + (rate[SOLID_AXLE_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t489)) + t548;
+        const gic_real t550 = t523 * t73 - y[SOLID_AXLE_STATE_OMEGA_Y] * t524 + (t67 * t525 + t70 * t526);
         const gic_real t551 = t550 - t75 * t495 + (R(40.476046225) * t89 - t494 * R(-7.359315990000001));
         const gic_real t552 = t103 * t107 - t92 * t528 + (t93 * t109 + (t98 * t111 + t102 * t114));
         const gic_real t553 = t552 + (t121 * t147 - t118 * t498);
-        const gic_real t554 = t549 + t551 + (t553 + (t146 * R(149.724089775) - m[127] * t498));
+        const gic_real t554 = t549 + t551 + (t553 + (t146 * R(149.724089775) -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t498));
         const gic_real t555 = t161 * t165 - t150 * t532 + (t151 * t167 + (t156 * t169 + t160 * t172));
         const gic_real t556 = t555 + (t179 * t205 - t176 * t501);
         const gic_real t557 = t218 * t222 - t207 * t535 + (t208 * t224 + (t213 * t226 + t217 * t229));
         const gic_real t558 = t557 + (t236 * t263 - t233 * t506);
-        const gic_real t559 = t554 + (t556 + (R(149.724089775) * t204 - m[163] * t501)) + (t558 + (m[90] * t263 - m[91] * t506));
+        const gic_real t559 = t554 + (t556 + (R(149.724089775) * t204 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t501)) + (t558 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t263 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t506));
         const gic_real t560 = t267 * t291 - t266 * t507 + (t293 * t314 - t292 * t508);
         const gic_real t561 = t317 * t338 - t316 * t511;
         const gic_real t562 = t341 * t362 - t340 * t510;
-        const gic_real t563 = t562 + (R(1.653405) * t362 - m[127] * t510) + (R(1.653405) * t338 - m[163] * t511);
-        const gic_real t564 = t560 + (t561 + t563 + (m[90] * t366 - m[91] * t509));
+        const gic_real t563 = t562 + (R(1.653405) * t362 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t510) +
+            (R(1.653405) * t338 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t511);
+        const gic_real t564 = t560 + (t561 + t563 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t366 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t509));
         const gic_real t565 = t515 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
-        const gic_real t566 = m[161] * t138 + m[160] * t147 + (m[158] * t553 + (m[157] * t530 + m[156] * t148));
-        const gic_real t567 = m[161] * t361 + m[160] * t362 + (m[158] * t562 + (m[157] * t541 + m[156] * t363));
-        const gic_real t568 = (x[0] - R(0.31907)) * R(167070.9);
-        const gic_real t569 = xd[0] * R(17490.8);
-        const gic_real t570 = GIC_FABS(t569) + GIC_FABS(t568) + R(167070.9) * (R(0.31907) + GIC_FABS(x[0]));
+        const gic_real t566 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] * t138 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] * t147 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t553 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t530 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t148));
+        const gic_real t567 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] * t361 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] * t362 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t562 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t541 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t363));
+        /* force spring_f_l */
+        const gic_real t568 = (x[SOLID_AXLE_X_SPRING_F_L] - R(0.31907)) * R(167070.9);
+        const gic_real t569 = xd[SOLID_AXLE_X_SPRING_F_L] * R(17490.8);
+        const gic_real t570 = GIC_FABS(t569) + GIC_FABS(t568) + R(167070.9) * (R(0.31907) +
+            GIC_FABS(x[SOLID_AXLE_X_SPRING_F_L]));
         const gic_real t571 = t570 + t387 * t392 + t420 * t428 + t422 * t429;
-        const gic_real t572 = m[197] * t196 + m[196] * t205 + (m[194] * t556 + (m[193] * t534 + m[192] * t206));
-        const gic_real t573 = m[197] * t337 + m[196] * t338 + (m[194] * t561 + (m[193] * t540 + m[192] * t339));
-        const gic_real t574 = R(167070.9) * (x[1] - R(0.31907));
-        const gic_real t575 = xd[1] * R(17490.8);
-        const gic_real t576 = GIC_FABS(t575) + GIC_FABS(t574) + R(167070.9) * (R(0.31907) + GIC_FABS(x[1]));
+        const gic_real t572 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] * t196 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] * t205 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t556 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t534 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t206));
+        const gic_real t573 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] * t337 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] * t338 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t561 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t540 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t339));
+        /* force spring_f_r */
+        const gic_real t574 = R(167070.9) * (x[SOLID_AXLE_X_SPRING_F_R] - R(0.31907));
+        const gic_real t575 = xd[SOLID_AXLE_X_SPRING_F_R] * R(17490.8);
+        const gic_real t576 = GIC_FABS(t575) + GIC_FABS(t574) + R(167070.9) * (R(0.31907) +
+            GIC_FABS(x[SOLID_AXLE_X_SPRING_F_R]));
         const gic_real t577 = t576 + t400 * t405 + t443 * t451 + t445 * t452;
-        const gic_real t578 = m[119] * t254 + (m[118] * t263 + m[117] * t506) + (m[116] * t558 + (m[115] * t537 + m[114] * t264));
-        const gic_real t579 = m[119] * t365 + (m[118] * t366 + m[117] * t509) + (m[116] * t560 + (m[115] * t539 + m[114] * t315));
-        const gic_real t580 = (x[2] - R(0.41347)) * R(63000.0);
-        const gic_real t581 = xd[2] * R(4100.0);
-        const gic_real t582 = GIC_FABS(t581) + GIC_FABS(t580) + R(63000.0) * (R(0.41347) + GIC_FABS(x[2]));
-        const gic_real t583 = m[125] * t254 + (m[124] * t263 + m[123] * t506) + (m[122] * t558 + (m[121] * t537 + m[120] * t264));
-        const gic_real t584 = m[125] * t365 + (m[124] * t366 + m[123] * t509) + (m[122] * t560 + (m[121] * t539 + m[120] * t315));
-        const gic_real t585 = R(63000.0) * (x[3] - R(0.41347));
-        const gic_real t586 = xd[3] * R(4100.0);
-        const gic_real t587 = GIC_FABS(t586) + GIC_FABS(t585) + R(63000.0) * (R(0.41347) + GIC_FABS(x[3]));
-        const gic_real t588 = t544 + (m[152] * t553 + (m[151] * t530 + m[150] * t148));
-        const gic_real t589 = t588 + (m[188] * t556 + (m[187] * t534 + m[186] * t206));
-        const gic_real t590 = x[4] * R(100000.0);
-        const gic_real t591 = xd[4] * R(12000.0);
-        const gic_real t592 = m[152] * t562 + (m[151] * t541 + m[150] * t363) - (t590 + t591);
-        const gic_real t593 = t592 + (m[188] * t561 + (m[187] * t540 + m[186] * t339));
-        const gic_real t594 = GIC_FABS(t591) + GIC_FABS(t590) + R(100000.0) * GIC_FABS(x[4]);
-        const gic_real t595 = t265 - t367;
-        const gic_real t596 = t502 + t506 - (t509 + (t510 + t511));
-        const gic_real t597 = t538 - t543;
-        const gic_real t598 = t545 + t263 - (t366 + (t362 + t338));
-        const gic_real t599 = t559 - t564;
-        const gic_real t600 = t565 + t254 - (t365 + (t361 + t337));
-        const gic_real t601 = m[54] * t65 + t566 - (t567 - (t568 + t569));
-        const gic_real t602 = m[84] * t91 + t572 - (t573 - (t574 + t575));
-        const gic_real t603 = t578 - (t579 - (t580 + t581));
+        const gic_real t578 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] * t254 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] * t263 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] *
+            t506) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t558 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t537 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t264));
+        const gic_real t579 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] * t365 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] * t366 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] *
+            t509) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t560 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t539 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t315));
+        /* force spring_r_l */
+        const gic_real t580 = (x[SOLID_AXLE_X_SPRING_R_L] - R(0.41347)) * R(63000.0);
+        const gic_real t581 = xd[SOLID_AXLE_X_SPRING_R_L] * R(4100.0);
+        const gic_real t582 = GIC_FABS(t581) + GIC_FABS(t580) + R(63000.0) * (R(0.41347) +
+            GIC_FABS(x[SOLID_AXLE_X_SPRING_R_L]));
+        const gic_real t583 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] * t254 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] * t263 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] *
+            t506) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t558 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t537 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            t264));
+        const gic_real t584 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] * t365 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] * t366 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] *
+            t509) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t560 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t539 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            t315));
+        /* force spring_r_r */
+        const gic_real t585 = R(63000.0) * (x[SOLID_AXLE_X_SPRING_R_R] - R(0.41347));
+        const gic_real t586 = xd[SOLID_AXLE_X_SPRING_R_R] * R(4100.0);
+        const gic_real t587 = GIC_FABS(t586) + GIC_FABS(t585) + R(63000.0) * (R(0.41347) +
+            GIC_FABS(x[SOLID_AXLE_X_SPRING_R_R]));
+        const gic_real t588 = t544 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t553 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t530 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t148));
+        const gic_real t589 = t588 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t556 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t534 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t206));
+        /* force rack */
+        const gic_real t590 = x[SOLID_AXLE_X_RACK] * R(100000.0);
+        const gic_real t591 = xd[SOLID_AXLE_X_RACK] * R(12000.0);
+        const gic_real t592 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t562 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t541 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t363) - (t590 + t591);
+        const gic_real t593 = t592 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t561 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t540 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t339));
+        const gic_real t594 = GIC_FABS(t591) + GIC_FABS(t590) + R(100000.0) * GIC_FABS(x[SOLID_AXLE_X_RACK]);
+        const gic_real residual_0 = t265 - t367;
+        const gic_real residual_3 = t502 + t506 - (t509 + (t510 + t511));
+        const gic_real residual_1 = t538 - t543;
+        const gic_real residual_4 = t545 + t263 - (t366 + (t362 + t338));
+        const gic_real residual_2 = t559 - t564;
+        const gic_real residual_5 = t565 + t254 - (t365 + (t361 + t337));
+        const gic_real residual_6 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t65 + t566 - (t567 - (t568 +
+            t569));
+        const gic_real residual_7 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t91 + t572 - (t573 - (t574 +
+            t575));
+        const gic_real residual_8 = t578 - (t579 - (t580 + t581));
         const gic_real t604 = t582 + t469 * t481 + t471 * t482;
-        const gic_real t605 = t583 - (t584 - (t585 + t586));
+        const gic_real residual_9 = t583 - (t584 - (t585 + t586));
         const gic_real t606 = t587 + t473 * t481 + t476 * t482;
-        const gic_real t607 = t589 - t593;
+        const gic_real residual_10 = t589 - t593;
         const gic_real t608 = t594 + t379 + t418 * t428 + t441 * t451;
-        tau[0] = t595;
-        size[0] = t484;
-        tau[3] = t596;
-        size[3] = t513;
-        tau[1] = t597;
-        size[1] = t484;
-        tau[4] = t598;
-        size[4] = t513;
-        tau[2] = t599;
-        size[2] = t484;
-        tau[5] = t600;
-        size[5] = t513;
-        tau[6] = t601;
-        size[6] = t571;
-        tau[7] = t602;
-        size[7] = t577;
-        tau[8] = t603;
-        size[8] = t604;
-        tau[9] = t605;
-        size[9] = t606;
-        tau[10] = t607;
-        size[10] = t608;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_X] = residual_0;
+        size[SOLID_AXLE_UNKNOWN_ALPHA_X] = t484;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[SOLID_AXLE_UNKNOWN_ACCELERATION_X] = t513;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_Y] = residual_1;
+        size[SOLID_AXLE_UNKNOWN_ALPHA_Y] = t484;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] = t513;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_Z] = residual_2;
+        size[SOLID_AXLE_UNKNOWN_ALPHA_Z] = t484;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] = t513;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        size[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] = t571;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        size[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] = t577;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        size[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] = t604;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        size[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] = t606;
+        tau[SOLID_AXLE_UNKNOWN_OF_RACK] = residual_10;
+        size[SOLID_AXLE_UNKNOWN_OF_RACK] = t608;
     }
     return GIC_OK;
 }
@@ -4148,7 +5261,7 @@ static GIC_COLD GIC_APART int solid_axle_check(solid_axle *self, gic_real time, 
     return status;
 }
 
-/* ---- the functions of solid_axle.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of solid_axle.h ------------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -4168,7 +5281,8 @@ static int solid_axle_locate(solid_axle *self, gic_real time, const gic_real *y,
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[SOLID_AXLE_STATE_ROOM])
+static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[SOLID_AXLE_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = solid_axle_locate(self, time, y, e);
@@ -4176,7 +5290,8 @@ static int solid_axle_evaluate(solid_axle *self, gic_real time, const gic_real *
     if (status == GIC_OK)
         status = solid_axle_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + SOLID_AXLE_TWIST, SOLID_AXLE_STATES - SOLID_AXLE_TWIST))
+    if (status == GIC_OK && SOLID_AXLE_STATES > SOLID_AXLE_TWIST && !GIC_FINITE(rate + SOLID_AXLE_TWIST,
+        SOLID_AXLE_STATES - SOLID_AXLE_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = solid_axle_check(self, time, y, e, rate);
@@ -4196,8 +5311,9 @@ int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_r
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int solid_axle_march(solid_axle *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -4208,7 +5324,7 @@ static int solid_axle_march(solid_axle *self, gic_real time)
         return status;
     memcpy(before, state, SOLID_AXLE_STATES * sizeof *state);
     for (i = 0; i < SOLID_AXLE_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = solid_axle_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, SOLID_AXLE_STATES * sizeof *state);
@@ -4463,7 +5579,8 @@ static const char *const solid_axle_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -4577,7 +5694,8 @@ const char *solid_axle_status_state(const solid_axle *self)
 const char *solid_axle_status_condition(const solid_axle *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < solid_axle_model.condition_count ? solid_axle_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < solid_axle_model.condition_count ? solid_axle_model.condition_text[condition] :
+        NULL;
 }
 
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy)
@@ -4590,9 +5708,10 @@ void solid_axle_restore(solid_axle *self, const solid_axle *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
-/* tau = residual of the equations of motion at accelerations acc, body by body: another way than solid_axle_dynamics. */
+/* tau = residual of the equations of motion at accelerations acc, body by body: another way than
+ * solid_axle_dynamics. */
 static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *acc, gic_real *tau)
 {
@@ -4600,241 +5719,434 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
-        const gic_real t3 = y[16] * R(0.056);
-        const gic_real t4 = y[16] * R(0.21300000000000008);
-        const gic_real t5 = y[15] * t3 + y[17] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[16] * t1 - y[17] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t9 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t10 = y[15] * t8 - y[16] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[SOLID_AXLE_STATE_OMEGA_X] * t3 + y[SOLID_AXLE_STATE_OMEGA_Z] * t4 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * R(0.056) - acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[SOLID_AXLE_STATE_OMEGA_Y] * t1 - y[SOLID_AXLE_STATE_OMEGA_Z] * t2 +
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] + (R(1.438648) * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t10 = y[SOLID_AXLE_STATE_OMEGA_X] * t8 - y[SOLID_AXLE_STATE_OMEGA_Y] * t9 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * acc[SOLID_AXLE_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t14 = y[17] * t9 - y[15] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = acc[10] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[17] * t16 + y[16] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (m[48] + acc[0] + m[54] * acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = m[42] * t25;
-        const gic_real t27 = R(1.688965) * y[17];
-        const gic_real t28 = t27 - y[15] * t25 - t26 - t26;
+        const gic_real t13 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t14 = y[SOLID_AXLE_STATE_OMEGA_Z] * t9 - y[SOLID_AXLE_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[SOLID_AXLE_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = acc[SOLID_AXLE_UNKNOWN_OF_RACK] + (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] *
+            R(0.4469));
+        const gic_real t17 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t18 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t19 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * t17 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * t18;
+        const gic_real t20 = y[SOLID_AXLE_STATE_OMEGA_Z] * t16 + y[SOLID_AXLE_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * t17 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * t18;
+        const gic_real t22 = y[SOLID_AXLE_STATE_OMEGA_Z] * t19 + y[SOLID_AXLE_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[SOLID_AXLE_STATE_OMEGA_Y] * t20 - y[SOLID_AXLE_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] + acc[SOLID_AXLE_UNKNOWN_ALPHA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L]);
+        const gic_real t24 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t25;
+        const gic_real t27 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t28 = t27 - y[SOLID_AXLE_STATE_OMEGA_X] * t25 - t26 - t26;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[16] * t25 - y[17] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[15] * t28 - y[16] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = m[48] * t24 - m[42] * t26 + (acc[5] + t32) + acc[6] * (m[54] * t24);
+        const gic_real t30 = y[SOLID_AXLE_STATE_OMEGA_Y] * t25 - y[SOLID_AXLE_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[SOLID_AXLE_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[SOLID_AXLE_STATE_OMEGA_X] * t28 - y[SOLID_AXLE_STATE_OMEGA_Y] * t30 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t24 -
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t26 + (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t32) +
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t24);
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[16];
-        const gic_real t37 = t35 + (t35 + (y[15] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[17] * t30 - y[15] * t37 + (t38 - acc[0] * t25);
-        const gic_real t40 = acc[4] + t39 - (m[42] * t35 + m[48] * t25) - acc[6] * (m[54] * t25);
+        const gic_real t35 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[SOLID_AXLE_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[SOLID_AXLE_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[SOLID_AXLE_STATE_OMEGA_Z] * t30 - y[SOLID_AXLE_STATE_OMEGA_X] * t37 + (t38 -
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t25);
+        const gic_real t40 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t39 -
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t35 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t25) - acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t25);
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t25 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[17] * t44 + y[16] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (m[78] + acc[0] + m[84] * acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t27 - y[15] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] + (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t12 -
+            t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] *
+            R(0.4469));
+        const gic_real t45 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t46 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t47 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * t45 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * t46;
+        const gic_real t48 = y[SOLID_AXLE_STATE_OMEGA_Z] * t44 + y[SOLID_AXLE_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * t45 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * t46;
+        const gic_real t50 = y[SOLID_AXLE_STATE_OMEGA_Z] * t47 + y[SOLID_AXLE_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[SOLID_AXLE_STATE_OMEGA_Y] * t48 - y[SOLID_AXLE_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] + acc[SOLID_AXLE_UNKNOWN_ALPHA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R]);
+        const gic_real t52 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t53;
+        const gic_real t55 = t27 - y[SOLID_AXLE_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[16] * t53 - y[17] * t56;
-        const gic_real t58 = y[15] * t55 - y[16] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = m[78] * t52 - m[72] * t54 + (acc[5] + t58) + acc[7] * (m[84] * t52);
+        const gic_real t57 = y[SOLID_AXLE_STATE_OMEGA_Y] * t53 - y[SOLID_AXLE_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[SOLID_AXLE_STATE_OMEGA_X] * t55 - y[SOLID_AXLE_STATE_OMEGA_Y] * t57 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t52 -
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t54 + (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t58) +
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t52);
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[15] * t56 - t36));
-        const gic_real t63 = y[17] * t57 - y[15] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - (m[72] * t61 + m[78] * t53) - acc[7] * (m[84] * t53);
+        const gic_real t61 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[SOLID_AXLE_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[SOLID_AXLE_STATE_OMEGA_Z] * t57 - y[SOLID_AXLE_STATE_OMEGA_X] * t62 + (t38 -
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t63 -
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t61 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t53) - acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t53);
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[139] + y[16];
-        const gic_real t68 = m[137] * (m[137] * R(4.7728205)) + (m[136] * (m[136] * R(7.58122)) + m[135] * (m[135] * R(4.8947505)));
-        const gic_real t69 = m[140] + y[17];
-        const gic_real t70 = m[134] * R(4.7728205);
-        const gic_real t71 = m[133] * R(7.58122);
-        const gic_real t72 = m[132] * R(4.8947505);
-        const gic_real t73 = m[137] * t70 + (m[136] * t71 + m[135] * t72);
-        const gic_real t74 = m[131] * R(4.7728205);
-        const gic_real t75 = m[130] * R(7.58122);
-        const gic_real t76 = m[129] * R(4.8947505);
-        const gic_real t77 = m[137] * t74 + (m[136] * t75 + m[135] * t76);
-        const gic_real t78 = m[138] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t67 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t68 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t69 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t70 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t72 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t73 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t70 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t71 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            t72);
+        const gic_real t74 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t75 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t76 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t77 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t74 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t75 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            t76);
+        const gic_real t78 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t79 = t68 * t69 + (t73 * t67 + t77 * t78);
-        const gic_real t80 = m[134] * t70 + (m[133] * t71 + m[132] * t72);
-        const gic_real t81 = m[134] * t74 + (m[133] * t75 + m[132] * t76);
+        const gic_real t80 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t70 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t71 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] *
+            t72);
+        const gic_real t81 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t74 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t75 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] *
+            t76);
         const gic_real t82 = t73 * t69 + (t80 * t67 + t81 * t78);
-        const gic_real t83 = m[146] + (acc[2] + (m[139] * y[15] - m[138] * y[16])) + m[152] * acc[10];
-        const gic_real t84 = t83 + m[158] * acc[6];
-        const gic_real t85 = m[145] + (acc[1] + (m[138] * y[17] - m[140] * y[15])) + m[151] * acc[10];
-        const gic_real t86 = t85 + m[157] * acc[6];
-        const gic_real t87 = m[131] * t74 + (m[130] * t75 + m[129] * t76);
-        const gic_real t88 = m[144] + (acc[0] + (m[140] * y[16] - m[139] * y[17])) + m[150] * acc[10];
-        const gic_real t89 = t88 + m[156] * acc[6];
+        const gic_real t83 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t84 = t83 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t85 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t86 = t85 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L];
+        const gic_real t87 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * t74 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * t75 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] *
+            t76);
+        const gic_real t88 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t89 = t88 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L];
         const gic_real t90 = t67 * t79 - t69 * t82 + (t77 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[134] * R(0.09182100000000004);
-        const gic_real t92 = m[132] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[133] * R(0.08910630000000008));
-        const gic_real t94 = m[131] * R(0.09182100000000004);
-        const gic_real t95 = m[129] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[130] * R(0.08910630000000008));
-        const gic_real t97 = m[137] * R(0.09182100000000004);
-        const gic_real t98 = m[135] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[136] * R(0.08910630000000008));
-        const gic_real t100 = m[140] * t96 - m[138] * t99;
-        const gic_real t101 = m[139] * t99 - m[140] * t93;
-        const gic_real t102 = m[138] * t100 - m[139] * t101 + (m[144] * t93 - m[145] * t96);
-        const gic_real t103 = m[142] + t100;
+        /* wheel tire_f_l */
+        const gic_real t91 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.08910630000000008));
+        const gic_real t94 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.08910630000000008));
+        const gic_real t97 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t100 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t96 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t99;
+        const gic_real t101 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t99 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t93;
+        const gic_real t102 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t100 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t101 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t93 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t96);
+        const gic_real t103 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] + t100;
         const gic_real t104 = R(1.653405) + t96;
-        const gic_real t105 = m[128] + t99;
-        const gic_real t106 = t103 + (t103 + (y[17] * t104 - y[15] * t105));
-        const gic_real t107 = m[127] + t93;
-        const gic_real t108 = t101 + (t101 + (y[16] * t105 - y[17] * t107));
-        const gic_real t109 = y[15] * t106 - y[16] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[149] + t102 + (acc[5] + t109) + acc[10] * (m[150] * t93 - m[151] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[161] + (m[156] * t93 - m[157] * t96));
+        const gic_real t105 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t104 - y[SOLID_AXLE_STATE_OMEGA_X] * t105));
+        const gic_real t107 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t105 - y[SOLID_AXLE_STATE_OMEGA_Z] * t107));
+        const gic_real t109 = y[SOLID_AXLE_STATE_OMEGA_X] * t106 - y[SOLID_AXLE_STATE_OMEGA_Y] * t108 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t107 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Z] + t102 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t109) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t93 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t96);
+        const gic_real t111 = t110 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            t93 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[138] * t93 - m[139] * t96;
-        const gic_real t114 = m[140] * t101 - m[138] * t113 + (m[146] * t96 - m[144] * t99);
-        const gic_real t115 = m[143] + t113;
-        const gic_real t116 = t115 + (t115 + (y[15] * t107 - y[16] * t104));
-        const gic_real t117 = y[17] * t108 - y[15] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[148] + t114 + (acc[4] + t117) + acc[10] * (m[152] * t96 - m[150] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[160] + (m[158] * t96 - m[156] * t99));
+        const gic_real t113 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t93 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t96;
+        const gic_real t114 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t101 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t113 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t96 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t99);
+        const gic_real t115 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[SOLID_AXLE_STATE_OMEGA_X] * t107 - y[SOLID_AXLE_STATE_OMEGA_Y] * t104));
+        const gic_real t117 = y[SOLID_AXLE_STATE_OMEGA_Z] * t108 - y[SOLID_AXLE_STATE_OMEGA_X] * t116 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t104 - acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Y] + t114 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t117) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t96 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t99);
+        const gic_real t119 = t118 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            t96 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[127] * t112 - m[128] * t120));
-        const gic_real t123 = m[175] + y[16];
-        const gic_real t124 = m[173] * (m[173] * R(4.7728205)) + (m[172] * (m[172] * R(7.58122)) + m[171] * (m[171] * R(4.8947505)));
-        const gic_real t125 = m[176] + y[17];
-        const gic_real t126 = m[170] * R(4.7728205);
-        const gic_real t127 = m[169] * R(7.58122);
-        const gic_real t128 = m[168] * R(4.8947505);
-        const gic_real t129 = m[173] * t126 + (m[172] * t127 + m[171] * t128);
-        const gic_real t130 = m[167] * R(4.7728205);
-        const gic_real t131 = m[166] * R(7.58122);
-        const gic_real t132 = m[165] * R(4.8947505);
-        const gic_real t133 = m[173] * t130 + (m[172] * t131 + m[171] * t132);
-        const gic_real t134 = m[174] + y[15];
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t112 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] *
+            t120));
+        /* inertia of wheel_f_r */
+        const gic_real t123 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t124 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t125 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t126 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t128 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t129 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t126 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t127 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t128);
+        const gic_real t130 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t131 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t132 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t133 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t130 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t131 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t132);
+        const gic_real t134 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t135 = t124 * t125 + (t129 * t123 + t133 * t134);
-        const gic_real t136 = m[170] * t126 + (m[169] * t127 + m[168] * t128);
-        const gic_real t137 = m[170] * t130 + (m[169] * t131 + m[168] * t132);
+        const gic_real t136 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t126 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t127 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t128);
+        const gic_real t137 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t130 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t131 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t132);
         const gic_real t138 = t129 * t125 + (t136 * t123 + t137 * t134);
-        const gic_real t139 = m[182] + (acc[2] + (m[175] * y[15] - m[174] * y[16])) + m[188] * acc[10];
-        const gic_real t140 = t139 + m[194] * acc[7];
-        const gic_real t141 = m[181] + (acc[1] + (m[174] * y[17] - m[176] * y[15])) + m[187] * acc[10];
-        const gic_real t142 = t141 + m[193] * acc[7];
-        const gic_real t143 = m[167] * t130 + (m[166] * t131 + m[165] * t132);
-        const gic_real t144 = m[180] + (acc[0] + (m[176] * y[16] - m[175] * y[17])) + m[186] * acc[10];
-        const gic_real t145 = t144 + m[192] * acc[7];
+        const gic_real t139 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t140 = t139 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t141 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t142 = t141 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R];
+        const gic_real t143 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * t130 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * t131 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * t132);
+        const gic_real t144 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * acc[SOLID_AXLE_UNKNOWN_OF_RACK];
+        const gic_real t145 = t144 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R];
         const gic_real t146 = t123 * t135 - t125 * t138 + (t133 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[170] * R(0.09182100000000004);
-        const gic_real t148 = m[168] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[169] * R(-0.08910630000000008));
-        const gic_real t150 = m[167] * R(0.09182100000000004);
-        const gic_real t151 = m[165] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[166] * R(-0.08910630000000008));
-        const gic_real t153 = m[173] * R(0.09182100000000004);
-        const gic_real t154 = m[171] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[172] * R(-0.08910630000000008));
-        const gic_real t156 = m[176] * t152 - m[174] * t155;
-        const gic_real t157 = m[175] * t155 - m[176] * t149;
-        const gic_real t158 = m[174] * t156 - m[175] * t157 + (m[180] * t149 - m[181] * t152);
-        const gic_real t159 = m[178] + t156;
+        /* wheel tire_f_r */
+        const gic_real t147 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t150 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t153 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t156 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t152 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t155;
+        const gic_real t157 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t155 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t149;
+        const gic_real t158 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t156 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t157 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t149 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t152);
+        const gic_real t159 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] + t156;
         const gic_real t160 = R(1.653405) + t152;
-        const gic_real t161 = m[164] + t155;
-        const gic_real t162 = t159 + (t159 + (y[17] * t160 - y[15] * t161));
-        const gic_real t163 = m[163] + t149;
-        const gic_real t164 = t157 + (t157 + (y[16] * t161 - y[17] * t163));
-        const gic_real t165 = y[15] * t162 - y[16] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[185] + t158 + (acc[5] + t165) + acc[10] * (m[186] * t149 - m[187] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[197] + (m[192] * t149 - m[193] * t152));
+        const gic_real t161 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t160 - y[SOLID_AXLE_STATE_OMEGA_X] * t161));
+        const gic_real t163 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t161 - y[SOLID_AXLE_STATE_OMEGA_Z] * t163));
+        const gic_real t165 = y[SOLID_AXLE_STATE_OMEGA_X] * t162 - y[SOLID_AXLE_STATE_OMEGA_Y] * t164 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t163 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Z] + t158 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t165) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t149 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t152);
+        const gic_real t167 = t166 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            t149 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[174] * t149 - m[175] * t152;
-        const gic_real t170 = m[176] * t157 - m[174] * t169 + (m[182] * t152 - m[180] * t155);
-        const gic_real t171 = m[179] + t169;
-        const gic_real t172 = t171 + (t171 + (y[15] * t163 - y[16] * t160));
-        const gic_real t173 = y[17] * t164 - y[15] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[184] + t170 + (acc[4] + t173) + acc[10] * (m[188] * t152 - m[186] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[196] + (m[194] * t152 - m[192] * t155));
+        const gic_real t169 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t149 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t152;
+        const gic_real t170 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t157 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t169 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t152 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t155);
+        const gic_real t171 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[SOLID_AXLE_STATE_OMEGA_X] * t163 - y[SOLID_AXLE_STATE_OMEGA_Y] * t160));
+        const gic_real t173 = y[SOLID_AXLE_STATE_OMEGA_Z] * t164 - y[SOLID_AXLE_STATE_OMEGA_X] * t172 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t160 - acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Y] + t170 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t173) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t152 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t155);
+        const gic_real t175 = t174 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            t152 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[103] + y[16];
-        const gic_real t179 = m[101] * (m[101] * R(163.103702)) + (m[100] * (m[100] * R(15.48644)) + m[99] * (m[99] * R(163.347562)));
-        const gic_real t180 = m[104] + y[17];
-        const gic_real t181 = m[98] * R(163.103702);
-        const gic_real t182 = m[97] * R(15.48644);
-        const gic_real t183 = m[96] * R(163.347562);
-        const gic_real t184 = m[101] * t181 + (m[100] * t182 + m[99] * t183);
-        const gic_real t185 = m[95] * R(163.103702);
-        const gic_real t186 = m[94] * R(15.48644);
-        const gic_real t187 = m[93] * R(163.347562);
-        const gic_real t188 = m[101] * t185 + (m[100] * t186 + m[99] * t187);
-        const gic_real t189 = m[102] + y[15];
+        /* inertia of axle */
+        const gic_real t178 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t179 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(163.103702)) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(15.48644)) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] *
+            R(163.347562)));
+        const gic_real t180 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t181 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(163.103702);
+        const gic_real t182 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(15.48644);
+        const gic_real t183 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(163.347562);
+        const gic_real t184 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t181 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t182 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t183);
+        const gic_real t185 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(163.103702);
+        const gic_real t186 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(15.48644);
+        const gic_real t187 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(163.347562);
+        const gic_real t188 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t185 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t186 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t187);
+        const gic_real t189 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t190 = t179 * t180 + (t184 * t178 + t188 * t189);
-        const gic_real t191 = m[98] * t181 + (m[97] * t182 + m[96] * t183);
-        const gic_real t192 = m[98] * t185 + (m[97] * t186 + m[96] * t187);
+        const gic_real t191 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t181 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t182 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t183);
+        const gic_real t192 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t185 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t186 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t187);
         const gic_real t193 = t184 * t180 + (t191 * t178 + t192 * t189);
-        const gic_real t194 = m[110] + (acc[2] + (m[103] * y[15] - m[102] * y[16])) + m[116] * acc[8];
-        const gic_real t195 = t194 + m[122] * acc[9];
-        const gic_real t196 = m[109] + (acc[1] + (m[102] * y[17] - m[104] * y[15])) + m[115] * acc[8];
-        const gic_real t197 = t196 + m[121] * acc[9];
-        const gic_real t198 = m[95] * t185 + (m[94] * t186 + m[93] * t187);
-        const gic_real t199 = m[108] + (acc[0] + (m[104] * y[16] - m[103] * y[17])) + m[114] * acc[8];
-        const gic_real t200 = t199 + m[120] * acc[9];
+        const gic_real t194 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t195 = t194 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t196 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t197 = t196 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R];
+        const gic_real t198 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * t185 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * t186 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t187);
+        const gic_real t199 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L];
+        const gic_real t200 = t199 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R];
         const gic_real t201 = t178 * t190 - t180 * t193 + (t188 * t195 + (t192 * t197 + t198 * t200));
-        const gic_real t202 = m[98] * R(-0.17228899999999997);
-        const gic_real t203 = m[96] * R(-0.03340499999999991);
-        const gic_real t204 = t202 + (t203 + m[97] * R(0.12));
-        const gic_real t205 = m[95] * R(-0.17228899999999997);
-        const gic_real t206 = m[93] * R(-0.03340499999999991);
-        const gic_real t207 = t205 + (t206 + m[94] * R(0.12));
-        const gic_real t208 = m[101] * R(-0.17228899999999997);
-        const gic_real t209 = m[99] * R(-0.03340499999999991);
-        const gic_real t210 = t208 + (t209 + m[100] * R(0.12));
-        const gic_real t211 = m[104] * t207 - m[102] * t210;
-        const gic_real t212 = m[103] * t210 - m[104] * t204;
-        const gic_real t213 = m[102] * t211 - m[103] * t212 + (m[108] * t204 - m[109] * t207);
-        const gic_real t214 = m[106] + t211;
-        const gic_real t215 = m[90] + t207;
-        const gic_real t216 = m[92] + t210;
-        const gic_real t217 = t214 + (t214 + (y[17] * t215 - y[15] * t216));
-        const gic_real t218 = m[105] + t212;
-        const gic_real t219 = m[91] + t204;
-        const gic_real t220 = t218 + (t218 + (y[16] * t216 - y[17] * t219));
-        const gic_real t221 = y[15] * t217 - y[16] * t220 + (acc[0] * t219 - acc[1] * t215);
-        const gic_real t222 = m[113] + t213 + (acc[5] + t221) + acc[8] * (m[119] + (m[114] * t204 - m[115] * t207));
-        const gic_real t223 = t222 + acc[9] * (m[125] + (m[120] * t204 - m[121] * t207));
+        /* wheel tire_r_l */
+        const gic_real t202 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t203 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t204 = t202 + (t203 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(0.12));
+        const gic_real t205 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t206 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t207 = t205 + (t206 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(0.12));
+        const gic_real t208 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t209 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t210 = t208 + (t209 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(0.12));
+        const gic_real t211 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t207 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t210;
+        const gic_real t212 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t210 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t204;
+        const gic_real t213 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t211 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t212 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] *
+            t204 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] * t207);
+        const gic_real t214 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] + t211;
+        const gic_real t215 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t207;
+        const gic_real t216 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t210;
+        const gic_real t217 = t214 + (t214 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t215 - y[SOLID_AXLE_STATE_OMEGA_X] * t216));
+        const gic_real t218 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] + t212;
+        const gic_real t219 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t204;
+        const gic_real t220 = t218 + (t218 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t216 - y[SOLID_AXLE_STATE_OMEGA_Z] * t219));
+        const gic_real t221 = y[SOLID_AXLE_STATE_OMEGA_X] * t217 - y[SOLID_AXLE_STATE_OMEGA_Y] * t220 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t219 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t215);
+        const gic_real t222 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Z] + t213 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + t221) + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * t204 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t207));
+        const gic_real t223 = t222 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t204 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t207));
         const gic_real t224 = t223 * R(271.11);
-        const gic_real t225 = m[102] * t204 - m[103] * t207;
-        const gic_real t226 = m[104] * t212 - m[102] * t225 + (m[110] * t207 - m[108] * t210);
-        const gic_real t227 = m[107] + t225;
-        const gic_real t228 = t227 + (t227 + (y[15] * t219 - y[16] * t215));
-        const gic_real t229 = y[17] * t220 - y[15] * t228 + (acc[2] * t215 - acc[0] * t216);
-        const gic_real t230 = m[112] + t226 + (acc[4] + t229) + acc[8] * (m[118] + (m[116] * t207 - m[114] * t210));
-        const gic_real t231 = t230 + acc[9] * (m[124] + (m[122] * t207 - m[120] * t210));
+        const gic_real t225 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t204 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t207;
+        const gic_real t226 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t212 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t225 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] *
+            t207 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] * t210);
+        const gic_real t227 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] + t225;
+        const gic_real t228 = t227 + (t227 + (y[SOLID_AXLE_STATE_OMEGA_X] * t219 - y[SOLID_AXLE_STATE_OMEGA_Y] * t215));
+        const gic_real t229 = y[SOLID_AXLE_STATE_OMEGA_Z] * t220 - y[SOLID_AXLE_STATE_OMEGA_X] * t228 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t215 - acc[SOLID_AXLE_UNKNOWN_ALPHA_X] * t216);
+        const gic_real t230 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Y] + t226 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] + t229) + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t207 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * t210));
+        const gic_real t231 = t230 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t207 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t210));
         const gic_real t232 = t231 * R(271.11);
         const gic_real t233 = t201 + (t204 * t224 - t210 * t232);
-        const gic_real t234 = t122 + (t177 + (m[163] * t168 - m[164] * t176)) + (t233 + (m[91] * t224 - m[92] * t232));
-        const gic_real t235 = t202 + (m[97] * R(1.029701) + t203);
+        const gic_real t234 = t122 + (t177 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t168 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t176)) + (t233 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t224 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t232));
+        const gic_real t235 = t202 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t203);
         const gic_real t236 = e[1] + e[1];
         const gic_real t237 = e[1] * t236;
         const gic_real t238 = e[2] + e[2];
@@ -4843,62 +6155,75 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t241 = e[3] * t238;
         const gic_real t242 = e[0] * t236;
         const gic_real t243 = t241 - t242;
-        const gic_real t244 = t205 + (m[94] * R(1.029701) + t206);
-        const gic_real t245 = m[91] + t235;
-        const gic_real t246 = m[90] + t244;
-        const gic_real t247 = m[107] + (m[102] * t235 - m[103] * t244) + (y[15] * t245 - y[16] * t246);
+        const gic_real t244 = t205 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t206);
+        const gic_real t245 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t235;
+        const gic_real t246 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t244;
+        const gic_real t247 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t235 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t244) + (y[SOLID_AXLE_STATE_OMEGA_X] * t245 - y[SOLID_AXLE_STATE_OMEGA_Y] * t246);
         const gic_real t248 = e[3] + e[3];
         const gic_real t249 = e[3] * t248;
         const gic_real t250 = R(1.0) - (t237 + t249);
-        const gic_real t251 = t208 + (m[100] * R(1.029701) + t209);
-        const gic_real t252 = m[92] + t251;
-        const gic_real t253 = m[106] + (m[104] * t244 - m[102] * t251) + (y[17] * t246 - y[15] * t252);
+        const gic_real t251 = t208 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t209);
+        const gic_real t252 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t251;
+        const gic_real t253 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t244 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t251) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t246 - y[SOLID_AXLE_STATE_OMEGA_X] * t252);
         const gic_real t254 = e[2] * t236;
         const gic_real t255 = e[0] * t248;
         const gic_real t256 = t254 + t255;
-        const gic_real t257 = m[105] + (m[103] * t251 - m[104] * t235) + (y[16] * t252 - y[17] * t245);
-        const gic_real t258 = y[13] + (t243 * t247 + (t250 * t253 + t256 * t257));
+        const gic_real t257 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t251 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t235) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t252 - y[SOLID_AXLE_STATE_OMEGA_Z] * t245);
+        const gic_real t258 = y[SOLID_AXLE_STATE_V_Y] + (t243 * t247 + (t250 * t253 + t256 * t257));
         const gic_real t259 = e[1] * t248;
         const gic_real t260 = e[0] * t238;
         const gic_real t261 = t259 + t260;
         const gic_real t262 = t254 - t255;
         const gic_real t263 = R(1.0) - (t239 + t249);
-        const gic_real t264 = y[0] + (t261 * t252 + (t262 * t245 + t263 * t246));
-        const gic_real t265 = y[1] + (t243 * t252 + (t250 * t245 + t256 * t246));
+        const gic_real t264 = y[SOLID_AXLE_STATE_R_X] + (t261 * t252 + (t262 * t245 + t263 * t246));
+        const gic_real t265 = y[SOLID_AXLE_STATE_R_Y] + (t243 * t252 + (t250 * t245 + t256 * t246));
         gic_real road266[3];
         if (!solid_axle_road_height(self, time, t264, t265, road266))
             return GIC_ERROR_ROAD;
-        const gic_real t267 = y[12] + (t261 * t247 + (t262 * t253 + t263 * t257));
+        const gic_real t267 = y[SOLID_AXLE_STATE_V_X] + (t261 * t247 + (t262 * t253 + t263 * t257));
         const gic_real t268 = t241 + t242;
         const gic_real t269 = t259 - t260;
-        const gic_real t270 = y[14] + (t240 * t247 + (t268 * t253 + t269 * t257));
+        const gic_real t270 = y[SOLID_AXLE_STATE_V_Z] + (t240 * t247 + (t268 * t253 + t269 * t257));
         const gic_real t271 = t258 * road266[2] + t267 * road266[1] - t270;
-        const gic_real t272 = y[2] + (t240 * t252 + (t268 * t245 + t269 * t246));
+        const gic_real t272 = y[SOLID_AXLE_STATE_R_Z] + (t240 * t252 + (t268 * t245 + t269 * t246));
         const gic_real t273 = R(0.4699) + road266[0] - t272;
         const gic_real t274 = GIC_MIN(GIC_MAX(R(100.0) * t273, R(0.0)), R(1.0));
         const gic_real t275 = t271 * (R(500.0) * ((R(3.0) - (t274 + t274)) * (t274 * t274)));
         const gic_real t276 = GIC_MAX(t275 + R(283000.0) * t273, R(0.0));
         const gic_real t277 = t240 * t276;
         const gic_real t278 = t268 * t276;
-        const gic_real t279 = t202 + (t203 + m[97] * R(-0.789701));
-        const gic_real t280 = t205 + (t206 + m[94] * R(-0.789701));
-        const gic_real t281 = m[91] + t279;
-        const gic_real t282 = m[90] + t280;
-        const gic_real t283 = m[107] + (m[102] * t279 - m[103] * t280) + (y[15] * t281 - y[16] * t282);
-        const gic_real t284 = t208 + (t209 + m[100] * R(-0.789701));
-        const gic_real t285 = m[92] + t284;
-        const gic_real t286 = m[106] + (m[104] * t280 - m[102] * t284) + (y[17] * t282 - y[15] * t285);
-        const gic_real t287 = m[105] + (m[103] * t284 - m[104] * t279) + (y[16] * t285 - y[17] * t281);
-        const gic_real t288 = y[13] + (t243 * t283 + (t250 * t286 + t256 * t287));
-        const gic_real t289 = y[0] + (t261 * t285 + (t262 * t281 + t263 * t282));
-        const gic_real t290 = y[1] + (t243 * t285 + (t250 * t281 + t256 * t282));
+        /* wheel tire_r_r */
+        const gic_real t279 = t202 + (t203 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t280 = t205 + (t206 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t281 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t279;
+        const gic_real t282 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t280;
+        const gic_real t283 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t279 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t280) + (y[SOLID_AXLE_STATE_OMEGA_X] * t281 - y[SOLID_AXLE_STATE_OMEGA_Y] * t282);
+        const gic_real t284 = t208 + (t209 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t285 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t284;
+        const gic_real t286 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t280 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t284) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t282 - y[SOLID_AXLE_STATE_OMEGA_X] * t285);
+        const gic_real t287 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t284 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t279) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t285 - y[SOLID_AXLE_STATE_OMEGA_Z] * t281);
+        const gic_real t288 = y[SOLID_AXLE_STATE_V_Y] + (t243 * t283 + (t250 * t286 + t256 * t287));
+        const gic_real t289 = y[SOLID_AXLE_STATE_R_X] + (t261 * t285 + (t262 * t281 + t263 * t282));
+        const gic_real t290 = y[SOLID_AXLE_STATE_R_Y] + (t243 * t285 + (t250 * t281 + t256 * t282));
         gic_real road291[3];
         if (!solid_axle_road_height(self, time, t289, t290, road291))
             return GIC_ERROR_ROAD;
-        const gic_real t292 = y[12] + (t261 * t283 + (t262 * t286 + t263 * t287));
-        const gic_real t293 = y[14] + (t240 * t283 + (t268 * t286 + t269 * t287));
+        const gic_real t292 = y[SOLID_AXLE_STATE_V_X] + (t261 * t283 + (t262 * t286 + t263 * t287));
+        const gic_real t293 = y[SOLID_AXLE_STATE_V_Z] + (t240 * t283 + (t268 * t286 + t269 * t287));
         const gic_real t294 = t288 * road291[2] + t292 * road291[1] - t293;
-        const gic_real t295 = y[2] + (t240 * t285 + (t268 * t281 + t269 * t282));
+        const gic_real t295 = y[SOLID_AXLE_STATE_R_Z] + (t240 * t285 + (t268 * t281 + t269 * t282));
         const gic_real t296 = R(0.4699) + road291[0] - t295;
         const gic_real t297 = GIC_MIN(GIC_MAX(R(100.0) * t296, R(0.0)), R(1.0));
         const gic_real t298 = t294 * (R(500.0) * ((R(3.0) - (t297 + t297)) * (t297 * t297)));
@@ -4906,25 +6231,36 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t300 = t240 * t299;
         const gic_real t301 = t268 * t299;
         const gic_real t302 = t235 * t277 - t251 * t278 + (t279 * t300 - t284 * t301);
-        const gic_real t303 = t147 + (m[169] * R(-0.12319000000000002) + t148);
-        const gic_real t304 = t150 + (m[166] * R(-0.12319000000000002) + t151);
-        const gic_real t305 = m[163] + t303;
+        const gic_real t303 = t147 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) +
+            t148);
+        const gic_real t304 = t150 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) +
+            t151);
+        const gic_real t305 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t303;
         const gic_real t306 = R(1.653405) + t304;
-        const gic_real t307 = m[179] + (m[174] * t303 - m[175] * t304) + (y[15] * t305 - y[16] * t306);
-        const gic_real t308 = t153 + (m[172] * R(-0.12319000000000002) + t154);
-        const gic_real t309 = m[164] + t308;
-        const gic_real t310 = m[178] + (m[176] * t304 - m[174] * t308) + (y[17] * t306 - y[15] * t309);
-        const gic_real t311 = m[175] * t308 - m[176] * t303 + (y[16] * t309 - y[17] * t305);
-        const gic_real t312 = y[13] + (t243 * t307 + (t250 * t310 + t256 * t311));
-        const gic_real t313 = y[0] + (t261 * t309 + (t262 * t305 + t263 * t306));
-        const gic_real t314 = y[1] + (t243 * t309 + (t250 * t305 + t256 * t306));
+        const gic_real t307 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t303 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t304) + (y[SOLID_AXLE_STATE_OMEGA_X] * t305 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t306);
+        const gic_real t308 = t153 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) +
+            t154);
+        const gic_real t309 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t308;
+        const gic_real t310 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t304 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t308) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t306 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t309);
+        const gic_real t311 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t308 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t303 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t309 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t305);
+        const gic_real t312 = y[SOLID_AXLE_STATE_V_Y] + (t243 * t307 + (t250 * t310 + t256 * t311));
+        const gic_real t313 = y[SOLID_AXLE_STATE_R_X] + (t261 * t309 + (t262 * t305 + t263 * t306));
+        const gic_real t314 = y[SOLID_AXLE_STATE_R_Y] + (t243 * t309 + (t250 * t305 + t256 * t306));
         gic_real road315[3];
         if (!solid_axle_road_height(self, time, t313, t314, road315))
             return GIC_ERROR_ROAD;
-        const gic_real t316 = y[12] + (t261 * t307 + (t262 * t310 + t263 * t311));
-        const gic_real t317 = y[14] + (t240 * t307 + (t268 * t310 + t269 * t311));
+        const gic_real t316 = y[SOLID_AXLE_STATE_V_X] + (t261 * t307 + (t262 * t310 + t263 * t311));
+        const gic_real t317 = y[SOLID_AXLE_STATE_V_Z] + (t240 * t307 + (t268 * t310 + t269 * t311));
         const gic_real t318 = t312 * road315[2] + t316 * road315[1] - t317;
-        const gic_real t319 = y[2] + (t240 * t309 + (t268 * t305 + t269 * t306));
+        const gic_real t319 = y[SOLID_AXLE_STATE_R_Z] + (t240 * t309 + (t268 * t305 + t269 * t306));
         const gic_real t320 = R(0.4699) + road315[0] - t319;
         const gic_real t321 = GIC_MIN(GIC_MAX(R(100.0) * t320, R(0.0)), R(1.0));
         const gic_real t322 = t318 * (R(500.0) * ((R(3.0) - (t321 + t321)) * (t321 * t321)));
@@ -4932,25 +6268,33 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t324 = t240 * t323;
         const gic_real t325 = t268 * t323;
         const gic_real t326 = t303 * t324 - t308 * t325;
-        const gic_real t327 = t91 + (m[133] * R(0.12319000000000002) + t92);
-        const gic_real t328 = t94 + (m[130] * R(0.12319000000000002) + t95);
-        const gic_real t329 = m[127] + t327;
+        const gic_real t327 = t91 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) + t92);
+        const gic_real t328 = t94 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) + t95);
+        const gic_real t329 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t327;
         const gic_real t330 = R(1.653405) + t328;
-        const gic_real t331 = m[143] + (m[138] * t327 - m[139] * t328) + (y[15] * t329 - y[16] * t330);
-        const gic_real t332 = t97 + (m[136] * R(0.12319000000000002) + t98);
-        const gic_real t333 = m[128] + t332;
-        const gic_real t334 = m[142] + (m[140] * t328 - m[138] * t332) + (y[17] * t330 - y[15] * t333);
-        const gic_real t335 = m[139] * t332 - m[140] * t327 + (y[16] * t333 - y[17] * t329);
-        const gic_real t336 = y[13] + (t243 * t331 + (t250 * t334 + t256 * t335));
-        const gic_real t337 = y[0] + (t261 * t333 + (t262 * t329 + t263 * t330));
-        const gic_real t338 = y[1] + (t243 * t333 + (t250 * t329 + t256 * t330));
+        const gic_real t331 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t327 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t328) + (y[SOLID_AXLE_STATE_OMEGA_X] * t329 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t330);
+        const gic_real t332 = t97 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) + t98);
+        const gic_real t333 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t332;
+        const gic_real t334 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t328 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t332) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t330 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t333);
+        const gic_real t335 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t332 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t327 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t333 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t329);
+        const gic_real t336 = y[SOLID_AXLE_STATE_V_Y] + (t243 * t331 + (t250 * t334 + t256 * t335));
+        const gic_real t337 = y[SOLID_AXLE_STATE_R_X] + (t261 * t333 + (t262 * t329 + t263 * t330));
+        const gic_real t338 = y[SOLID_AXLE_STATE_R_Y] + (t243 * t333 + (t250 * t329 + t256 * t330));
         gic_real road339[3];
         if (!solid_axle_road_height(self, time, t337, t338, road339))
             return GIC_ERROR_ROAD;
-        const gic_real t340 = y[12] + (t261 * t331 + (t262 * t334 + t263 * t335));
-        const gic_real t341 = y[14] + (t240 * t331 + (t268 * t334 + t269 * t335));
+        const gic_real t340 = y[SOLID_AXLE_STATE_V_X] + (t261 * t331 + (t262 * t334 + t263 * t335));
+        const gic_real t341 = y[SOLID_AXLE_STATE_V_Z] + (t240 * t331 + (t268 * t334 + t269 * t335));
         const gic_real t342 = t336 * road339[2] + t340 * road339[1] - t341;
-        const gic_real t343 = y[2] + (t240 * t333 + (t268 * t329 + t269 * t330));
+        const gic_real t343 = y[SOLID_AXLE_STATE_R_Z] + (t240 * t333 + (t268 * t329 + t269 * t330));
         const gic_real t344 = road339[0] + R(0.4699) - t343;
         const gic_real t345 = GIC_MIN(GIC_MAX(t344 * R(100.0), R(0.0)), R(1.0));
         const gic_real t346 = t342 * ((R(3.0) - (t345 + t345)) * (t345 * t345) * R(500.0));
@@ -4958,148 +6302,253 @@ static GIC_COLD int solid_axle_inverse(const solid_axle *self, gic_real time, co
         const gic_real t348 = t240 * t347;
         const gic_real t349 = t268 * t347;
         const gic_real t350 = t327 * t348 - t332 * t349;
-        const gic_real t351 = t350 + (m[127] * t348 - m[128] * t349) + (m[163] * t324 - m[164] * t325);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t351 = t350 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t348 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t349) + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] *
+            t324 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t325);
         const gic_real t352 = t277 + t300;
         const gic_real t353 = t278 + t301;
-        const gic_real t354 = t302 + (t326 + t351 + (m[91] * t352 - m[92] * t353));
-        const gic_real t355 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t356 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t355 + y[16] * t3));
-        const gic_real t357 = y[16] * t13 - y[17] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t358 = acc[3] + t357;
+        const gic_real t354 = t302 + (t326 + t351 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t352 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t353));
+        const gic_real t355 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t356 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000008) - (y[SOLID_AXLE_STATE_OMEGA_Z] * t355 + y[SOLID_AXLE_STATE_OMEGA_Y] * t3));
+        const gic_real t357 = y[SOLID_AXLE_STATE_OMEGA_Y] * t13 - y[SOLID_AXLE_STATE_OMEGA_Z] * t8 +
+            (R(0.05422899999999997) * acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] - m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] *
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_Z]);
+        const gic_real t358 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t357;
         const gic_real t359 = t358 * R(9.072);
-        const gic_real t360 = y[16] * t37 - y[17] * t28 + (acc[1] * t25 - acc[2] * t29);
-        const gic_real t361 = acc[3] + t360;
+        const gic_real t360 = y[SOLID_AXLE_STATE_OMEGA_Y] * t37 - y[SOLID_AXLE_STATE_OMEGA_Z] * t28 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t25 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t361 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t360;
         const gic_real t362 = t361 * R(23.965);
-        const gic_real t363 = y[16] * t62 - y[17] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t364 = acc[3] + t363;
+        const gic_real t363 = y[SOLID_AXLE_STATE_OMEGA_Y] * t62 - y[SOLID_AXLE_STATE_OMEGA_Z] * t55 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t53 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t364 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t363;
         const gic_real t365 = R(23.965) * t364;
-        const gic_real t366 = m[139] * t113 - m[140] * t100 + (m[145] * t99 - m[146] * t93);
-        const gic_real t367 = y[16] * t116 - y[17] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t368 = t366 + (acc[3] + t367) + acc[10] * (m[151] * t99 - m[152] * t93);
-        const gic_real t369 = (t368 + acc[6] * (m[157] * t99 - m[158] * t93)) * R(90.555);
-        const gic_real t370 = m[175] * t169 - m[176] * t156 + (m[181] * t155 - m[182] * t149);
-        const gic_real t371 = y[16] * t172 - y[17] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t372 = t370 + (acc[3] + t371) + acc[10] * (m[187] * t155 - m[188] * t149);
-        const gic_real t373 = R(90.555) * (t372 + acc[7] * (m[193] * t155 - m[194] * t149));
+        const gic_real t366 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t113 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t100 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t99 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t93);
+        const gic_real t367 = y[SOLID_AXLE_STATE_OMEGA_Y] * t116 - y[SOLID_AXLE_STATE_OMEGA_Z] * t106 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t105 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t368 = t366 + (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t367) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t99 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t93);
+        const gic_real t369 = (t368 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t99 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t93)) * R(90.555);
+        const gic_real t370 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t169 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t156 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t155 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t149);
+        const gic_real t371 = y[SOLID_AXLE_STATE_OMEGA_Y] * t172 - y[SOLID_AXLE_STATE_OMEGA_Z] * t162 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t161 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t372 = t370 + (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t371) + acc[SOLID_AXLE_UNKNOWN_OF_RACK] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t155 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t149);
+        const gic_real t373 = R(90.555) * (t372 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t155 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t149));
         const gic_real t374 = t356 * R(2086.52) + t359 + t362 + t365 + t369 + t373;
-        const gic_real t375 = m[103] * t225 - m[104] * t211 + (m[109] * t210 - m[110] * t204);
-        const gic_real t376 = y[16] * t228 - y[17] * t217 + (acc[1] * t216 - acc[2] * t219);
-        const gic_real t377 = m[111] + t375 + (acc[3] + t376) + acc[8] * (m[117] + (m[115] * t210 - m[116] * t204));
-        const gic_real t378 = t377 + acc[9] * (m[123] + (m[121] * t210 - m[122] * t204));
+        const gic_real t375 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t225 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t211 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] *
+            t210 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] * t204);
+        const gic_real t376 = y[SOLID_AXLE_STATE_OMEGA_Y] * t228 - y[SOLID_AXLE_STATE_OMEGA_Z] * t217 +
+            (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * t216 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * t219);
+        const gic_real t377 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_X] + t375 +
+            (acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] + t376) + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t210 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t204));
+        const gic_real t378 = t377 + acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t210 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t204));
         const gic_real t379 = t378 * R(271.11);
         const gic_real t380 = t269 * t276;
         const gic_real t381 = t269 * t299;
         const gic_real t382 = t380 + t381;
         const gic_real t383 = t269 * t347;
         const gic_real t384 = t269 * t323;
-        const gic_real t385 = y[15] * R(1078.52);
-        const gic_real t386 = acc[5] + (y[15] * t355 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t387 = y[17] * t385 - y[15] * t1 + acc[1] * R(2955.66) + (t356 * R(444.4287600000002) - t386 * R(116.84512));
-        const gic_real t388 = m[42] + y[15];
+        const gic_real t385 = y[SOLID_AXLE_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t386 = acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] + (y[SOLID_AXLE_STATE_OMEGA_X] * t355 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t4 - acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t387 = y[SOLID_AXLE_STATE_OMEGA_Z] * t385 - y[SOLID_AXLE_STATE_OMEGA_X] * t1 +
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] * R(2955.66) + (t356 * R(444.4287600000002) - t386 * R(116.84512));
+        const gic_real t388 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t389 = R(0.4469) * t388;
-        const gic_real t390 = acc[2] - m[42] * y[16];
-        const gic_real t391 = acc[1] + m[42] * y[17];
-        const gic_real t392 = y[17] * t389 - t388 * t20 + (t19 * t390 + t21 * t391);
-        const gic_real t393 = t387 + (acc[1] + (t358 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t392 + t25 * t362 - t33 * R(40.476046225));
-        const gic_real t394 = m[72] + y[15];
+        const gic_real t390 = acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] - m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t391 = acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] + m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t392 = y[SOLID_AXLE_STATE_OMEGA_Z] * t389 - t388 * t20 + (t19 * t390 + t21 * t391);
+        const gic_real t393 = t387 + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] + (t358 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t392 + t25 * t362 - t33 * R(40.476046225));
+        const gic_real t394 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X];
         const gic_real t395 = R(0.4469) * t394;
-        const gic_real t396 = acc[2] - m[72] * y[16];
-        const gic_real t397 = acc[1] + m[72] * y[17];
-        const gic_real t398 = y[17] * t395 - t394 * t48 + (t47 * t396 + t49 * t397);
+        const gic_real t396 = acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] - m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t397 = acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] + m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t398 = y[SOLID_AXLE_STATE_OMEGA_Z] * t395 - t394 * t48 + (t47 * t396 + t49 * t397);
         const gic_real t399 = t77 * t69 + (t81 * t67 + t87 * t78);
         const gic_real t400 = t69 * t399 - t78 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t401 = t400 + (t99 * t369 - t96 * t112);
-        const gic_real t402 = t393 + (t398 + t53 * t365 - R(40.476046225) * t59) + (t401 + (m[128] * t369 - t111 * R(149.724089775)));
+        const gic_real t402 = t393 + (t398 + t53 * t365 - R(40.476046225) * t59) + (t401 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t369 - t111 * R(149.724089775)));
         const gic_real t403 = t133 * t125 + (t137 * t123 + t143 * t134);
         const gic_real t404 = t125 * t403 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t405 = t404 + (t155 * t373 - t152 * t168);
         const gic_real t406 = t188 * t180 + (t192 * t178 + t198 * t189);
         const gic_real t407 = t180 * t406 - t189 * t190 + (t184 * t195 + (t191 * t197 + t192 * t200));
         const gic_real t408 = t407 + (t210 * t379 - t207 * t224);
-        const gic_real t409 = t402 + (t405 + (m[164] * t373 - R(149.724089775) * t167)) + (t408 + (m[92] * t379 - m[90] * t224));
+        const gic_real t409 = t402 + (t405 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t373 -
+            R(149.724089775) * t167)) + (t408 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t379 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t224));
         const gic_real t410 = t251 * t380 - t244 * t277 + (t284 * t381 - t280 * t300);
         const gic_real t411 = t308 * t384 - t304 * t324;
         const gic_real t412 = t332 * t383 - t328 * t348;
-        const gic_real t413 = t412 + (m[128] * t383 - R(1.653405) * t348) + (m[164] * t384 - R(1.653405) * t324);
-        const gic_real t414 = t410 + (t411 + t413 + (m[92] * t382 - m[90] * t352));
+        const gic_real t413 = t412 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] * t383 - R(1.653405) * t348) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] * t384 - R(1.653405) * t324);
+        const gic_real t414 = t410 + (t411 + t413 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] * t382 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t352));
         const gic_real t415 = t15 * R(9.072);
         const gic_real t416 = t6 * R(2086.52) + t415 + t41 + t65 + t120 + t176;
-        const gic_real t417 = y[15] * t2 - y[16] * t385 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t418 = t388 * t22 - y[16] * t389 + (t16 * t390 + t19 * t391);
+        const gic_real t417 = y[SOLID_AXLE_STATE_OMEGA_X] * t2 - y[SOLID_AXLE_STATE_OMEGA_Y] * t385 +
+            acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t418 = t388 * t22 - y[SOLID_AXLE_STATE_OMEGA_Y] * t389 + (t16 * t390 + t19 * t391);
         const gic_real t419 = t418 - t24 * t362 + (t40 * R(40.476046225) - t361 * R(7.359315990000001));
-        const gic_real t420 = t417 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t359)) + t419;
-        const gic_real t421 = t394 * t50 - y[16] * t395 + (t44 * t396 + t47 * t397);
+        const gic_real t420 = t417 + (acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * t359)) + t419;
+        const gic_real t421 = t394 * t50 - y[SOLID_AXLE_STATE_OMEGA_Y] * t395 + (t44 * t396 + t47 * t397);
         const gic_real t422 = t421 - t52 * t365 + (R(40.476046225) * t64 - t364 * R(-7.359315990000001));
         const gic_real t423 = t78 * t82 - t67 * t399 + (t68 * t84 + (t73 * t86 + t77 * t89));
         const gic_real t424 = t423 + (t96 * t120 - t93 * t369);
-        const gic_real t425 = t420 + t422 + (t424 + (t119 * R(149.724089775) - m[127] * t369));
+        const gic_real t425 = t420 + t422 + (t424 + (t119 * R(149.724089775) -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t369));
         const gic_real t426 = t134 * t138 - t123 * t403 + (t124 * t140 + (t129 * t142 + t133 * t145));
         const gic_real t427 = t426 + (t152 * t176 - t149 * t373);
         const gic_real t428 = t189 * t193 - t178 * t406 + (t179 * t195 + (t184 * t197 + t188 * t200));
         const gic_real t429 = t428 + (t207 * t232 - t204 * t379);
-        const gic_real t430 = t425 + (t427 + (R(149.724089775) * t175 - m[163] * t373)) + (t429 + (m[90] * t232 - m[91] * t379));
+        const gic_real t430 = t425 + (t427 + (R(149.724089775) * t175 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t373)) + (t429 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t232 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t379));
         const gic_real t431 = t244 * t278 - t235 * t380 + (t280 * t301 - t279 * t381);
         const gic_real t432 = t304 * t325 - t303 * t384;
         const gic_real t433 = t328 * t349 - t327 * t383;
-        const gic_real t434 = t433 + (R(1.653405) * t349 - m[127] * t383) + (R(1.653405) * t325 - m[163] * t384);
-        const gic_real t435 = t431 + (t432 + t434 + (m[90] * t353 - m[91] * t382));
+        const gic_real t434 = t433 + (R(1.653405) * t349 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] * t383) +
+            (R(1.653405) * t325 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] * t384);
+        const gic_real t435 = t431 + (t432 + t434 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] * t353 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] * t382));
         const gic_real t436 = t386 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
-        const gic_real t437 = m[161] * t112 + m[160] * t120 + (m[158] * t424 + (m[157] * t401 + m[156] * t121));
-        const gic_real t438 = m[161] * t348 + m[160] * t349 + (m[158] * t433 + (m[157] * t412 + m[156] * t350));
-        const gic_real t439 = m[54] * t42 + t437 - (t438 - ((x[0] - R(0.31907)) * R(167070.9) + xd[0] * R(17490.8)));
-        const gic_real t440 = m[197] * t168 + m[196] * t176 + (m[194] * t427 + (m[193] * t405 + m[192] * t177));
-        const gic_real t441 = m[197] * t324 + m[196] * t325 + (m[194] * t432 + (m[193] * t411 + m[192] * t326));
-        const gic_real t442 = m[84] * t66 + t440 - (t441 - (R(167070.9) * (x[1] - R(0.31907)) + xd[1] * R(17490.8)));
-        const gic_real t443 = m[119] * t224 + (m[118] * t232 + m[117] * t379) + (m[116] * t429 + (m[115] * t408 + m[114] * t233));
-        const gic_real t444 = m[119] * t352 + (m[118] * t353 + m[117] * t382) + (m[116] * t431 + (m[115] * t410 + m[114] * t302));
-        const gic_real t445 = t443 - (t444 - ((x[2] - R(0.41347)) * R(63000.0) + xd[2] * R(4100.0)));
-        const gic_real t446 = m[125] * t224 + (m[124] * t232 + m[123] * t379) + (m[122] * t429 + (m[121] * t408 + m[120] * t233));
-        const gic_real t447 = m[125] * t352 + (m[124] * t353 + m[123] * t382) + (m[122] * t431 + (m[121] * t410 + m[120] * t302));
-        const gic_real t448 = t446 - (t447 - (R(63000.0) * (x[3] - R(0.41347)) + xd[3] * R(4100.0)));
-        const gic_real t449 = t415 + (m[152] * t424 + (m[151] * t401 + m[150] * t121));
-        const gic_real t450 = t449 + (m[188] * t427 + (m[187] * t405 + m[186] * t177));
-        const gic_real t451 = m[152] * t433 + (m[151] * t412 + m[150] * t350) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t452 = t451 + (m[188] * t432 + (m[187] * t411 + m[186] * t326));
-        const gic_real t453 = t234 - t354;
-        const gic_real t454 = t374 + t379 - (t382 + (t383 + t384));
-        const gic_real t455 = t409 - t414;
-        const gic_real t456 = t416 + t232 - (t353 + (t349 + t325));
-        const gic_real t457 = t430 - t435;
-        const gic_real t458 = t436 + t224 - (t352 + (t348 + t324));
-        const gic_real t459 = t450 - t452;
-        tau[0] = t453;
-        tau[3] = t454;
-        tau[1] = t455;
-        tau[4] = t456;
-        tau[2] = t457;
-        tau[5] = t458;
-        tau[6] = t439;
-        tau[7] = t442;
-        tau[8] = t445;
-        tau[9] = t448;
-        tau[10] = t459;
+        const gic_real t437 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] * t112 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] * t120 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t424 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t401 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t121));
+        const gic_real t438 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] * t348 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] * t349 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t433 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t412 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t350));
+        const gic_real residual_6 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t42 + t437 - (t438 -
+            ((x[SOLID_AXLE_X_SPRING_F_L] - R(0.31907)) * R(167070.9) + xd[SOLID_AXLE_X_SPRING_F_L] * R(17490.8)));
+        const gic_real t440 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] * t168 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] * t176 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t427 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t405 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t177));
+        const gic_real t441 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] * t324 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] * t325 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t432 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t411 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t326));
+        const gic_real residual_7 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t66 + t440 - (t441 -
+            (R(167070.9) * (x[SOLID_AXLE_X_SPRING_F_R] - R(0.31907)) + xd[SOLID_AXLE_X_SPRING_F_R] * R(17490.8)));
+        const gic_real t443 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] * t224 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] * t232 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] *
+            t379) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t429 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t408 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t233));
+        const gic_real t444 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] * t352 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] * t353 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] *
+            t382) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t431 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t410 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t302));
+        const gic_real residual_8 = t443 - (t444 - ((x[SOLID_AXLE_X_SPRING_R_L] - R(0.41347)) * R(63000.0) +
+            xd[SOLID_AXLE_X_SPRING_R_L] * R(4100.0)));
+        const gic_real t446 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] * t224 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] * t232 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] *
+            t379) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t429 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t408 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            t233));
+        const gic_real t447 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] * t352 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] * t353 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] *
+            t382) + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t431 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t410 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            t302));
+        const gic_real residual_9 = t446 - (t447 - (R(63000.0) * (x[SOLID_AXLE_X_SPRING_R_R] - R(0.41347)) +
+            xd[SOLID_AXLE_X_SPRING_R_R] * R(4100.0)));
+        const gic_real t449 = t415 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t424 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t401 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t121));
+        const gic_real t450 = t449 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t427 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t405 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t177));
+        const gic_real t451 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t433 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t412 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t350) - (x[SOLID_AXLE_X_RACK] * R(100000.0) +
+            xd[SOLID_AXLE_X_RACK] * R(12000.0));
+        const gic_real t452 = t451 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t432 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t411 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t326));
+        const gic_real residual_0 = t234 - t354;
+        const gic_real residual_3 = t374 + t379 - (t382 + (t383 + t384));
+        const gic_real residual_1 = t409 - t414;
+        const gic_real residual_4 = t416 + t232 - (t353 + (t349 + t325));
+        const gic_real residual_2 = t430 - t435;
+        const gic_real residual_5 = t436 + t224 - (t352 + (t348 + t324));
+        const gic_real residual_10 = t450 - t452;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_X] = residual_0;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[SOLID_AXLE_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] = residual_6;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] = residual_7;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] = residual_8;
+        tau[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] = residual_9;
+        tau[SOLID_AXLE_UNKNOWN_OF_RACK] = residual_10;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(0.31907)) * R(167070.9)) + xd[1] * (R(167070.9) * (x[1] - R(0.31907)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(0.41347)) * R(63000.0)) + xd[3] * (R(63000.0) * (x[3] - R(0.41347)));
-        const gic_real t3 = t2 + xd[4] * (x[4] * R(100000.0));
+        /* force spring_f_r */
+        const gic_real t1 = xd[SOLID_AXLE_X_SPRING_F_L] * ((x[SOLID_AXLE_X_SPRING_F_L] - R(0.31907)) * R(167070.9)) +
+            xd[SOLID_AXLE_X_SPRING_F_R] * (R(167070.9) * (x[SOLID_AXLE_X_SPRING_F_R] - R(0.31907)));
+        /* force spring_r_r */
+        const gic_real t2 = t1 + xd[SOLID_AXLE_X_SPRING_R_L] * ((x[SOLID_AXLE_X_SPRING_R_L] - R(0.41347)) *
+            R(63000.0)) + xd[SOLID_AXLE_X_SPRING_R_R] * (R(63000.0) * (x[SOLID_AXLE_X_SPRING_R_R] - R(0.41347)));
+        /* force rack */
+        const gic_real t3 = t2 + xd[SOLID_AXLE_X_RACK] * (x[SOLID_AXLE_X_RACK] * R(100000.0));
         const gic_real t4 = e[1] + e[1];
         const gic_real t5 = e[1] * t4;
         const gic_real t6 = e[2] + e[2];
         const gic_real t7 = e[2] * t6;
         const gic_real t8 = R(1.0) - (t5 + t7);
-        const gic_real t9 = rate[14] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t9 = rate[SOLID_AXLE_STATE_V_Z] - R(-9.81);
         const gic_real t10 = e[3] * t6;
         const gic_real t11 = e[0] * t4;
         const gic_real t12 = t10 - t11;
@@ -5107,402 +6556,669 @@ static GIC_COLD int solid_axle_energy(const solid_axle *self, gic_real time, con
         const gic_real t14 = e[1] * t13;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = t8 * t9 + (t12 * rate[13] + t16 * rate[12]);
-        const gic_real t18 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[16] * R(0.21300000000000008);
-        const gic_real t20 = t17 + (y[15] * t18 - y[16] * t19 - rate[16] * R(0.056));
-        const gic_real t21 = y[14] * t8 + (y[13] * t12 + y[12] * t16);
-        const gic_real t22 = y[16] * R(0.056);
+        const gic_real t17 = t8 * t9 + (t12 * rate[SOLID_AXLE_STATE_V_Y] + t16 * rate[SOLID_AXLE_STATE_V_X]);
+        const gic_real t18 = y[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - y[SOLID_AXLE_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t19 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t20 = t17 + (y[SOLID_AXLE_STATE_OMEGA_X] * t18 - y[SOLID_AXLE_STATE_OMEGA_Y] * t19 -
+            rate[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t21 = y[SOLID_AXLE_STATE_V_Z] * t8 + (y[SOLID_AXLE_STATE_V_Y] * t12 + y[SOLID_AXLE_STATE_V_X] *
+            t16);
+        const gic_real t22 = y[SOLID_AXLE_STATE_OMEGA_Y] * R(0.056);
         const gic_real t23 = t10 + t11;
         const gic_real t24 = e[3] * t13;
         const gic_real t25 = R(1.0) - (t5 + t24);
         const gic_real t26 = e[2] * t4;
         const gic_real t27 = e[0] * t13;
         const gic_real t28 = t26 - t27;
-        const gic_real t29 = t23 * t9 + (t25 * rate[13] + t28 * rate[12]);
-        const gic_real t30 = y[15] * t22 + y[17] * t19 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
-        const gic_real t31 = y[14] * t23 + (y[13] * t25 + y[12] * t28);
+        const gic_real t29 = t23 * t9 + (t25 * rate[SOLID_AXLE_STATE_V_Y] + t28 * rate[SOLID_AXLE_STATE_V_X]);
+        const gic_real t30 = y[SOLID_AXLE_STATE_OMEGA_X] * t22 + y[SOLID_AXLE_STATE_OMEGA_Z] * t19 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * R(0.056) - rate[SOLID_AXLE_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t31 = y[SOLID_AXLE_STATE_V_Z] * t23 + (y[SOLID_AXLE_STATE_V_Y] * t25 + y[SOLID_AXLE_STATE_V_X] *
+            t28);
         const gic_real t32 = t14 - t15;
         const gic_real t33 = t26 + t27;
         const gic_real t34 = R(1.0) - (t7 + t24);
-        const gic_real t35 = t32 * t9 + (t33 * rate[13] + t34 * rate[12]);
-        const gic_real t36 = t35 + (rate[16] * R(0.21300000000000008) - (y[17] * t18 + y[16] * t22));
-        const gic_real t37 = y[14] * t32 + (y[13] * t33 + y[12] * t34);
+        const gic_real t35 = t32 * t9 + (t33 * rate[SOLID_AXLE_STATE_V_Y] + t34 * rate[SOLID_AXLE_STATE_V_X]);
+        const gic_real t36 = t35 + (rate[SOLID_AXLE_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[SOLID_AXLE_STATE_OMEGA_Z] * t18 + y[SOLID_AXLE_STATE_OMEGA_Y] * t22));
+        const gic_real t37 = y[SOLID_AXLE_STATE_V_Z] * t32 + (y[SOLID_AXLE_STATE_V_Y] * t33 + y[SOLID_AXLE_STATE_V_X] *
+            t34);
         const gic_real t38 = (t29 + t30) * (t18 + t31) + t36 * (t19 + t37);
         const gic_real t39 = (t20 * (t21 - t22) + t38) * R(2086.52);
-        const gic_real t40 = y[17] * (rate[17] * R(3570.2)) + (y[16] * (rate[16] * R(2955.66)) + y[15] * (rate[15] * R(1078.52)));
-        const gic_real t41 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t42 = m[16] + t41;
-        const gic_real t43 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t44 = y[15] * t42 - y[16] * t43 + (m[1] * rate[15] - R(1.438648) * rate[16]);
-        const gic_real t45 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t46 = y[17] * t43 - y[15] * t45 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t47 = y[16] * t45 - y[17] * t42 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
-        const gic_real t48 = (rate[22] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
+        const gic_real t40 = y[SOLID_AXLE_STATE_OMEGA_Z] * (rate[SOLID_AXLE_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[SOLID_AXLE_STATE_OMEGA_Y] * (rate[SOLID_AXLE_STATE_OMEGA_Y] * R(2955.66)) + y[SOLID_AXLE_STATE_OMEGA_X] *
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t41 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] + (R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Z] - R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t42 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_VELOCITY_Y] + t41;
+        const gic_real t43 = R(0.05422899999999997) * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t44 = y[SOLID_AXLE_STATE_OMEGA_X] * t42 - y[SOLID_AXLE_STATE_OMEGA_Y] * t43 +
+            (m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * rate[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            rate[SOLID_AXLE_STATE_OMEGA_Y]);
+        const gic_real t45 = m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] * y[SOLID_AXLE_STATE_OMEGA_X] - R(1.438648) *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t46 = y[SOLID_AXLE_STATE_OMEGA_Z] * t43 - y[SOLID_AXLE_STATE_OMEGA_X] * t45 + (R(1.438648) *
+            rate[SOLID_AXLE_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t47 = y[SOLID_AXLE_STATE_OMEGA_Y] * t45 - y[SOLID_AXLE_STATE_OMEGA_Z] * t42 +
+            (R(0.05422899999999997) * rate[SOLID_AXLE_STATE_OMEGA_Y] - m[SOLID_AXLE_MOTION_RACK + SOLID_AXLE_C_Y] *
+            rate[SOLID_AXLE_STATE_OMEGA_Z]);
+        const gic_real t48 = (rate[SOLID_AXLE_STATE_RACK_RATE] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
         const gic_real t49 = ((t17 + t44) * (t21 + t45) + t48) * R(9.072);
-        const gic_real t50 = y[17] * rate[17] + (y[16] * rate[16] + y[15] * rate[15]);
-        const gic_real t51 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = R(1.688965) * y[17];
-        const gic_real t55 = t54 - y[15] * t52 - t53;
+        const gic_real t50 = y[SOLID_AXLE_STATE_OMEGA_Z] * rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (y[SOLID_AXLE_STATE_OMEGA_Y] * rate[SOLID_AXLE_STATE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_X] *
+            rate[SOLID_AXLE_STATE_OMEGA_X]);
+        const gic_real t51 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.24689200985615367);
+        const gic_real t52 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t52;
+        const gic_real t54 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t55 = t54 - y[SOLID_AXLE_STATE_OMEGA_X] * t52 - t53;
         const gic_real t56 = t55 - t53;
         const gic_real t57 = R(0.307086) + t51;
-        const gic_real t58 = y[16] * t52 - y[17] * t57;
-        const gic_real t59 = R(1.688965) * rate[16];
-        const gic_real t60 = y[15] * t56 - y[16] * t58 + (rate[15] * t57 - t59);
-        const gic_real t61 = m[48] * t51 - m[42] * t53 + (t17 + t60) + rate[18] * (m[54] * t51);
-        const gic_real t62 = m[42] * t51;
-        const gic_real t63 = R(1.688965) * y[16];
-        const gic_real t64 = t62 + (y[15] * t57 - t63);
+        const gic_real t58 = y[SOLID_AXLE_STATE_OMEGA_Y] * t52 - y[SOLID_AXLE_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t60 = y[SOLID_AXLE_STATE_OMEGA_X] * t56 - y[SOLID_AXLE_STATE_OMEGA_Y] * t58 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t57 - t59);
+        const gic_real t61 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t51 -
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t53 + (t17 + t60) +
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t51);
+        const gic_real t62 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t51;
+        const gic_real t63 = R(1.688965) * y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t64 = t62 + (y[SOLID_AXLE_STATE_OMEGA_X] * t57 - t63);
         const gic_real t65 = t62 + t64;
-        const gic_real t66 = R(1.688965) * rate[17];
-        const gic_real t67 = y[17] * t58 - y[15] * t65 + (t66 - rate[15] * t52);
-        const gic_real t68 = t29 + t67 - (m[42] * t62 + m[48] * t52) - rate[18] * (m[54] * t52);
-        const gic_real t69 = y[16] * t65 - y[17] * t56 + (rate[16] * t52 - rate[17] * t57);
+        const gic_real t66 = R(1.688965) * rate[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t67 = y[SOLID_AXLE_STATE_OMEGA_Z] * t58 - y[SOLID_AXLE_STATE_OMEGA_X] * t65 + (t66 -
+            rate[SOLID_AXLE_STATE_OMEGA_X] * t52);
+        const gic_real t68 = t29 + t67 - (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] * t62 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] * t52) - rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * t52);
+        const gic_real t69 = y[SOLID_AXLE_STATE_OMEGA_Y] * t65 - y[SOLID_AXLE_STATE_OMEGA_Z] * t56 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t52 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t57);
         const gic_real t70 = t68 * (t31 + t55) + (t35 + t69) * (t37 + t58);
         const gic_real t71 = (t61 * (t21 + t64) + t70) * R(23.965);
-        const gic_real t72 = rate[17] - m[42] * y[16];
-        const gic_real t73 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t72;
-        const gic_real t74 = m[38] * R(0.8938);
-        const gic_real t75 = m[37] * R(0.4469);
-        const gic_real t76 = m[41] * t74 + m[40] * t75;
-        const gic_real t77 = rate[16] + m[42] * y[17];
-        const gic_real t78 = t76 * t72 + (m[38] * t74 + m[37] * t75) * t77;
-        const gic_real t79 = (m[42] + y[15]) * (R(0.4469) * (m[48] + rate[15] + m[54] * rate[18]));
-        const gic_real t80 = y[17] * (t73 + t76 * t77) + (y[16] * t78 + t79);
-        const gic_real t81 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t82 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t83 = m[72] * t82;
-        const gic_real t84 = t54 - y[15] * t82 - t83;
+        const gic_real t72 = rate[SOLID_AXLE_STATE_OMEGA_Z] - m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t73 = (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] *
+            R(0.4469))) * t72;
+        const gic_real t74 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t75 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t76 = m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZZ] * t74 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_ZY] * t75;
+        const gic_real t77 = rate[SOLID_AXLE_STATE_OMEGA_Y] + m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t78 = t76 * t72 + (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YZ] * t74 +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_A_YY] * t75) * t77;
+        const gic_real t79 = (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_ALPHA_X] + rate[SOLID_AXLE_STATE_OMEGA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_L + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_F_L_RATE]));
+        const gic_real t80 = y[SOLID_AXLE_STATE_OMEGA_Z] * (t73 + t76 * t77) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t78 +
+            t79);
+        const gic_real t81 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(-0.24689200985615367);
+        const gic_real t82 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(3.0379110359107786e-06) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * R(-0.24689200985615367);
+        const gic_real t83 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t82;
+        const gic_real t84 = t54 - y[SOLID_AXLE_STATE_OMEGA_X] * t82 - t83;
         const gic_real t85 = t84 - t83;
         const gic_real t86 = R(-0.307086) + t81;
-        const gic_real t87 = y[16] * t82 - y[17] * t86;
-        const gic_real t88 = y[15] * t85 - y[16] * t87 + (rate[15] * t86 - t59);
-        const gic_real t89 = m[78] * t81 - m[72] * t83 + (t17 + t88) + rate[19] * (m[84] * t81);
-        const gic_real t90 = m[72] * t81;
-        const gic_real t91 = t90 + (y[15] * t86 - t63);
+        const gic_real t87 = y[SOLID_AXLE_STATE_OMEGA_Y] * t82 - y[SOLID_AXLE_STATE_OMEGA_Z] * t86;
+        const gic_real t88 = y[SOLID_AXLE_STATE_OMEGA_X] * t85 - y[SOLID_AXLE_STATE_OMEGA_Y] * t87 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t86 - t59);
+        const gic_real t89 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t81 -
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t83 + (t17 + t88) +
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t81);
+        const gic_real t90 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t81;
+        const gic_real t91 = t90 + (y[SOLID_AXLE_STATE_OMEGA_X] * t86 - t63);
         const gic_real t92 = t90 + t91;
-        const gic_real t93 = y[17] * t87 - y[15] * t92 + (t66 - rate[15] * t82);
-        const gic_real t94 = t29 + t93 - (m[72] * t90 + m[78] * t82) - rate[19] * (m[84] * t82);
-        const gic_real t95 = y[16] * t92 - y[17] * t85 + (rate[16] * t82 - rate[17] * t86);
+        const gic_real t93 = y[SOLID_AXLE_STATE_OMEGA_Z] * t87 - y[SOLID_AXLE_STATE_OMEGA_X] * t92 + (t66 -
+            rate[SOLID_AXLE_STATE_OMEGA_X] * t82);
+        const gic_real t94 = t29 + t93 - (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] * t90 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] * t82) - rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * t82);
+        const gic_real t95 = y[SOLID_AXLE_STATE_OMEGA_Y] * t92 - y[SOLID_AXLE_STATE_OMEGA_Z] * t85 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t82 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t86);
         const gic_real t96 = t94 * (t31 + t84) + (t35 + t95) * (t37 + t87);
         const gic_real t97 = R(23.965) * (t89 * (t21 + t91) + t96);
-        const gic_real t98 = rate[17] - m[72] * y[16];
-        const gic_real t99 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t98;
-        const gic_real t100 = m[68] * R(0.8938);
-        const gic_real t101 = m[67] * R(0.4469);
-        const gic_real t102 = m[71] * t100 + m[70] * t101;
-        const gic_real t103 = rate[16] + m[72] * y[17];
-        const gic_real t104 = t102 * t98 + (m[68] * t100 + m[67] * t101) * t103;
-        const gic_real t105 = (m[72] + y[15]) * (R(0.4469) * (m[78] + rate[15] + m[84] * rate[19]));
-        const gic_real t106 = y[17] * (t99 + t102 * t103) + (y[16] * t104 + t105);
+        const gic_real t98 = rate[SOLID_AXLE_STATE_OMEGA_Z] - m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t99 = (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * R(0.8938)) +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] *
+            R(0.4469))) * t98;
+        const gic_real t100 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * R(0.8938);
+        const gic_real t101 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * R(0.4469);
+        const gic_real t102 = m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZZ] * t100 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_ZY] * t101;
+        const gic_real t103 = rate[SOLID_AXLE_STATE_OMEGA_Y] + m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] *
+            y[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t104 = t102 * t98 + (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YZ] * t100 +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_A_YY] * t101) * t103;
+        const gic_real t105 = (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X]) *
+            (R(0.4469) * (m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_ALPHA_X] + rate[SOLID_AXLE_STATE_OMEGA_X] +
+            m[SOLID_AXLE_MOTION_LCA_F_R + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_F_R_RATE]));
+        const gic_real t106 = y[SOLID_AXLE_STATE_OMEGA_Z] * (t99 + t102 * t103) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t104 +
+            t105);
         const gic_real t107 = t39 + t40 + (t49 + t50) + (t71 + t80) + (t97 + t106);
-        const gic_real t108 = m[131] * R(0.09182100000000004);
-        const gic_real t109 = m[129] * R(-0.004825999999999997);
-        const gic_real t110 = t108 + (t109 + m[130] * R(0.08910630000000008));
-        const gic_real t111 = m[137] * R(0.09182100000000004);
-        const gic_real t112 = m[135] * R(-0.004825999999999997);
-        const gic_real t113 = t111 + (t112 + m[136] * R(0.08910630000000008));
-        const gic_real t114 = m[140] * t110 - m[138] * t113;
-        const gic_real t115 = m[134] * R(0.09182100000000004);
-        const gic_real t116 = m[132] * R(-0.004825999999999997);
-        const gic_real t117 = t115 + (t116 + m[133] * R(0.08910630000000008));
-        const gic_real t118 = m[139] * t113 - m[140] * t117;
-        const gic_real t119 = m[138] * t114 - m[139] * t118 + (m[144] * t117 - m[145] * t110);
-        const gic_real t120 = m[142] + t114;
+        /* wheel tire_f_l */
+        const gic_real t108 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t109 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t110 = t108 + (t109 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.08910630000000008));
+        const gic_real t111 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t112 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t113 = t111 + (t112 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.08910630000000008));
+        const gic_real t114 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t110 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t113;
+        const gic_real t115 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t116 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t117 = t115 + (t116 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.08910630000000008));
+        const gic_real t118 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t113 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t117;
+        const gic_real t119 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t114 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t118 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t117 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t110);
+        const gic_real t120 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] + t114;
         const gic_real t121 = R(1.653405) + t110;
-        const gic_real t122 = m[128] + t113;
-        const gic_real t123 = t120 + (y[17] * t121 - y[15] * t122);
+        const gic_real t122 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t113;
+        const gic_real t123 = t120 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t121 - y[SOLID_AXLE_STATE_OMEGA_X] * t122);
         const gic_real t124 = t120 + t123;
-        const gic_real t125 = m[127] + t117;
-        const gic_real t126 = t118 + (y[16] * t122 - y[17] * t125);
+        const gic_real t125 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t117;
+        const gic_real t126 = t118 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t122 - y[SOLID_AXLE_STATE_OMEGA_Z] * t125);
         const gic_real t127 = t118 + t126;
-        const gic_real t128 = y[15] * t124 - y[16] * t127 + (rate[15] * t125 - rate[16] * t121);
-        const gic_real t129 = m[149] + t119 + (t17 + t128) + rate[22] * (m[150] * t117 - m[151] * t110);
-        const gic_real t130 = t129 + rate[18] * (m[161] + (m[156] * t117 - m[157] * t110));
-        const gic_real t131 = m[138] * t117 - m[139] * t110;
-        const gic_real t132 = m[143] + t131;
-        const gic_real t133 = t132 + (y[15] * t125 - y[16] * t121);
-        const gic_real t134 = m[140] * t118 - m[138] * t131 + (m[146] * t110 - m[144] * t113);
+        const gic_real t128 = y[SOLID_AXLE_STATE_OMEGA_X] * t124 - y[SOLID_AXLE_STATE_OMEGA_Y] * t127 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t125 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t121);
+        const gic_real t129 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Z] + t119 + (t17 + t128) +
+            rate[SOLID_AXLE_STATE_RACK_RATE] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t117 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t110);
+        const gic_real t130 = t129 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            t117 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t110));
+        const gic_real t131 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t117 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t110;
+        const gic_real t132 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] + t131;
+        const gic_real t133 = t132 + (y[SOLID_AXLE_STATE_OMEGA_X] * t125 - y[SOLID_AXLE_STATE_OMEGA_Y] * t121);
+        const gic_real t134 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t118 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t131 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t110 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] * t113);
         const gic_real t135 = t132 + t133;
-        const gic_real t136 = y[17] * t127 - y[15] * t135 + (rate[17] * t121 - rate[15] * t122);
-        const gic_real t137 = m[148] + t134 + (t29 + t136) + rate[22] * (m[152] * t110 - m[150] * t113);
-        const gic_real t138 = t137 + rate[18] * (m[160] + (m[158] * t110 - m[156] * t113));
-        const gic_real t139 = m[139] * t131 - m[140] * t114 + (m[145] * t113 - m[146] * t117);
-        const gic_real t140 = y[16] * t135 - y[17] * t124 + (rate[16] * t122 - rate[17] * t125);
-        const gic_real t141 = t139 + (t35 + t140) + rate[22] * (m[151] * t113 - m[152] * t117);
-        const gic_real t142 = (t141 + rate[18] * (m[157] * t113 - m[158] * t117)) * (t37 + t126);
+        const gic_real t136 = y[SOLID_AXLE_STATE_OMEGA_Z] * t127 - y[SOLID_AXLE_STATE_OMEGA_X] * t135 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t121 - rate[SOLID_AXLE_STATE_OMEGA_X] * t122);
+        const gic_real t137 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ACCELERATION_Y] + t134 + (t29 + t136) +
+            rate[SOLID_AXLE_STATE_RACK_RATE] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t110 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * t113);
+        const gic_real t138 = t137 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            t110 - m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] * t113));
+        const gic_real t139 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t131 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t114 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] * t113 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] * t117);
+        const gic_real t140 = y[SOLID_AXLE_STATE_OMEGA_Y] * t135 - y[SOLID_AXLE_STATE_OMEGA_Z] * t124 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t122 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t125);
+        const gic_real t141 = t139 + (t35 + t140) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * t113 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * t117);
+        const gic_real t142 = (t141 + rate[SOLID_AXLE_STATE_SPRING_F_L_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] * t113 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] * t117)) * (t37 + t126);
         const gic_real t143 = t130 * (t21 + t133) + (t138 * (t31 + t123) + t142);
         const gic_real t144 = t143 * R(90.555);
-        const gic_real t145 = m[137] * (m[137] * R(4.7728205)) + (m[136] * (m[136] * R(7.58122)) + m[135] * (m[135] * R(4.8947505)));
-        const gic_real t146 = m[146] + (rate[17] + (m[139] * y[15] - m[138] * y[16])) + m[152] * rate[22];
-        const gic_real t147 = t146 + m[158] * rate[18];
-        const gic_real t148 = m[134] * R(4.7728205);
-        const gic_real t149 = m[133] * R(7.58122);
-        const gic_real t150 = m[132] * R(4.8947505);
-        const gic_real t151 = m[137] * t148 + (m[136] * t149 + m[135] * t150);
-        const gic_real t152 = m[145] + (rate[16] + (m[138] * y[17] - m[140] * y[15])) + m[151] * rate[22];
-        const gic_real t153 = t152 + m[157] * rate[18];
-        const gic_real t154 = m[131] * R(4.7728205);
-        const gic_real t155 = m[130] * R(7.58122);
-        const gic_real t156 = m[129] * R(4.8947505);
-        const gic_real t157 = m[137] * t154 + (m[136] * t155 + m[135] * t156);
-        const gic_real t158 = m[144] + (rate[15] + (m[140] * y[16] - m[139] * y[17])) + m[150] * rate[22];
-        const gic_real t159 = t158 + m[156] * rate[18];
-        const gic_real t160 = (m[140] + y[17]) * (t145 * t147 + (t151 * t153 + t157 * t159));
-        const gic_real t161 = (m[134] * t148 + (m[133] * t149 + m[132] * t150)) * t153;
-        const gic_real t162 = m[134] * t154 + (m[133] * t155 + m[132] * t156);
-        const gic_real t163 = (m[139] + y[16]) * (t151 * t147 + (t161 + t162 * t159));
-        const gic_real t164 = (m[131] * t154 + (m[130] * t155 + m[129] * t156)) * t159;
-        const gic_real t165 = (m[138] + y[15]) * (t157 * t147 + (t162 * t153 + t164));
+        const gic_real t145 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t146 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t147 = t146 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t148 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t149 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t150 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t151 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t148 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t149 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * t150);
+        const gic_real t152 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t153 = t152 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t154 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t155 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t156 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t157 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * t154 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * t155 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * t156);
+        const gic_real t158 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t159 = t158 + m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t160 = (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z]) *
+            (t145 * t147 + (t151 * t153 + t157 * t159));
+        const gic_real t161 = (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t148 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t149 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * t150)) * t153;
+        const gic_real t162 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * t154 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * t155 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * t156);
+        const gic_real t163 = (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y]) *
+            (t151 * t147 + (t161 + t162 * t159));
+        const gic_real t164 = (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * t154 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * t155 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * t156)) * t159;
+        const gic_real t165 = (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X]) *
+            (t157 * t147 + (t162 * t153 + t164));
         const gic_real t166 = t160 + (t163 + t165);
-        const gic_real t167 = m[167] * R(0.09182100000000004);
-        const gic_real t168 = m[165] * R(-0.004825999999999997);
-        const gic_real t169 = t167 + (t168 + m[166] * R(-0.08910630000000008));
-        const gic_real t170 = m[173] * R(0.09182100000000004);
-        const gic_real t171 = m[171] * R(-0.004825999999999997);
-        const gic_real t172 = t170 + (t171 + m[172] * R(-0.08910630000000008));
-        const gic_real t173 = m[176] * t169 - m[174] * t172;
-        const gic_real t174 = m[170] * R(0.09182100000000004);
-        const gic_real t175 = m[168] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[169] * R(-0.08910630000000008));
-        const gic_real t177 = m[175] * t172 - m[176] * t176;
-        const gic_real t178 = m[174] * t173 - m[175] * t177 + (m[180] * t176 - m[181] * t169);
-        const gic_real t179 = m[178] + t173;
+        /* wheel tire_f_r */
+        const gic_real t167 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004);
+        const gic_real t168 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997);
+        const gic_real t169 = t167 + (t168 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t170 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004);
+        const gic_real t171 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997);
+        const gic_real t172 = t170 + (t171 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t173 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t169 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t172;
+        const gic_real t174 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t177 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t172 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t176;
+        const gic_real t178 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t173 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t177 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t169);
+        const gic_real t179 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] + t173;
         const gic_real t180 = R(1.653405) + t169;
-        const gic_real t181 = m[164] + t172;
-        const gic_real t182 = t179 + (y[17] * t180 - y[15] * t181);
+        const gic_real t181 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t172;
+        const gic_real t182 = t179 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t180 - y[SOLID_AXLE_STATE_OMEGA_X] * t181);
         const gic_real t183 = t179 + t182;
-        const gic_real t184 = m[163] + t176;
-        const gic_real t185 = t177 + (y[16] * t181 - y[17] * t184);
+        const gic_real t184 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t176;
+        const gic_real t185 = t177 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t181 - y[SOLID_AXLE_STATE_OMEGA_Z] * t184);
         const gic_real t186 = t177 + t185;
-        const gic_real t187 = y[15] * t183 - y[16] * t186 + (rate[15] * t184 - rate[16] * t180);
-        const gic_real t188 = m[185] + t178 + (t17 + t187) + rate[22] * (m[186] * t176 - m[187] * t169);
-        const gic_real t189 = t188 + rate[19] * (m[197] + (m[192] * t176 - m[193] * t169));
-        const gic_real t190 = m[174] * t176 - m[175] * t169;
-        const gic_real t191 = m[179] + t190;
-        const gic_real t192 = t191 + (y[15] * t184 - y[16] * t180);
-        const gic_real t193 = m[176] * t177 - m[174] * t190 + (m[182] * t169 - m[180] * t172);
+        const gic_real t187 = y[SOLID_AXLE_STATE_OMEGA_X] * t183 - y[SOLID_AXLE_STATE_OMEGA_Y] * t186 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t184 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t180);
+        const gic_real t188 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Z] + t178 + (t17 + t187) +
+            rate[SOLID_AXLE_STATE_RACK_RATE] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t169);
+        const gic_real t189 = t188 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            t176 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t169));
+        const gic_real t190 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t176 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t169;
+        const gic_real t191 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] + t190;
+        const gic_real t192 = t191 + (y[SOLID_AXLE_STATE_OMEGA_X] * t184 - y[SOLID_AXLE_STATE_OMEGA_Y] * t180);
+        const gic_real t193 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t177 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t190 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t169 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] * t172);
         const gic_real t194 = t191 + t192;
-        const gic_real t195 = y[17] * t186 - y[15] * t194 + (rate[17] * t180 - rate[15] * t181);
-        const gic_real t196 = m[184] + t193 + (t29 + t195) + rate[22] * (m[188] * t169 - m[186] * t172);
-        const gic_real t197 = t196 + rate[19] * (m[196] + (m[194] * t169 - m[192] * t172));
-        const gic_real t198 = m[175] * t190 - m[176] * t173 + (m[181] * t172 - m[182] * t176);
-        const gic_real t199 = y[16] * t194 - y[17] * t183 + (rate[16] * t181 - rate[17] * t184);
-        const gic_real t200 = t198 + (t35 + t199) + rate[22] * (m[187] * t172 - m[188] * t176);
-        const gic_real t201 = (t200 + rate[19] * (m[193] * t172 - m[194] * t176)) * (t37 + t185);
+        const gic_real t195 = y[SOLID_AXLE_STATE_OMEGA_Z] * t186 - y[SOLID_AXLE_STATE_OMEGA_X] * t194 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t180 - rate[SOLID_AXLE_STATE_OMEGA_X] * t181);
+        const gic_real t196 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ACCELERATION_Y] + t193 + (t29 + t195) +
+            rate[SOLID_AXLE_STATE_RACK_RATE] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t169 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * t172);
+        const gic_real t197 = t196 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            t169 - m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] * t172));
+        const gic_real t198 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t190 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t173 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] * t172 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] * t176);
+        const gic_real t199 = y[SOLID_AXLE_STATE_OMEGA_Y] * t194 - y[SOLID_AXLE_STATE_OMEGA_Z] * t183 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t181 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t184);
+        const gic_real t200 = t198 + (t35 + t199) + rate[SOLID_AXLE_STATE_RACK_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * t172 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * t176);
+        const gic_real t201 = (t200 + rate[SOLID_AXLE_STATE_SPRING_F_R_RATE] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] * t172 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] * t176)) * (t37 + t185);
         const gic_real t202 = t189 * (t21 + t192) + (t197 * (t31 + t182) + t201);
         const gic_real t203 = R(90.555) * t202;
-        const gic_real t204 = m[173] * (m[173] * R(4.7728205)) + (m[172] * (m[172] * R(7.58122)) + m[171] * (m[171] * R(4.8947505)));
-        const gic_real t205 = m[182] + (rate[17] + (m[175] * y[15] - m[174] * y[16])) + m[188] * rate[22];
-        const gic_real t206 = t205 + m[194] * rate[19];
-        const gic_real t207 = m[170] * R(4.7728205);
-        const gic_real t208 = m[169] * R(7.58122);
-        const gic_real t209 = m[168] * R(4.8947505);
-        const gic_real t210 = m[173] * t207 + (m[172] * t208 + m[171] * t209);
-        const gic_real t211 = m[181] + (rate[16] + (m[174] * y[17] - m[176] * y[15])) + m[187] * rate[22];
-        const gic_real t212 = t211 + m[193] * rate[19];
-        const gic_real t213 = m[167] * R(4.7728205);
-        const gic_real t214 = m[166] * R(7.58122);
-        const gic_real t215 = m[165] * R(4.8947505);
-        const gic_real t216 = m[173] * t213 + (m[172] * t214 + m[171] * t215);
-        const gic_real t217 = m[180] + (rate[15] + (m[176] * y[16] - m[175] * y[17])) + m[186] * rate[22];
-        const gic_real t218 = t217 + m[192] * rate[19];
-        const gic_real t219 = (m[176] + y[17]) * (t204 * t206 + (t210 * t212 + t216 * t218));
-        const gic_real t220 = (m[170] * t207 + (m[169] * t208 + m[168] * t209)) * t212;
-        const gic_real t221 = m[170] * t213 + (m[169] * t214 + m[168] * t215);
-        const gic_real t222 = (m[175] + y[16]) * (t210 * t206 + (t220 + t221 * t218));
-        const gic_real t223 = (m[167] * t213 + (m[166] * t214 + m[165] * t215)) * t218;
-        const gic_real t224 = (m[174] + y[15]) * (t216 * t206 + (t221 * t212 + t223));
+        const gic_real t204 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(4.7728205)) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] *
+            R(7.58122)) + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] *
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(4.8947505)));
+        const gic_real t205 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t206 = t205 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t207 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(4.7728205);
+        const gic_real t208 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(7.58122);
+        const gic_real t209 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(4.8947505);
+        const gic_real t210 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t207 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t208 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t209);
+        const gic_real t211 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t212 = t211 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t213 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(4.7728205);
+        const gic_real t214 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(7.58122);
+        const gic_real t215 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(4.8947505);
+        const gic_real t216 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * t213 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * t214 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * t215);
+        const gic_real t217 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_RACK_RATE];
+        const gic_real t218 = t217 + m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t219 = (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z]) *
+            (t204 * t206 + (t210 * t212 + t216 * t218));
+        const gic_real t220 = (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t207 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t208 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t209)) * t212;
+        const gic_real t221 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * t213 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * t214 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * t215);
+        const gic_real t222 = (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y]) *
+            (t210 * t206 + (t220 + t221 * t218));
+        const gic_real t223 = (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * t213 +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * t214 +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * t215)) * t218;
+        const gic_real t224 = (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X]) *
+            (t216 * t206 + (t221 * t212 + t223));
         const gic_real t225 = t219 + (t222 + t224);
-        const gic_real t226 = m[95] * R(-0.17228899999999997);
-        const gic_real t227 = m[93] * R(-0.03340499999999991);
-        const gic_real t228 = t226 + (t227 + m[94] * R(0.12));
-        const gic_real t229 = m[101] * R(-0.17228899999999997);
-        const gic_real t230 = m[99] * R(-0.03340499999999991);
-        const gic_real t231 = t229 + (t230 + m[100] * R(0.12));
-        const gic_real t232 = m[104] * t228 - m[102] * t231;
-        const gic_real t233 = m[98] * R(-0.17228899999999997);
-        const gic_real t234 = m[96] * R(-0.03340499999999991);
-        const gic_real t235 = t233 + (t234 + m[97] * R(0.12));
-        const gic_real t236 = m[103] * t231 - m[104] * t235;
-        const gic_real t237 = m[102] * t232 - m[103] * t236 + (m[108] * t235 - m[109] * t228);
-        const gic_real t238 = m[106] + t232;
-        const gic_real t239 = m[90] + t228;
-        const gic_real t240 = m[92] + t231;
-        const gic_real t241 = t238 + (y[17] * t239 - y[15] * t240);
+        /* wheel tire_r_l */
+        const gic_real t226 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t227 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t228 = t226 + (t227 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(0.12));
+        const gic_real t229 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t230 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t231 = t229 + (t230 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(0.12));
+        const gic_real t232 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t228 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t231;
+        const gic_real t233 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t234 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t235 = t233 + (t234 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(0.12));
+        const gic_real t236 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t231 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t235;
+        const gic_real t237 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t232 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t236 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] *
+            t235 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] * t228);
+        const gic_real t238 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] + t232;
+        const gic_real t239 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t228;
+        const gic_real t240 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t231;
+        const gic_real t241 = t238 + (y[SOLID_AXLE_STATE_OMEGA_Z] * t239 - y[SOLID_AXLE_STATE_OMEGA_X] * t240);
         const gic_real t242 = t238 + t241;
-        const gic_real t243 = m[105] + t236;
-        const gic_real t244 = m[91] + t235;
-        const gic_real t245 = t243 + (y[16] * t240 - y[17] * t244);
+        const gic_real t243 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] + t236;
+        const gic_real t244 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t235;
+        const gic_real t245 = t243 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t240 - y[SOLID_AXLE_STATE_OMEGA_Z] * t244);
         const gic_real t246 = t243 + t245;
-        const gic_real t247 = y[15] * t242 - y[16] * t246 + (rate[15] * t244 - rate[16] * t239);
-        const gic_real t248 = m[113] + t237 + (t17 + t247) + rate[20] * (m[119] + (m[114] * t235 - m[115] * t228));
-        const gic_real t249 = t248 + rate[21] * (m[125] + (m[120] * t235 - m[121] * t228));
-        const gic_real t250 = m[102] * t235 - m[103] * t228;
-        const gic_real t251 = m[107] + t250;
-        const gic_real t252 = t251 + (y[15] * t244 - y[16] * t239);
-        const gic_real t253 = m[104] * t236 - m[102] * t250 + (m[110] * t228 - m[108] * t231);
+        const gic_real t247 = y[SOLID_AXLE_STATE_OMEGA_X] * t242 - y[SOLID_AXLE_STATE_OMEGA_Y] * t246 +
+            (rate[SOLID_AXLE_STATE_OMEGA_X] * t244 - rate[SOLID_AXLE_STATE_OMEGA_Y] * t239);
+        const gic_real t248 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Z] + t237 + (t17 + t247) +
+            rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 5] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * t235 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] *
+            t228));
+        const gic_real t249 = t248 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 11] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t235 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t228));
+        const gic_real t250 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t235 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t228;
+        const gic_real t251 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] + t250;
+        const gic_real t252 = t251 + (y[SOLID_AXLE_STATE_OMEGA_X] * t244 - y[SOLID_AXLE_STATE_OMEGA_Y] * t239);
+        const gic_real t253 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t236 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t250 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] *
+            t228 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] * t231);
         const gic_real t254 = t251 + t252;
-        const gic_real t255 = y[17] * t246 - y[15] * t254 + (rate[17] * t239 - rate[15] * t240);
-        const gic_real t256 = m[112] + t253 + (t29 + t255) + rate[20] * (m[118] + (m[116] * t228 - m[114] * t231));
-        const gic_real t257 = t256 + rate[21] * (m[124] + (m[122] * t228 - m[120] * t231));
-        const gic_real t258 = m[103] * t250 - m[104] * t232 + (m[109] * t231 - m[110] * t235);
-        const gic_real t259 = y[16] * t254 - y[17] * t242 + (rate[16] * t240 - rate[17] * t244);
-        const gic_real t260 = m[111] + t258 + (t35 + t259) + rate[20] * (m[117] + (m[115] * t231 - m[116] * t235));
-        const gic_real t261 = t260 + rate[21] * (m[123] + (m[121] * t231 - m[122] * t235));
+        const gic_real t255 = y[SOLID_AXLE_STATE_OMEGA_Z] * t246 - y[SOLID_AXLE_STATE_OMEGA_X] * t254 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Z] * t239 - rate[SOLID_AXLE_STATE_OMEGA_X] * t240);
+        const gic_real t256 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_Y] + t253 + (t29 + t255) +
+            rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 4] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * t228 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] *
+            t231));
+        const gic_real t257 = t256 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 10] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t228 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] * t231));
+        const gic_real t258 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t250 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t232 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] *
+            t231 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] * t235);
+        const gic_real t259 = y[SOLID_AXLE_STATE_OMEGA_Y] * t254 - y[SOLID_AXLE_STATE_OMEGA_Z] * t242 +
+            (rate[SOLID_AXLE_STATE_OMEGA_Y] * t240 - rate[SOLID_AXLE_STATE_OMEGA_Z] * t244);
+        const gic_real t260 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ACCELERATION_X] + t258 + (t35 + t259) +
+            rate[SOLID_AXLE_STATE_SPRING_R_L_RATE] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 3] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * t231 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] *
+            t235));
+        const gic_real t261 = t260 + rate[SOLID_AXLE_STATE_SPRING_R_R_RATE] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 9] + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] * t231 -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] * t235));
         const gic_real t262 = t249 * (t21 + t252) + (t257 * (t31 + t241) + t261 * (t37 + t245));
         const gic_real t263 = t262 * R(271.11);
-        const gic_real t264 = m[101] * (m[101] * R(163.103702)) + (m[100] * (m[100] * R(15.48644)) + m[99] * (m[99] * R(163.347562)));
-        const gic_real t265 = m[110] + (rate[17] + (m[103] * y[15] - m[102] * y[16])) + m[116] * rate[20];
-        const gic_real t266 = t265 + m[122] * rate[21];
-        const gic_real t267 = m[98] * R(163.103702);
-        const gic_real t268 = m[97] * R(15.48644);
-        const gic_real t269 = m[96] * R(163.347562);
-        const gic_real t270 = m[101] * t267 + (m[100] * t268 + m[99] * t269);
-        const gic_real t271 = m[109] + (rate[16] + (m[102] * y[17] - m[104] * y[15])) + m[115] * rate[20];
-        const gic_real t272 = t271 + m[121] * rate[21];
-        const gic_real t273 = m[95] * R(163.103702);
-        const gic_real t274 = m[94] * R(15.48644);
-        const gic_real t275 = m[93] * R(163.347562);
-        const gic_real t276 = m[101] * t273 + (m[100] * t274 + m[99] * t275);
-        const gic_real t277 = m[108] + (rate[15] + (m[104] * y[16] - m[103] * y[17])) + m[114] * rate[20];
-        const gic_real t278 = t277 + m[120] * rate[21];
-        const gic_real t279 = (m[104] + y[17]) * (t264 * t266 + (t270 * t272 + t276 * t278));
-        const gic_real t280 = (m[98] * t267 + (m[97] * t268 + m[96] * t269)) * t272;
-        const gic_real t281 = m[98] * t273 + (m[97] * t274 + m[96] * t275);
-        const gic_real t282 = (m[103] + y[16]) * (t270 * t266 + (t280 + t281 * t278));
-        const gic_real t283 = (m[95] * t273 + (m[94] * t274 + m[93] * t275)) * t278;
-        const gic_real t284 = (m[102] + y[15]) * (t276 * t266 + (t281 * t272 + t283));
+        const gic_real t264 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] *
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(163.103702)) +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(15.48644)) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] *
+            R(163.347562)));
+        const gic_real t265 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Z] + (rate[SOLID_AXLE_STATE_OMEGA_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_X] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Y])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 2] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t266 = t265 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 8] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t267 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(163.103702);
+        const gic_real t268 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(15.48644);
+        const gic_real t269 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(163.347562);
+        const gic_real t270 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t267 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t268 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t269);
+        const gic_real t271 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_Y] + (rate[SOLID_AXLE_STATE_OMEGA_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * y[SOLID_AXLE_STATE_OMEGA_Z] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_X])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 1] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t272 = t271 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 7] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t273 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(163.103702);
+        const gic_real t274 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(15.48644);
+        const gic_real t275 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(163.347562);
+        const gic_real t276 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * t273 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * t274 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * t275);
+        const gic_real t277 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_ALPHA_X] + (rate[SOLID_AXLE_STATE_OMEGA_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * y[SOLID_AXLE_STATE_OMEGA_Y] -
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * y[SOLID_AXLE_STATE_OMEGA_Z])) +
+            m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 0] * rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t278 = t277 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_S + 6] *
+            rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t279 = (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] + y[SOLID_AXLE_STATE_OMEGA_Z]) * (t264 *
+            t266 + (t270 * t272 + t276 * t278));
+        const gic_real t280 = (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t267 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t268 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t269)) *
+            t272;
+        const gic_real t281 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * t273 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * t274 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * t275);
+        const gic_real t282 = (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] + y[SOLID_AXLE_STATE_OMEGA_Y]) * (t270 *
+            t266 + (t280 + t281 * t278));
+        const gic_real t283 = (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * t273 +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * t274 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * t275)) *
+            t278;
+        const gic_real t284 = (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] + y[SOLID_AXLE_STATE_OMEGA_X]) * (t276 *
+            t266 + (t281 * t272 + t283));
         const gic_real t285 = t279 + (t282 + t284);
         const gic_real t286 = t107 + (t144 + t166) + (t203 + t225) + (t263 + t285);
-        const gic_real t287 = t115 + (m[133] * R(0.12319000000000002) + t116);
-        const gic_real t288 = t108 + (m[130] * R(0.12319000000000002) + t109);
-        const gic_real t289 = m[127] + t287;
+        const gic_real t287 = t115 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) + t116);
+        const gic_real t288 = t108 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) + t109);
+        const gic_real t289 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t287;
         const gic_real t290 = R(1.653405) + t288;
-        const gic_real t291 = m[143] + (m[138] * t287 - m[139] * t288) + (y[15] * t289 - y[16] * t290);
-        const gic_real t292 = t111 + (m[136] * R(0.12319000000000002) + t112);
-        const gic_real t293 = m[128] + t292;
-        const gic_real t294 = m[142] + (m[140] * t288 - m[138] * t292) + (y[17] * t290 - y[15] * t293);
-        const gic_real t295 = m[139] * t292 - m[140] * t287 + (y[16] * t293 - y[17] * t289);
-        const gic_real t296 = y[14] + (t8 * t291 + (t23 * t294 + t32 * t295));
-        const gic_real t297 = y[13] + (t12 * t291 + (t25 * t294 + t33 * t295));
-        const gic_real t298 = y[0] + (t16 * t293 + (t28 * t289 + t34 * t290));
-        const gic_real t299 = y[1] + (t12 * t293 + (t25 * t289 + t33 * t290));
+        const gic_real t291 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t287 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t288) + (y[SOLID_AXLE_STATE_OMEGA_X] * t289 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t290);
+        const gic_real t292 = t111 + (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) + t112);
+        const gic_real t293 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t292;
+        const gic_real t294 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t288 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t292) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t290 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t293);
+        const gic_real t295 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t292 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t287 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t293 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t289);
+        const gic_real t296 = y[SOLID_AXLE_STATE_V_Z] + (t8 * t291 + (t23 * t294 + t32 * t295));
+        const gic_real t297 = y[SOLID_AXLE_STATE_V_Y] + (t12 * t291 + (t25 * t294 + t33 * t295));
+        const gic_real t298 = y[SOLID_AXLE_STATE_R_X] + (t16 * t293 + (t28 * t289 + t34 * t290));
+        const gic_real t299 = y[SOLID_AXLE_STATE_R_Y] + (t12 * t293 + (t25 * t289 + t33 * t290));
         gic_real road300[3];
         if (!solid_axle_road_height(self, time, t298, t299, road300))
             return GIC_ERROR_ROAD;
-        const gic_real t301 = y[12] + (t16 * t291 + (t28 * t294 + t34 * t295));
+        const gic_real t301 = y[SOLID_AXLE_STATE_V_X] + (t16 * t291 + (t28 * t294 + t34 * t295));
         const gic_real t302 = t297 * road300[2] + t301 * road300[1] - t296;
-        const gic_real t303 = y[2] + (t8 * t293 + (t23 * t289 + t32 * t290));
+        const gic_real t303 = y[SOLID_AXLE_STATE_R_Z] + (t8 * t293 + (t23 * t289 + t32 * t290));
         const gic_real t304 = road300[0] + R(0.4699) - t303;
         const gic_real t305 = GIC_MIN(GIC_MAX(t304 * R(100.0), R(0.0)), R(1.0));
         const gic_real t306 = t302 * ((R(3.0) - (t305 + t305)) * (t305 * t305) * R(500.0));
-        const gic_real t307 = xd[0] * (xd[0] * R(17490.8)) + xd[1] * (xd[1] * R(17490.8)) + xd[2] * (xd[2] * R(4100.0));
-        const gic_real t308 = t307 + xd[3] * (xd[3] * R(4100.0)) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t309 = t174 + (m[169] * R(-0.12319000000000002) + t175);
-        const gic_real t310 = t167 + (m[166] * R(-0.12319000000000002) + t168);
-        const gic_real t311 = m[163] + t309;
+        /* force spring_r_l */
+        const gic_real t307 = xd[SOLID_AXLE_X_SPRING_F_L] * (xd[SOLID_AXLE_X_SPRING_F_L] * R(17490.8)) +
+            xd[SOLID_AXLE_X_SPRING_F_R] * (xd[SOLID_AXLE_X_SPRING_F_R] * R(17490.8)) + xd[SOLID_AXLE_X_SPRING_R_L] *
+            (xd[SOLID_AXLE_X_SPRING_R_L] * R(4100.0));
+        const gic_real t308 = t307 + xd[SOLID_AXLE_X_SPRING_R_R] * (xd[SOLID_AXLE_X_SPRING_R_R] * R(4100.0)) +
+            xd[SOLID_AXLE_X_RACK] * (xd[SOLID_AXLE_X_RACK] * R(12000.0));
+        const gic_real t309 = t174 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) +
+            t175);
+        const gic_real t310 = t167 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) +
+            t168);
+        const gic_real t311 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t309;
         const gic_real t312 = R(1.653405) + t310;
-        const gic_real t313 = m[179] + (m[174] * t309 - m[175] * t310) + (y[15] * t311 - y[16] * t312);
-        const gic_real t314 = t170 + (m[172] * R(-0.12319000000000002) + t171);
-        const gic_real t315 = m[164] + t314;
-        const gic_real t316 = m[178] + (m[176] * t310 - m[174] * t314) + (y[17] * t312 - y[15] * t315);
-        const gic_real t317 = m[175] * t314 - m[176] * t309 + (y[16] * t315 - y[17] * t311);
-        const gic_real t318 = y[14] + (t8 * t313 + (t23 * t316 + t32 * t317));
-        const gic_real t319 = y[13] + (t12 * t313 + (t25 * t316 + t33 * t317));
-        const gic_real t320 = y[0] + (t16 * t315 + (t28 * t311 + t34 * t312));
-        const gic_real t321 = y[1] + (t12 * t315 + (t25 * t311 + t33 * t312));
+        const gic_real t313 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t309 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t310) + (y[SOLID_AXLE_STATE_OMEGA_X] * t311 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t312);
+        const gic_real t314 = t170 + (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) +
+            t171);
+        const gic_real t315 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t314;
+        const gic_real t316 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t310 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t314) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t312 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t315);
+        const gic_real t317 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t314 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t309 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t315 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t311);
+        const gic_real t318 = y[SOLID_AXLE_STATE_V_Z] + (t8 * t313 + (t23 * t316 + t32 * t317));
+        const gic_real t319 = y[SOLID_AXLE_STATE_V_Y] + (t12 * t313 + (t25 * t316 + t33 * t317));
+        const gic_real t320 = y[SOLID_AXLE_STATE_R_X] + (t16 * t315 + (t28 * t311 + t34 * t312));
+        const gic_real t321 = y[SOLID_AXLE_STATE_R_Y] + (t12 * t315 + (t25 * t311 + t33 * t312));
         gic_real road322[3];
         if (!solid_axle_road_height(self, time, t320, t321, road322))
             return GIC_ERROR_ROAD;
-        const gic_real t323 = y[12] + (t16 * t313 + (t28 * t316 + t34 * t317));
+        const gic_real t323 = y[SOLID_AXLE_STATE_V_X] + (t16 * t313 + (t28 * t316 + t34 * t317));
         const gic_real t324 = t319 * road322[2] + t323 * road322[1] - t318;
-        const gic_real t325 = y[2] + (t8 * t315 + (t23 * t311 + t32 * t312));
+        const gic_real t325 = y[SOLID_AXLE_STATE_R_Z] + (t8 * t315 + (t23 * t311 + t32 * t312));
         const gic_real t326 = R(0.4699) + road322[0] - t325;
         const gic_real t327 = GIC_MIN(GIC_MAX(R(100.0) * t326, R(0.0)), R(1.0));
         const gic_real t328 = t324 * (R(500.0) * ((R(3.0) - (t327 + t327)) * (t327 * t327)));
-        const gic_real t329 = t296 * GIC_MAX(t306 + t304 * R(283000.0), R(0.0)) - t308 + t318 * GIC_MAX(t328 + R(283000.0) * t326, R(0.0));
-        const gic_real t330 = t233 + (m[97] * R(1.029701) + t234);
-        const gic_real t331 = t226 + (m[94] * R(1.029701) + t227);
-        const gic_real t332 = m[91] + t330;
-        const gic_real t333 = m[90] + t331;
-        const gic_real t334 = m[107] + (m[102] * t330 - m[103] * t331) + (y[15] * t332 - y[16] * t333);
-        const gic_real t335 = t229 + (m[100] * R(1.029701) + t230);
-        const gic_real t336 = m[92] + t335;
-        const gic_real t337 = m[106] + (m[104] * t331 - m[102] * t335) + (y[17] * t333 - y[15] * t336);
-        const gic_real t338 = m[105] + (m[103] * t335 - m[104] * t330) + (y[16] * t336 - y[17] * t332);
-        const gic_real t339 = y[14] + (t8 * t334 + (t23 * t337 + t32 * t338));
-        const gic_real t340 = y[13] + (t12 * t334 + (t25 * t337 + t33 * t338));
-        const gic_real t341 = y[0] + (t16 * t336 + (t28 * t332 + t34 * t333));
-        const gic_real t342 = y[1] + (t12 * t336 + (t25 * t332 + t33 * t333));
+        const gic_real t329 = t296 * GIC_MAX(t306 + t304 * R(283000.0), R(0.0)) - t308 + t318 * GIC_MAX(t328 +
+            R(283000.0) * t326, R(0.0));
+        const gic_real t330 = t233 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t234);
+        const gic_real t331 = t226 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t227);
+        const gic_real t332 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t330;
+        const gic_real t333 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t331;
+        const gic_real t334 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t330 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t331) + (y[SOLID_AXLE_STATE_OMEGA_X] * t332 - y[SOLID_AXLE_STATE_OMEGA_Y] * t333);
+        const gic_real t335 = t229 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t230);
+        const gic_real t336 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t335;
+        const gic_real t337 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t331 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t335) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t333 - y[SOLID_AXLE_STATE_OMEGA_X] * t336);
+        const gic_real t338 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t335 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t330) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t336 - y[SOLID_AXLE_STATE_OMEGA_Z] * t332);
+        const gic_real t339 = y[SOLID_AXLE_STATE_V_Z] + (t8 * t334 + (t23 * t337 + t32 * t338));
+        const gic_real t340 = y[SOLID_AXLE_STATE_V_Y] + (t12 * t334 + (t25 * t337 + t33 * t338));
+        const gic_real t341 = y[SOLID_AXLE_STATE_R_X] + (t16 * t336 + (t28 * t332 + t34 * t333));
+        const gic_real t342 = y[SOLID_AXLE_STATE_R_Y] + (t12 * t336 + (t25 * t332 + t33 * t333));
         gic_real road343[3];
         if (!solid_axle_road_height(self, time, t341, t342, road343))
             return GIC_ERROR_ROAD;
-        const gic_real t344 = y[12] + (t16 * t334 + (t28 * t337 + t34 * t338));
+        const gic_real t344 = y[SOLID_AXLE_STATE_V_X] + (t16 * t334 + (t28 * t337 + t34 * t338));
         const gic_real t345 = t340 * road343[2] + t344 * road343[1] - t339;
-        const gic_real t346 = y[2] + (t8 * t336 + (t23 * t332 + t32 * t333));
+        const gic_real t346 = y[SOLID_AXLE_STATE_R_Z] + (t8 * t336 + (t23 * t332 + t32 * t333));
         const gic_real t347 = R(0.4699) + road343[0] - t346;
         const gic_real t348 = GIC_MIN(GIC_MAX(R(100.0) * t347, R(0.0)), R(1.0));
         const gic_real t349 = t345 * (R(500.0) * ((R(3.0) - (t348 + t348)) * (t348 * t348)));
-        const gic_real t350 = t233 + (t234 + m[97] * R(-0.789701));
-        const gic_real t351 = t226 + (t227 + m[94] * R(-0.789701));
-        const gic_real t352 = m[91] + t350;
-        const gic_real t353 = m[90] + t351;
-        const gic_real t354 = m[107] + (m[102] * t350 - m[103] * t351) + (y[15] * t352 - y[16] * t353);
-        const gic_real t355 = t229 + (t230 + m[100] * R(-0.789701));
-        const gic_real t356 = m[92] + t355;
-        const gic_real t357 = m[106] + (m[104] * t351 - m[102] * t355) + (y[17] * t353 - y[15] * t356);
-        const gic_real t358 = m[105] + (m[103] * t355 - m[104] * t350) + (y[16] * t356 - y[17] * t352);
-        const gic_real t359 = y[14] + (t8 * t354 + (t23 * t357 + t32 * t358));
-        const gic_real t360 = y[13] + (t12 * t354 + (t25 * t357 + t33 * t358));
-        const gic_real t361 = y[0] + (t16 * t356 + (t28 * t352 + t34 * t353));
-        const gic_real t362 = y[1] + (t12 * t356 + (t25 * t352 + t33 * t353));
+        /* wheel tire_r_r */
+        const gic_real t350 = t233 + (t234 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t351 = t226 + (t227 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t352 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t350;
+        const gic_real t353 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t351;
+        const gic_real t354 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t350 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t351) + (y[SOLID_AXLE_STATE_OMEGA_X] * t352 - y[SOLID_AXLE_STATE_OMEGA_Y] * t353);
+        const gic_real t355 = t229 + (t230 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t356 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t355;
+        const gic_real t357 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t351 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t355) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t353 - y[SOLID_AXLE_STATE_OMEGA_X] * t356);
+        const gic_real t358 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t355 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t350) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t356 - y[SOLID_AXLE_STATE_OMEGA_Z] * t352);
+        const gic_real t359 = y[SOLID_AXLE_STATE_V_Z] + (t8 * t354 + (t23 * t357 + t32 * t358));
+        const gic_real t360 = y[SOLID_AXLE_STATE_V_Y] + (t12 * t354 + (t25 * t357 + t33 * t358));
+        const gic_real t361 = y[SOLID_AXLE_STATE_R_X] + (t16 * t356 + (t28 * t352 + t34 * t353));
+        const gic_real t362 = y[SOLID_AXLE_STATE_R_Y] + (t12 * t356 + (t25 * t352 + t33 * t353));
         gic_real road363[3];
         if (!solid_axle_road_height(self, time, t361, t362, road363))
             return GIC_ERROR_ROAD;
-        const gic_real t364 = y[12] + (t16 * t354 + (t28 * t357 + t34 * t358));
+        const gic_real t364 = y[SOLID_AXLE_STATE_V_X] + (t16 * t354 + (t28 * t357 + t34 * t358));
         const gic_real t365 = t360 * road363[2] + t364 * road363[1] - t359;
-        const gic_real t366 = y[2] + (t8 * t356 + (t23 * t352 + t32 * t353));
+        const gic_real t366 = y[SOLID_AXLE_STATE_R_Z] + (t8 * t356 + (t23 * t352 + t32 * t353));
         const gic_real t367 = R(0.4699) + road363[0] - t366;
         const gic_real t368 = GIC_MIN(GIC_MAX(R(100.0) * t367, R(0.0)), R(1.0));
         const gic_real t369 = t365 * (R(500.0) * ((R(3.0) - (t368 + t368)) * (t368 * t368)));
-        const gic_real t370 = t329 + t339 * GIC_MAX(t349 + R(283000.0) * t347, R(0.0)) + t359 * GIC_MAX(t369 + R(283000.0) * t367, R(0.0));
+        const gic_real t370 = t329 + t339 * GIC_MAX(t349 + R(283000.0) * t347, R(0.0)) + t359 * GIC_MAX(t369 +
+            R(283000.0) * t367, R(0.0));
         const gic_real t371 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t372 = t371 + (GIC_FABS(t80) + GIC_FABS(t71)) + (GIC_FABS(t106) + GIC_FABS(t97));
         const gic_real t373 = t372 + (GIC_FABS(t166) + GIC_FABS(t144)) + (GIC_FABS(t225) + GIC_FABS(t203));
         const gic_real t374 = t373 + (GIC_FABS(t285) + GIC_FABS(t263)) + (GIC_FABS(t370) + GIC_FABS(t3));
         const gic_real t375 = t3 + t286;
-        const gic_real t376 = rate[15];
-        const gic_real t377 = rate[16];
-        const gic_real t378 = rate[17];
-        const gic_real t379 = rate[18];
-        const gic_real t380 = rate[19];
-        const gic_real t381 = rate[20];
-        const gic_real t382 = rate[21];
-        const gic_real t383 = rate[22];
-        energy[0] = t375;
-        energy[1] = t370;
-        energy[2] = t374;
-        acc[0] = t376;
-        acc[3] = t35;
-        acc[1] = t377;
-        acc[4] = t29;
-        acc[2] = t378;
-        acc[5] = t17;
-        acc[6] = t379;
-        acc[7] = t380;
-        acc[8] = t381;
-        acc[9] = t382;
-        acc[10] = t383;
+        const gic_real t376 = rate[SOLID_AXLE_STATE_OMEGA_X];
+        const gic_real t377 = rate[SOLID_AXLE_STATE_OMEGA_Y];
+        const gic_real t378 = rate[SOLID_AXLE_STATE_OMEGA_Z];
+        const gic_real t379 = rate[SOLID_AXLE_STATE_SPRING_F_L_RATE];
+        const gic_real t380 = rate[SOLID_AXLE_STATE_SPRING_F_R_RATE];
+        const gic_real t381 = rate[SOLID_AXLE_STATE_SPRING_R_L_RATE];
+        const gic_real t382 = rate[SOLID_AXLE_STATE_SPRING_R_R_RATE];
+        const gic_real t383 = rate[SOLID_AXLE_STATE_RACK_RATE];
+        energy[SOLID_AXLE_ENERGY_RATE] = t375;
+        energy[SOLID_AXLE_ENERGY_POWER] = t370;
+        energy[SOLID_AXLE_ENERGY_MAGNITUDES] = t374;
+        acc[SOLID_AXLE_UNKNOWN_ALPHA_X] = t376;
+        acc[SOLID_AXLE_UNKNOWN_ACCELERATION_X] = t35;
+        acc[SOLID_AXLE_UNKNOWN_ALPHA_Y] = t377;
+        acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Y] = t29;
+        acc[SOLID_AXLE_UNKNOWN_ALPHA_Z] = t378;
+        acc[SOLID_AXLE_UNKNOWN_ACCELERATION_Z] = t17;
+        acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_L] = t379;
+        acc[SOLID_AXLE_UNKNOWN_OF_SPRING_F_R] = t380;
+        acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_L] = t381;
+        acc[SOLID_AXLE_UNKNOWN_OF_SPRING_R_R] = t382;
+        acc[SOLID_AXLE_UNKNOWN_OF_RACK] = t383;
     }
     return GIC_OK;
 }
 
 GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
 {
-    gic_real e[4], acc[SOLID_AXLE_UNKNOWN_ROOM], unit[SOLID_AXLE_UNKNOWN_ROOM], tau0[SOLID_AXLE_UNKNOWN_ROOM], tau[SOLID_AXLE_UNKNOWN_ROOM];
+    gic_real e[4], acc[SOLID_AXLE_UNKNOWN_ROOM], unit[SOLID_AXLE_UNKNOWN_ROOM], tau0[SOLID_AXLE_UNKNOWN_ROOM],
+        tau[SOLID_AXLE_UNKNOWN_ROOM];
     gic_real M[SOLID_AXLE_UNKNOWN_ROOM][SOLID_AXLE_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = solid_axle_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -5563,7 +7279,7 @@ GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int solid_axle_any_setup(void *self)
 {

@@ -66,12 +66,12 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x633cbac1
+#define SOLID_AXLE_H 0xb41f1bb5
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "solid_axle.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "solid_axle.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -80,7 +80,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    SOLID_AXLE_ABI = 6,
+    SOLID_AXLE_ABI = 7,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,
@@ -117,7 +117,8 @@ enum {
     SOLID_AXLE_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[SOLID_AXLE_STATE_...], .input[SOLID_AXLE_INPUT_...], .output[SOLID_AXLE_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[SOLID_AXLE_STATE_...], .input[SOLID_AXLE_INPUT_...],
+ * .output[SOLID_AXLE_OUTPUT_...]. */
 enum {
     SOLID_AXLE_STATE_R_X = 0, /* m */
     SOLID_AXLE_STATE_R_Y = 1, /* m */
@@ -219,40 +220,50 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct solid_axle {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][SOLID_AXLE_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[SOLID_AXLE_STATE_ROOM];
     gic_real input[SOLID_AXLE_INPUT_ROOM];
     gic_real output[SOLID_AXLE_OUTPUT_ROOM];
-    gic_real parameter[SOLID_AXLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (solid_axle_model.parameter_geometric) by solid_axle_setup_with */
+    gic_real parameter[SOLID_AXLE_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (solid_axle_model.parameter_geometric) by
+                                                    * solid_axle_setup_with */
     gic_real port[SOLID_AXLE_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[SOLID_AXLE_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[SOLID_AXLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[SOLID_AXLE_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_STATES - SOLID_AXLE_SLOW)];
     gic_real scratch[GIC_SCRATCH(SOLID_AXLE_STATE_ROOM, SOLID_AXLE_INPUT_ROOM)];
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
+        recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int solid_axle_setup(solid_axle *self);
 
-/* The same as if the file had these numbers (SOLID_AXLE_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (SOLID_AXLE_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int solid_axle_setup_with(solid_axle *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: SOLID_AXLE_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: SOLID_AXLE_STATES numbers. rate is
+ * written only on GIC_OK. */
 int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int solid_axle_step(solid_axle *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -264,19 +275,20 @@ int solid_axle_poses(solid_axle *self, gic_real *pose);
 /* Present time, s. */
 gic_real solid_axle_time(const solid_axle *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *solid_axle_status_text(int status);
 const char *solid_axle_status_subset(const solid_axle *self);
 const char *solid_axle_status_state(const solid_axle *self);
 const char *solid_axle_status_condition(const solid_axle *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void solid_axle_snapshot(const solid_axle *self, solid_axle *copy);
 void solid_axle_restore(solid_axle *self, const solid_axle *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int solid_axle_self_test(solid_axle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

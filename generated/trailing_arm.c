@@ -70,7 +70,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xa580b6d5
+#if TRAILING_ARM_H != 0xe6da9eff
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -131,16 +131,17 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers are;
- * 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer than that
- * where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of it. */
+/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
+ * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
+ * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
+ * it. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a singular
- * configuration, before it is too near. far: square of the subset's distance from the base relative to its size; 16
- * epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
+ * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
+ * size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -160,10 +161,26 @@
 #define GIC_PIECES 1000
 #define GIC_SPLIT 64
 
+/* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
+ * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
+ * about reach; a further correction with old factors changes about step times the larger of reach and step. A
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
+ * shrinks is rounding, near a singular configuration a larger one. */
+#define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
+#define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
+#define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
+#define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
+#define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its distance
- * from the base relative to its size); of their derivatives and of the equations of motion relative to the magnitudes of
- * their terms. They are rounding, in single precision near a singular configuration too. */
+/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
+ * the first half of the present piece. */
+#define GIC_NEXT_PIECE(piece, pieces, usual) \
+    ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
+#define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
+
+/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+ * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
+ * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -185,13 +202,126 @@
  * changes since its start, the angular velocity of the base, and how far a step goes ahead. */
 typedef struct trailing_arm_links {
     const gic_real *known[TRAILING_ARM_KNOWN_ROOM];
-    gic_real x[TRAILING_ARM_DEPENDENCE_ROOM], rate[TRAILING_ARM_DEPENDENCE_ROOM], change[TRAILING_ARM_DEPENDENCE_ROOM], turn[3];
+    gic_real x[TRAILING_ARM_DEPENDENCE_ROOM], rate[TRAILING_ARM_DEPENDENCE_ROOM], change[TRAILING_ARM_DEPENDENCE_ROOM],
+        turn[3];
     gic_real ahead[1];
     int cold; /* the start is a pose alone: nothing to predict and correct with */
-    int again, same[TRAILING_ARM_COORDINATE_ROOM]; /* is the angular velocity that of the last recovery? Then: coordinates' too? */
+    int again; /* base angular velocity unchanged since the last recovery */
+    int same[TRAILING_ARM_COORDINATE_ROOM]; /* where `again`: coordinate and rate unchanged too */
 } trailing_arm_links;
 
 /* ---- recovery of dependent coordinates, one function a class of subsets ------------------------------------- */
+
+#ifndef TRAILING_ARM_LAYOUT_NAMES
+#define TRAILING_ARM_LAYOUT_NAMES
+/* Places of numbers: in the motion of a body, in the inertia of a subset; where those of a body and of a subset
+ * begin among all. */
+enum {
+    TRAILING_ARM_C_X = 0,
+    TRAILING_ARM_C_Y = 1,
+    TRAILING_ARM_C_Z = 2,
+    TRAILING_ARM_A_XX = 3,
+    TRAILING_ARM_A_XY = 4,
+    TRAILING_ARM_A_XZ = 5,
+    TRAILING_ARM_A_YX = 6,
+    TRAILING_ARM_A_YY = 7,
+    TRAILING_ARM_A_YZ = 8,
+    TRAILING_ARM_A_ZX = 9,
+    TRAILING_ARM_A_ZY = 10,
+    TRAILING_ARM_A_ZZ = 11,
+    TRAILING_ARM_OMEGA_X = 12,
+    TRAILING_ARM_OMEGA_Y = 13,
+    TRAILING_ARM_OMEGA_Z = 14,
+    TRAILING_ARM_VELOCITY_X = 15,
+    TRAILING_ARM_VELOCITY_Y = 16,
+    TRAILING_ARM_VELOCITY_Z = 17,
+    TRAILING_ARM_ALPHA_X = 18,
+    TRAILING_ARM_ALPHA_Y = 19,
+    TRAILING_ARM_ALPHA_Z = 20,
+    TRAILING_ARM_ACCELERATION_X = 21,
+    TRAILING_ARM_ACCELERATION_Y = 22,
+    TRAILING_ARM_ACCELERATION_Z = 23,
+    TRAILING_ARM_S = 24, /* unit velocities, 6 numbers a coordinate */
+    TRAILING_ARM_I_FIRST_X = 0,
+    TRAILING_ARM_I_FIRST_Y = 1,
+    TRAILING_ARM_I_FIRST_Z = 2,
+    TRAILING_ARM_I_SECOND_XX = 3,
+    TRAILING_ARM_I_SECOND_YY = 4,
+    TRAILING_ARM_I_SECOND_ZZ = 5,
+    TRAILING_ARM_I_SECOND_XY = 6,
+    TRAILING_ARM_I_SECOND_XZ = 7,
+    TRAILING_ARM_I_SECOND_YZ = 8,
+    TRAILING_ARM_I_FORCE_X = 9,
+    TRAILING_ARM_I_FORCE_Y = 10,
+    TRAILING_ARM_I_FORCE_Z = 11,
+    TRAILING_ARM_I_MOMENT_X = 12,
+    TRAILING_ARM_I_MOMENT_Y = 13,
+    TRAILING_ARM_I_MOMENT_Z = 14,
+    TRAILING_ARM_I_COORDINATE = 15, /* 7 numbers a coordinate, then the mass matrix */
+    TRAILING_ARM_MOTION_RACK = 0,
+    TRAILING_ARM_MOTION_LCA_F_L = 30,
+    TRAILING_ARM_MOTION_LCA_F_R = 60,
+    TRAILING_ARM_MOTION_WHEEL_F_L = 150,
+    TRAILING_ARM_MOTION_WHEEL_F_R = 186,
+    TRAILING_ARM_MOTION_ARM_R_L = 90,
+    TRAILING_ARM_MOTION_ARM_R_R = 120,
+    TRAILING_ARM_INERTIA_RACK = 0,
+    TRAILING_ARM_INERTIA_LCA_F_L = 23,
+    TRAILING_ARM_INERTIA_LCA_F_R = 46,
+    TRAILING_ARM_INERTIA_ARM_R_L = 69,
+    TRAILING_ARM_INERTIA_ARM_R_R = 92,
+    TRAILING_ARM_INERTIA_WHEEL_F_L = 115,
+    TRAILING_ARM_INERTIA_WHEEL_F_R = 147,
+    TRAILING_ARM_SUBSET_CHASSIS = 0,
+    TRAILING_ARM_SUBSET_RACK = 1,
+    TRAILING_ARM_SUBSET_LCA_F_L = 2,
+    TRAILING_ARM_SUBSET_LCA_F_R = 3,
+    TRAILING_ARM_SUBSET_ARM_R_L = 4,
+    TRAILING_ARM_SUBSET_ARM_R_R = 5,
+    TRAILING_ARM_SUBSET_WHEEL_F_L = 6,
+    TRAILING_ARM_SUBSET_WHEEL_F_R = 7,
+    TRAILING_ARM_X_BAR_F_L = 0,
+    TRAILING_ARM_X_BAR_F_R = 1,
+    TRAILING_ARM_X_BAR_R_L = 2,
+    TRAILING_ARM_X_BAR_R_R = 3,
+    TRAILING_ARM_X_RACK = 4,
+    TRAILING_ARM_Q_X = 0,
+    TRAILING_ARM_Q_Y = 1,
+    TRAILING_ARM_Q_Z = 2,
+    TRAILING_ARM_Q_P0 = 3,
+    TRAILING_ARM_Q_P1 = 4,
+    TRAILING_ARM_Q_P2 = 5,
+    TRAILING_ARM_Q_P3 = 6,
+    TRAILING_ARM_POSE_CHASSIS = 0,
+    TRAILING_ARM_POSE_RACK = 7,
+    TRAILING_ARM_POSE_LCA_F_L = 14,
+    TRAILING_ARM_POSE_LCA_F_R = 21,
+    TRAILING_ARM_POSE_WHEEL_F_L = 28,
+    TRAILING_ARM_POSE_WHEEL_F_R = 35,
+    TRAILING_ARM_POSE_ARM_R_L = 42,
+    TRAILING_ARM_POSE_ARM_R_R = 49,
+    TRAILING_ARM_UNKNOWN_ALPHA_X = 0,
+    TRAILING_ARM_UNKNOWN_ALPHA_Y = 1,
+    TRAILING_ARM_UNKNOWN_ALPHA_Z = 2,
+    TRAILING_ARM_UNKNOWN_ACCELERATION_X = 3,
+    TRAILING_ARM_UNKNOWN_ACCELERATION_Y = 4,
+    TRAILING_ARM_UNKNOWN_ACCELERATION_Z = 5,
+    TRAILING_ARM_UNKNOWN_OF_BAR_F_L = 6,
+    TRAILING_ARM_UNKNOWN_OF_BAR_F_R = 7,
+    TRAILING_ARM_UNKNOWN_OF_BAR_R_L = 8,
+    TRAILING_ARM_UNKNOWN_OF_BAR_R_R = 9,
+    TRAILING_ARM_UNKNOWN_OF_RACK = 10,
+    TRAILING_ARM_ENERGY_RATE = 0,
+    TRAILING_ARM_ENERGY_POWER = 1,
+    TRAILING_ARM_ENERGY_MAGNITUDES = 2,
+    TRAILING_ARM_LAYOUT_END = 0
+};
+#endif
+
+/* Names of the columns of constants below: point_a, point_b, axis_a ... of a joint or a coordinate are in the frames
+ * of its first and its second body, from their reference points; side and third are perpendicular to the axis. A turn
+ * solves a cosine + b sine = k; distance and arm: its two points from the point that is turned about. com and J of a
+ * body: its centre of mass from the reference point, its moments of inertia. */
 
 static const gic_real trailing_arm_k_rack[1][1] = {
     { /* rack */
@@ -202,48 +332,50 @@ static const gic_real trailing_arm_k_rack[1][1] = {
 /* Class 'rack': 6 unknowns of rack.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = x[0];
-        motion[1] = t1;
-        const gic_real t2 = rate[0];
-        motion[16] = t2;
-        const gic_real t3 = R(1.438648) * turn[2] + (t2 + t2) - R(0.05422899999999997) * turn[0];
-        const gic_real t4 = t1 * turn[0] - R(1.438648) * turn[1];
-        const gic_real t5 = R(0.05422899999999997) * turn[1] - t1 * turn[2];
-        const gic_real t6 = t1 * R(9.072);
-        inertia[1] = t6;
-        const gic_real t7 = -(t1 * R(13.051414655999999));
-        inertia[6] = t7;
-        const gic_real t8 = -(t1 * R(0.4919654879999997));
-        inertia[8] = t8;
-        const gic_real t9 = t1 * t6;
+        const gic_real c_y = x[0];
+        motion[TRAILING_ARM_C_Y] = c_y;
+        const gic_real velocity_y = rate[0];
+        motion[TRAILING_ARM_VELOCITY_Y] = velocity_y;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = R(1.438648) * turn[2] + (velocity_y + velocity_y) - R(0.05422899999999997) * turn[0];
+        const gic_real t4 = c_y * turn[0] - R(1.438648) * turn[1];
+        const gic_real t5 = R(0.05422899999999997) * turn[1] - c_y * turn[2];
+        const gic_real inertia_first_y = c_y * R(9.072);
+        inertia[TRAILING_ARM_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_second_xy = -(c_y * R(13.051414655999999));
+        inertia[TRAILING_ARM_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = -(c_y * R(0.4919654879999997));
+        inertia[TRAILING_ARM_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t9 = c_y * inertia_first_y;
         const gic_real t10 = turn[1] * t4 - turn[2] * t3;
         const gic_real t11 = turn[0] * t3 - turn[1] * t5;
         const gic_real t12 = turn[2] * t5 - turn[0] * t4;
-        const gic_real t13 = t9 + R(1.026678796448752);
-        inertia[3] = t13;
-        const gic_real t14 = t9 + R(19.776391592025085);
-        inertia[5] = t14;
-        const gic_real t15 = R(9.072) * t10;
-        inertia[9] = t15;
-        const gic_real t16 = R(9.072) * t11;
-        inertia[11] = t16;
-        const gic_real t17 = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
-        inertia[13] = t17;
-        const gic_real t18 = R(9.072) * t12;
-        inertia[10] = t18;
-        inertia[21] = t18;
-        const gic_real t19 = R(13.051414655999999) * t12 - t1 * t15;
-        inertia[14] = t19;
-        const gic_real t20 = t1 * t16 - R(0.4919654879999997) * t12;
-        inertia[12] = t20;
+        const gic_real inertia_second_xx = t9 + R(1.026678796448752);
+        inertia[TRAILING_ARM_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_zz = t9 + R(19.776391592025085);
+        inertia[TRAILING_ARM_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_force_x = R(9.072) * t10;
+        inertia[TRAILING_ARM_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(9.072) * t11;
+        inertia[TRAILING_ARM_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_moment_y = R(0.4919654879999997) * t10 - R(13.051414655999999) * t11;
+        inertia[TRAILING_ARM_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_force_y = R(9.072) * t12;
+        inertia[TRAILING_ARM_I_FORCE_Y] = inertia_force_y;
+        inertia[TRAILING_ARM_I_COORDINATE + 6] = inertia_force_y;
+        const gic_real inertia_moment_z = R(13.051414655999999) * t12 - c_y * inertia_force_x;
+        inertia[TRAILING_ARM_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_moment_x = c_y * inertia_force_z - R(0.4919654879999997) * t12;
+        inertia[TRAILING_ARM_I_MOMENT_X] = inertia_moment_x;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -254,20 +386,33 @@ static int trailing_arm_solve_rack(trailing_arm *self, const gic_real *GIC_RESTR
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void trailing_arm_residual_rack(const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* rack */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = GIC_FABS(motion[16] - rate[0]) / (R(1e-30) + (GIC_FABS(motion[16]) + R(2.0) * GIC_FABS(rate[0])));
-        const gic_real t2 = GIC_FABS(motion[1] - x[0]);
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t1 = GIC_FABS(motion[TRAILING_ARM_VELOCITY_Y] - rate[0]) / (R(1e-30) +
+            (GIC_FABS(motion[TRAILING_ARM_VELOCITY_Y]) + R(2.0) * GIC_FABS(rate[0])));
+        const gic_real t2 = GIC_FABS(motion[TRAILING_ARM_C_Y] - x[0]);
         worst[0] = t2;
         worst[1] = t1;
     }
 }
 
+/* Columns, with the names of lca_f_l:
+ *    0  bar_f_l.axis_a_x
+ *    1  0.970969 * bar_f_l.axis_a_x
+ *    2  arm_f_l.side_b_z
+ *    3  -arm_f_l.side_b_z
+ *    4  lca_f_l.com_y
+ *    5  arm_f_l.point_a_y
+ *    6  bar_f_l.axis_a_x * 23.965
+ *    7  bar_f_l.axis_a_x * 0.4469
+ *    8  1.68897 * bar_f_l.axis_a_x * 23.965
+ */
 static const gic_real trailing_arm_k_lca_f_l[2][9] = {
     { /* lca_f_l */
         R(1.0), R(0.9709689408513393), R(0.23920559337529687), R(-0.23920559337529687),
@@ -284,98 +429,102 @@ static const gic_real trailing_arm_k_lca_f_l[2][9] = {
 /* Class 'lca_f_l': 6 unknowns of lca_f_l, lca_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bar_f_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
         const gic_real t1 = GIC_COS(x[0]);
         const gic_real t2 = GIC_SIN(x[0]);
+        /* pose, in closed form */
         const gic_real t3 = R(0.9709689408513393) * t1;
-        const gic_real t4 = k[0] * rate[0];
-        motion[12] = t4;
-        const gic_real t5 = t4 + turn[0];
-        const gic_real t6 = t4 * turn[2];
-        const gic_real t7 = t4 * turn[1];
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real omega_x = k[0] * rate[0];
+        motion[TRAILING_ARM_OMEGA_X] = omega_x;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t5 = omega_x + turn[0];
+        const gic_real t6 = omega_x * turn[2];
+        const gic_real t7 = omega_x * turn[1];
         const gic_real t8 = R(0.4469) * t5;
-        const gic_real t9 = t3 - t2 * R(-0.23920559337529687);
-        motion[7] = t9;
+        const gic_real a_yy = t3 - t2 * R(-0.23920559337529687);
+        motion[TRAILING_ARM_A_YY] = a_yy;
         const gic_real t10 = t2 * k[1];
-        const gic_real t11 = t3 + t2 * R(0.23920559337529687);
-        motion[11] = t11;
-        const gic_real t12 = k[2] * t1 - t10;
-        motion[8] = t12;
-        const gic_real t13 = t10 + k[3] * t1;
-        motion[10] = t13;
-        const gic_real t14 = R(0.4469) + t11 * (t11 * R(0.4469));
-        const gic_real t15 = t12 * R(3.0379110359107786e-06) + t9 * k[4];
-        const gic_real t16 = t11 * R(3.0379110359107786e-06) + t13 * k[4];
-        const gic_real t17 = t12 * R(0.4469);
-        const gic_real t18 = R(0.4469) + t12 * t17;
+        const gic_real a_zz = t3 + t2 * R(0.23920559337529687);
+        motion[TRAILING_ARM_A_ZZ] = a_zz;
+        const gic_real a_yz = k[2] * t1 - t10;
+        motion[TRAILING_ARM_A_YZ] = a_yz;
+        const gic_real a_zy = t10 + k[3] * t1;
+        motion[TRAILING_ARM_A_ZY] = a_zy;
+        const gic_real t14 = R(0.4469) + a_zz * (a_zz * R(0.4469));
+        const gic_real t15 = a_yz * R(3.0379110359107786e-06) + a_yy * k[4];
+        const gic_real t16 = a_zz * R(3.0379110359107786e-06) + a_zy * k[4];
+        const gic_real t17 = a_yz * R(0.4469);
+        const gic_real t18 = R(0.4469) + a_yz * t17;
         const gic_real t19 = k[5] + t15;
-        const gic_real t20 = t4 * t15;
-        const gic_real t21 = t11 * t17;
-        const gic_real t22 = t4 * t16;
-        const gic_real t23 = R(23.965) * t16;
-        inertia[2] = t23;
+        const gic_real t20 = omega_x * t15;
+        const gic_real t21 = a_zz * t17;
+        const gic_real t22 = omega_x * t16;
+        const gic_real inertia_first_z = R(23.965) * t16;
+        inertia[TRAILING_ARM_I_FIRST_Z] = inertia_first_z;
         const gic_real t24 = t16 * k[6];
-        const gic_real t25 = t15 * k[6];
-        inertia[17] = t25;
+        const gic_real along_0_force_z = t15 * k[6];
+        inertia[TRAILING_ARM_I_COORDINATE + 2] = along_0_force_z;
         const gic_real t26 = k[0] * t15;
         const gic_real t27 = turn[1] * t16 - turn[2] * t19;
         const gic_real t28 = turn[0] * t19 + (t20 + (t20 - R(1.688965) * turn[1]));
         const gic_real t29 = R(1.688965) * turn[2] - turn[0] * t16 - (t22 + t22);
         const gic_real t30 = turn[2] * t14 + turn[1] * t21;
         const gic_real t31 = turn[2] * t21 + turn[1] * t18;
-        const gic_real t32 = R(23.965) * t19;
-        inertia[1] = t32;
+        const gic_real inertia_first_y = R(23.965) * t19;
+        inertia[TRAILING_ARM_I_FIRST_Y] = inertia_first_y;
         const gic_real t33 = k[0] * t16;
-        const gic_real t34 = t16 * t23;
-        const gic_real t35 = t19 * t25 + (k[7] + t16 * t24);
-        inertia[18] = t35;
-        const gic_real t36 = -(t19 * R(40.476046225));
-        inertia[6] = t36;
-        const gic_real t37 = t19 * t32;
+        const gic_real t34 = t16 * inertia_first_z;
+        const gic_real along_0_moment_x = t19 * along_0_force_z + (k[7] + t16 * t24);
+        inertia[TRAILING_ARM_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real inertia_second_xy = -(t19 * R(40.476046225));
+        inertia[TRAILING_ARM_I_SECOND_XY] = inertia_second_xy;
+        const gic_real t37 = t19 * inertia_first_y;
         const gic_real t38 = t18 * t6 + (turn[2] * t8 - t21 * t7) - t5 * t30;
-        const gic_real t39 = turn[2] * t27 - t4 * t20 - turn[0] * t28;
-        const gic_real t40 = turn[0] * t29 - t4 * t22 - turn[1] * t27;
+        const gic_real t39 = turn[2] * t27 - omega_x * t20 - turn[0] * t28;
+        const gic_real t40 = turn[0] * t29 - omega_x * t22 - turn[1] * t27;
         const gic_real t41 = t5 * t31 + (t21 * t6 - turn[1] * t8 - t14 * t7);
-        const gic_real t42 = R(23.965) * (turn[1] * t28 - turn[2] * t29);
-        inertia[9] = t42;
+        const gic_real inertia_force_x = R(23.965) * (turn[1] * t28 - turn[2] * t29);
+        inertia[TRAILING_ARM_I_FORCE_X] = inertia_force_x;
         const gic_real t43 = turn[1] * t30 - turn[2] * t31;
-        const gic_real t44 = R(23.965) * t39;
-        inertia[10] = t44;
-        const gic_real t45 = t33 * t24 + (R(0.4469) + t26 * t25);
-        inertia[22] = t45;
-        const gic_real t46 = R(23.965) * t40;
-        inertia[11] = t46;
-        const gic_real t47 = t37 + (R(0.4469) + t34);
-        inertia[3] = t47;
-        const gic_real t48 = t34 + (t18 + R(68.36262541240713));
-        inertia[4] = t48;
-        const gic_real t49 = t37 + (t14 + R(68.36262541240713));
-        inertia[5] = t49;
-        const gic_real t50 = t21 - t16 * t32;
-        inertia[8] = t50;
-        const gic_real t51 = t43 + t19 * t46 - t16 * t44;
-        inertia[12] = t51;
-        const gic_real t52 = t16 * t42 + (t38 - R(40.476046225) * t40);
-        inertia[13] = t52;
-        const gic_real t53 = R(40.476046225) * t39 + t41 - t19 * t42;
-        inertia[14] = t53;
-        const gic_real t54 = k[0] * t43 + t26 * t46 - t33 * t44;
-        inertia[21] = t54;
-        const gic_real t55 = -(t16 * R(40.476046225));
-        inertia[7] = t55;
-        const gic_real t56 = -(t15 * k[8]);
-        inertia[19] = t56;
-        const gic_real t57 = -(t16 * k[8]);
-        inertia[20] = t57;
-        const gic_real t58 = -t24;
-        inertia[16] = t58;
+        const gic_real inertia_force_y = R(23.965) * t39;
+        inertia[TRAILING_ARM_I_FORCE_Y] = inertia_force_y;
+        const gic_real mass_0 = t33 * t24 + (R(0.4469) + t26 * along_0_force_z);
+        inertia[TRAILING_ARM_I_COORDINATE + 7] = mass_0;
+        const gic_real inertia_force_z = R(23.965) * t40;
+        inertia[TRAILING_ARM_I_FORCE_Z] = inertia_force_z;
+        const gic_real inertia_second_xx = t37 + (R(0.4469) + t34);
+        inertia[TRAILING_ARM_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t34 + (t18 + R(68.36262541240713));
+        inertia[TRAILING_ARM_I_SECOND_YY] = inertia_second_yy;
+        const gic_real inertia_second_zz = t37 + (t14 + R(68.36262541240713));
+        inertia[TRAILING_ARM_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_yz = t21 - t16 * inertia_first_y;
+        inertia[TRAILING_ARM_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_moment_x = t43 + t19 * inertia_force_z - t16 * inertia_force_y;
+        inertia[TRAILING_ARM_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t16 * inertia_force_x + (t38 - R(40.476046225) * t40);
+        inertia[TRAILING_ARM_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = R(40.476046225) * t39 + t41 - t19 * inertia_force_x;
+        inertia[TRAILING_ARM_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_bias = k[0] * t43 + t26 * inertia_force_z - t33 * inertia_force_y;
+        inertia[TRAILING_ARM_I_COORDINATE + 6] = along_0_bias;
+        const gic_real inertia_second_xz = -(t16 * R(40.476046225));
+        inertia[TRAILING_ARM_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real along_0_moment_y = -(t15 * k[8]);
+        inertia[TRAILING_ARM_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = -(t16 * k[8]);
+        inertia[TRAILING_ARM_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_y = -t24;
+        inertia[TRAILING_ARM_I_COORDINATE + 1] = along_0_force_y;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -386,30 +535,34 @@ static int trailing_arm_solve_lca_f_l(trailing_arm *self, const gic_real *GIC_RE
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bar_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = GIC_COS(x[0]);
-        const gic_real t2 = k[2] * motion[11] + R(0.9709689408513393) * motion[10];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t2 = k[2] * motion[TRAILING_ARM_A_ZZ] + R(0.9709689408513393) * motion[TRAILING_ARM_A_ZY];
         const gic_real t3 = k[0] * t2;
         const gic_real t4 = GIC_SIN(x[0]);
-        const gic_real t5 = k[2] * motion[8] + R(0.9709689408513393) * motion[7];
+        const gic_real t5 = k[2] * motion[TRAILING_ARM_A_YZ] + R(0.9709689408513393) * motion[TRAILING_ARM_A_YY];
         const gic_real t6 = t1 * t5 + t4 * t3;
         const gic_real t7 = GIC_FABS(t1 * t3 - t4 * t5) + (GIC_FABS(t6) - t6);
-        const gic_real t8 = t7 + GIC_FABS(motion[10] * motion[10] + motion[7] * motion[7] - R(1.0));
-        const gic_real t9 = t8 + GIC_FABS(-(motion[8] + motion[10])) + GIC_FABS(motion[7] - motion[11]);
+        const gic_real t8 = t7 + GIC_FABS(motion[TRAILING_ARM_A_ZY] * motion[TRAILING_ARM_A_ZY] +
+            motion[TRAILING_ARM_A_YY] * motion[TRAILING_ARM_A_YY] - R(1.0));
+        const gic_real t9 = t8 + GIC_FABS(-(motion[TRAILING_ARM_A_YZ] + motion[TRAILING_ARM_A_ZY])) +
+            GIC_FABS(motion[TRAILING_ARM_A_YY] - motion[TRAILING_ARM_A_ZZ]);
         const gic_real t10 = k[0] * (t4 * t2 + t1 * (k[0] * t5)) - t6;
         const gic_real t11 = R(1.0) + GIC_FABS(-t6);
-        const gic_real t12 = GIC_FABS(motion[12]);
+        const gic_real t12 = GIC_FABS(motion[TRAILING_ARM_OMEGA_X]);
         const gic_real t13 = t11 * GIC_FABS(rate[0]);
-        const gic_real t14 = GIC_FABS(motion[12] - k[0] * rate[0]) / (R(1e-30) + (t12 + t13));
-        const gic_real t15 = t5 * motion[12];
-        const gic_real t16 = t2 * motion[12];
-        const gic_real t17 = t4 * (motion[12] * t15) - t1 * (k[0] * (motion[12] * t16));
+        const gic_real t14 = GIC_FABS(motion[TRAILING_ARM_OMEGA_X] - k[0] * rate[0]) / (R(1e-30) + (t12 + t13));
+        const gic_real t15 = t5 * motion[TRAILING_ARM_OMEGA_X];
+        const gic_real t16 = t2 * motion[TRAILING_ARM_OMEGA_X];
+        const gic_real t17 = t4 * (motion[TRAILING_ARM_OMEGA_X] * t15) - t1 * (k[0] * (motion[TRAILING_ARM_OMEGA_X] *
+            t16));
         const gic_real t18 = rate[0] * (t4 * (k[0] * t15) - t1 * t16);
         const gic_real t19 = GIC_FABS(t17 - (t18 + t18)) / (R(1e-30) + (t12 * t12 + t13 * t13));
         const gic_real t20 = GIC_FABS(t10) / (t11 + R(1e-30)) + t14 + t19;
@@ -418,6 +571,24 @@ static GIC_COLD void trailing_arm_residual_lca_f_l(const gic_real *GIC_RESTRICT 
     }
 }
 
+/* Columns, with the names of wheel_f_l:
+ *    0  ball_f_l.point_a_y
+ *    1  tierod_f_l.point_a_y
+ *    2  upper_f_l.axis_a_y * 0.493759
+ *    3  lca_f_l.C_Y
+ *    4  upper_f_l.point_a_y
+ *    5  upper_f_l.axis_a_y
+ *    6  upper_f_l.axis_a_y * (-0.059522)
+ *    7  sign
+ *    8  sign * 2.92808
+ *    9  (tierod_f_l.point_b_y - upper_f_l.point_b_y * 0.291062) * 46.8451
+ *   10  upper_f_l.point_b_y * 8.57363
+ *   11  from tierod_f_l.point_b, upper_f_l.point_b
+ *   12  from upper_f_l.point_b, tierod_f_l.point_b
+ *   13  wheel_f_l.com_y
+ *   14  tierod_f_l.point_b_y
+ *   15  upper_f_l.point_b_y
+ */
 static const gic_real trailing_arm_k_wheel_f_l[2][16] = {
     { /* wheel_f_l */
         R(0.49375935710120966), R(0.448437), R(-0.0688366363506305), R(0.307086),
@@ -436,8 +607,9 @@ static const gic_real trailing_arm_k_wheel_f_l[2][16] = {
 /* Class 'wheel_f_l': 6 unknowns of wheel_f_l, wheel_f_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
@@ -446,38 +618,40 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
     const gic_real *const ahead = links->ahead;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        motion[2] = t2;
-        const gic_real t3 = k[1] + m0[1];
-        const gic_real t4 = m1[10] * R(0.49375935710120966);
-        const gic_real t5 = m1[7] * R(0.49375935710120966);
-        motion[35] = t5;
-        const gic_real t6 = m1[10] * k[2] - m1[7] * R(0.10628676128755087);
-        const gic_real t7 = t1 + k[3];
-        motion[1] = t7;
-        const gic_real t8 = R(0.23411769999999998) - t2;
-        const gic_real t9 = R(0.05422899999999997) - t2;
+        const gic_real t1 = k[0] * m1[TRAILING_ARM_A_YY];
+        const gic_real c_z = k[0] * m1[TRAILING_ARM_A_ZY];
+        motion[TRAILING_ARM_C_Z] = c_z;
+        const gic_real t3 = k[1] + m0[TRAILING_ARM_C_Y];
+        /* velocities: of the bodies, with a unit rate of each coordinate and with the rates that there are */
+        const gic_real t4 = m1[TRAILING_ARM_A_ZY] * R(0.49375935710120966);
+        const gic_real s_1_5 = m1[TRAILING_ARM_A_YY] * R(0.49375935710120966);
+        motion[TRAILING_ARM_S + 11] = s_1_5;
+        const gic_real t6 = m1[TRAILING_ARM_A_ZY] * k[2] - m1[TRAILING_ARM_A_YY] * R(0.10628676128755087);
+        const gic_real c_y = t1 + k[3];
+        motion[TRAILING_ARM_C_Y] = c_y;
+        /* pose, in closed form */
+        const gic_real t8 = R(0.23411769999999998) - c_z;
+        const gic_real t9 = R(0.05422899999999997) - c_z;
         const gic_real t10 = rate[1] * t4;
-        const gic_real t11 = m1[12] * (m1[12] * t1);
-        const gic_real t12 = m1[12] * (m1[12] * t2);
-        const gic_real t13 = k[4] - t7;
+        const gic_real t11 = m1[TRAILING_ARM_OMEGA_X] * (m1[TRAILING_ARM_OMEGA_X] * t1);
+        const gic_real t12 = m1[TRAILING_ARM_OMEGA_X] * (m1[TRAILING_ARM_OMEGA_X] * c_z);
+        const gic_real t13 = k[4] - c_y;
         const gic_real t14 = R(-0.012812720436325503) - R(0.9665541626242249) * t8;
-        const gic_real t15 = t3 - t7;
-        const gic_real t16 = rate[1] * t5;
-        motion[17] = t16;
-        const gic_real t17 = -t10;
-        motion[16] = t17;
-        const gic_real t18 = -t4;
-        motion[34] = t18;
+        const gic_real t15 = t3 - c_y;
+        const gic_real velocity_z = rate[1] * s_1_5;
+        motion[TRAILING_ARM_VELOCITY_Z] = velocity_z;
+        const gic_real velocity_y = -t10;
+        motion[TRAILING_ARM_VELOCITY_Y] = velocity_y;
+        const gic_real s_1_4 = -t4;
+        motion[TRAILING_ARM_S + 10] = s_1_4;
         const gic_real t19 = t13 * t13 + (t8 * t8 + R(0.0035428684840000087));
         const gic_real t20 = k[5] * t13 + (R(0.21526024724178433) * t8 + R(-0.05753123686771919));
         const gic_real t21 = k[5] * t8 - R(0.21526024724178433) * t13;
         const gic_real t22 = R(0.9665541626242249) * t13 - k[6];
-        const gic_real t23 = -t11;
-        motion[22] = t23;
-        const gic_real t24 = -t12;
-        motion[23] = t24;
+        const gic_real acceleration_y = -t11;
+        motion[TRAILING_ARM_ACCELERATION_Y] = acceleration_y;
+        const gic_real acceleration_z = -t12;
+        motion[TRAILING_ARM_ACCELERATION_Z] = acceleration_z;
         const gic_real t25 = R(0.5) * (R(0.04548219048831004) + t19);
         const gic_real t26 = t21 * t21 + (t22 * t22 + t14 * t14);
         const gic_real t27 = R(4.3116545195287515e-08) + t20;
@@ -495,8 +669,9 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t35 = t22 * t32 + (R(0.21526024724178433) * t33 + t8 * t34);
         const gic_real t36 = t14 * t32 + (k[5] * t33 + t13 * t34);
         const gic_real t37 = t21 * t32 + (R(0.9665541626242249) * t33 + R(-0.059522000000000075) * t34);
-        const gic_real t38 = t35 + (t2 - R(0.23411769999999998));
-        const gic_real t39 = t36 + (t7 - k[4]);
+        /* derivative of the constraint equations, and its factors */
+        const gic_real t38 = t35 + (c_z - R(0.23411769999999998));
+        const gic_real t39 = t36 + (c_y - k[4]);
         const gic_real t40 = R(0.21526024724178433) * t36 - k[5] * t35;
         const gic_real t41 = R(-0.2147570000000001) * t37 + (t9 * t35 + t15 * t36);
         const gic_real t42 = t37 + R(0.059522000000000075);
@@ -505,7 +680,7 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t45 = t36 * t38 - t35 * t39;
         const gic_real t46 = t37 * t39 - t36 * t42;
         const gic_real t47 = t35 * t42 - t37 * t38;
-        const gic_real t48 = t4 * t39 - t5 * t38;
+        const gic_real t48 = t4 * t39 - s_1_5 * t38;
         const gic_real t49 = R(0.5) * (t15 * t15 + (t9 * t9 + R(-0.07206227845579997))) - R(0.2910617987184667) * t41;
         const gic_real t50 = R(8.573627050492615) * t41;
         const gic_real t51 = t45 * t44 - t46 * t40;
@@ -531,39 +706,40 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t67 = t36 * t63 - t35 * t62;
         const gic_real t68 = t64 + R(0.2910617987184667) * t37;
         const gic_real t69 = t35 * t64 - t37 * t63;
-        const gic_real t70 = t65 + (t7 - t3);
+        const gic_real t70 = t65 + (c_y - t3);
         const gic_real t71 = t37 * t62 - t36 * t64;
-        const gic_real t72 = t66 + (t2 - R(0.05422899999999997));
-        const gic_real t73 = R(-18.07838873614245) * t67 + (k[9] * t64 + k[10] * t37);
-        motion[4] = t73;
+        const gic_real t72 = t66 + (c_z - R(0.05422899999999997));
+        const gic_real a_xy = R(-18.07838873614245) * t67 + (k[9] * t64 + k[10] * t37);
+        motion[TRAILING_ARM_A_XY] = a_xy;
         const gic_real t74 = t68 + R(0.2147570000000001);
-        const gic_real t75 = R(-18.07838873614245) * t69 + (k[9] * t62 + k[10] * t36);
-        motion[7] = t75;
-        const gic_real t76 = k[11] * t69 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t36);
-        motion[8] = t76;
+        const gic_real a_yy = R(-18.07838873614245) * t69 + (k[9] * t62 + k[10] * t36);
+        motion[TRAILING_ARM_A_YY] = a_yy;
+        const gic_real a_yz = k[11] * t69 + (R(0.2191665982107646) * t62 + R(2.8601928491017183) * t36);
+        motion[TRAILING_ARM_A_YZ] = a_yz;
         const gic_real t77 = t68 * t70 - t65 * t74;
         const gic_real t78 = t66 * t74 - t68 * t72;
         const gic_real t79 = t65 * t72 - t66 * t70;
-        const gic_real t80 = t4 * t70 - t5 * t72;
-        const gic_real t81 = R(-18.07838873614245) * t71 + (k[9] * t63 + k[10] * t35);
-        motion[10] = t81;
-        const gic_real t82 = k[11] * t71 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t35);
-        motion[11] = t82;
+        const gic_real t80 = t4 * t70 - s_1_5 * t72;
+        const gic_real a_zy = R(-18.07838873614245) * t71 + (k[9] * t63 + k[10] * t35);
+        motion[TRAILING_ARM_A_ZY] = a_zy;
+        const gic_real a_zz = k[11] * t71 + (R(0.2191665982107646) * t63 + R(2.8601928491017183) * t35);
+        motion[TRAILING_ARM_A_ZZ] = a_zz;
         const gic_real t83 = t79 * t53 + (t77 * t52 + t78 * t51);
-        const gic_real t84 = k[11] * t67 + (R(0.2191665982107646) * t64 + R(2.8601928491017183) * t37);
-        motion[5] = t84;
-        const gic_real t85 = k[12] * t69 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t36);
-        motion[6] = t85;
-        const gic_real t86 = k[12] * t71 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t35);
-        motion[9] = t86;
-        const gic_real t87 = k[12] * t67 + (R(-6.332169372123424) * t64 + R(-0.14982584743276875) * t37);
-        motion[3] = t87;
+        const gic_real a_xz = k[11] * t67 + (R(0.2191665982107646) * t64 + R(2.8601928491017183) * t37);
+        motion[TRAILING_ARM_A_XZ] = a_xz;
+        const gic_real a_yx = k[12] * t69 + (R(-6.332169372123424) * t62 + R(-0.14982584743276875) * t36);
+        motion[TRAILING_ARM_A_YX] = a_yx;
+        const gic_real a_zx = k[12] * t71 + (R(-6.332169372123424) * t63 + R(-0.14982584743276875) * t35);
+        motion[TRAILING_ARM_A_ZX] = a_zx;
+        const gic_real a_xx = k[12] * t67 + (R(-6.332169372123424) * t64 + R(-0.14982584743276875) * t37);
+        motion[TRAILING_ARM_A_XX] = a_xx;
         const gic_real t88 = R(1.0) / t83;
-        const gic_real t89 = R(2.8083995) * t75;
-        const gic_real t90 = R(-0.004825999999999997) * t85 + (R(0.09182100000000004) * t76 + k[13] * t75);
-        const gic_real t91 = R(-0.004825999999999997) * t86 + (R(0.09182100000000004) * t82 + k[13] * t81);
-        const gic_real t92 = R(-0.004825999999999997) * t87 + (R(0.09182100000000004) * t84 + k[13] * t73);
-        const gic_real t93 = t86 * (R(0.12192999999999987) * t86) + (R(4.7728205) + t81 * (R(2.8083995) * t81));
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t89 = R(2.8083995) * a_yy;
+        const gic_real t90 = R(-0.004825999999999997) * a_yx + (R(0.09182100000000004) * a_yz + k[13] * a_yy);
+        const gic_real t91 = R(-0.004825999999999997) * a_zx + (R(0.09182100000000004) * a_zz + k[13] * a_zy);
+        const gic_real t92 = R(-0.004825999999999997) * a_xx + (R(0.09182100000000004) * a_xz + k[13] * a_xy);
+        const gic_real t93 = a_zx * (R(0.12192999999999987) * a_zx) + (R(4.7728205) + a_zy * (R(2.8083995) * a_zy));
         const gic_real t94 = (t79 * t43 - t78 * t40) * t88;
         const gic_real t95 = (t78 * t44 - t77 * t43) * t88;
         const gic_real t96 = (t77 * t40 - t79 * t44) * t88;
@@ -573,173 +749,175 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
         const gic_real t100 = t52 * t88;
         const gic_real t101 = t53 * t88;
         const gic_real t102 = t51 * t88;
-        const gic_real t103 = t7 + t90;
-        const gic_real t104 = t2 + t91;
+        const gic_real t103 = c_y + t90;
+        const gic_real t104 = c_z + t91;
         const gic_real t105 = R(1.653405) + t92;
-        const gic_real t106 = R(0.12192999999999987) * t87;
-        const gic_real t107 = R(2.8083995) * t73;
-        const gic_real t108 = t70 * t100;
-        motion[26] = t108;
-        const gic_real t109 = t70 * t101;
-        motion[24] = t109;
-        const gic_real t110 = t70 * t102;
-        motion[25] = t110;
-        const gic_real t111 = R(0.12192999999999987) * t85;
-        const gic_real t112 = t6 * t97 + (t100 * t80 + t94 * t48);
-        motion[32] = t112;
-        const gic_real t113 = t6 * t98 + (t101 * t80 + t95 * t48);
-        motion[30] = t113;
-        const gic_real t114 = t6 * t99 + (t102 * t80 + t96 * t48);
-        motion[31] = t114;
-        const gic_real t115 = t85 * t111 + (R(4.7728205) + t75 * t89);
-        const gic_real t116 = t87 * t106 + (R(4.7728205) + t73 * t107);
-        const gic_real t117 = t75 * t107 + t85 * t106;
-        const gic_real t118 = rate[0] * t108 + rate[1] * t112;
-        motion[14] = t118;
-        const gic_real t119 = rate[0] * t109 + rate[1] * t113;
-        motion[12] = t119;
-        const gic_real t120 = t81 * t107 + t86 * t106;
-        const gic_real t121 = rate[0] * t110 + rate[1] * t114;
-        motion[13] = t121;
-        const gic_real t122 = t81 * t89 + t86 * t111;
-        const gic_real t123 = t109 * t90 - t110 * t92;
-        const gic_real t124 = turn[2] + t118;
-        const gic_real t125 = t37 * t118 - t35 * t119;
-        const gic_real t126 = t68 * t118 - t66 * t119;
-        const gic_real t127 = t66 * t121 - t65 * t118;
-        const gic_real t128 = t65 * t119 - t68 * t121;
-        const gic_real t129 = t35 * t121 - t36 * t118;
-        const gic_real t130 = t36 * t119 - t37 * t121;
+        const gic_real t106 = R(0.12192999999999987) * a_xx;
+        const gic_real t107 = R(2.8083995) * a_xy;
+        const gic_real s_0_2 = t70 * t100;
+        motion[TRAILING_ARM_S + 2] = s_0_2;
+        const gic_real s_0_0 = t70 * t101;
+        motion[TRAILING_ARM_S + 0] = s_0_0;
+        const gic_real s_0_1 = t70 * t102;
+        motion[TRAILING_ARM_S + 1] = s_0_1;
+        const gic_real t111 = R(0.12192999999999987) * a_yx;
+        const gic_real s_1_2 = t6 * t97 + (t100 * t80 + t94 * t48);
+        motion[TRAILING_ARM_S + 8] = s_1_2;
+        const gic_real s_1_0 = t6 * t98 + (t101 * t80 + t95 * t48);
+        motion[TRAILING_ARM_S + 6] = s_1_0;
+        const gic_real s_1_1 = t6 * t99 + (t102 * t80 + t96 * t48);
+        motion[TRAILING_ARM_S + 7] = s_1_1;
+        const gic_real t115 = a_yx * t111 + (R(4.7728205) + a_yy * t89);
+        const gic_real t116 = a_xx * t106 + (R(4.7728205) + a_xy * t107);
+        const gic_real t117 = a_yy * t107 + a_yx * t106;
+        const gic_real omega_z = rate[0] * s_0_2 + rate[1] * s_1_2;
+        motion[TRAILING_ARM_OMEGA_Z] = omega_z;
+        const gic_real omega_x = rate[0] * s_0_0 + rate[1] * s_1_0;
+        motion[TRAILING_ARM_OMEGA_X] = omega_x;
+        const gic_real t120 = a_zy * t107 + a_zx * t106;
+        const gic_real omega_y = rate[0] * s_0_1 + rate[1] * s_1_1;
+        motion[TRAILING_ARM_OMEGA_Y] = omega_y;
+        const gic_real t122 = a_zy * t89 + a_zx * t111;
+        const gic_real t123 = s_0_0 * t90 - s_0_1 * t92;
+        const gic_real t124 = turn[2] + omega_z;
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t125 = t37 * omega_z - t35 * omega_x;
+        const gic_real t126 = t68 * omega_z - t66 * omega_x;
+        const gic_real t127 = t66 * omega_y - t65 * omega_z;
+        const gic_real t128 = t65 * omega_x - t68 * omega_y;
+        const gic_real t129 = t35 * omega_y - t36 * omega_z;
+        const gic_real t130 = t36 * omega_x - t37 * omega_y;
         const gic_real t131 = t125 - t10;
-        const gic_real t132 = t126 - (m0[16] + t10);
-        const gic_real t133 = t119 * t90 - t121 * t92;
-        const gic_real t134 = t118 * t92 - t119 * t91;
-        const gic_real t135 = t16 + t128;
-        const gic_real t136 = t119 * t125 - t121 * t129;
-        const gic_real t137 = t16 + t130;
-        const gic_real t138 = t121 * t130 - t118 * t125;
+        const gic_real t132 = t126 - (m0[TRAILING_ARM_VELOCITY_Y] + t10);
+        const gic_real t133 = omega_x * t90 - omega_y * t92;
+        const gic_real t134 = omega_z * t92 - omega_x * t91;
+        const gic_real t135 = velocity_z + t128;
+        const gic_real t136 = omega_x * t125 - omega_y * t129;
+        const gic_real t137 = velocity_z + t130;
+        const gic_real t138 = omega_y * t130 - omega_z * t125;
         const gic_real t139 = t11 * t70 + t12 * t72 - t127 * t127 - t135 * t135;
         const gic_real t140 = t11 * t39 + t12 * t38 - t129 * t129 - t137 * t137;
-        const gic_real t141 = t118 * t129 - t119 * t130;
-        const gic_real t142 = t72 * (t119 * t126 - t121 * t127) + t70 * (t118 * t127 - t119 * t128);
-        const gic_real t143 = t121 * t91 - t118 * t90;
-        const gic_real t144 = t16 + t133;
-        const gic_real t145 = k[5] * t11 + R(0.21526024724178433) * t12 - R(0.21526024724178433) * t136 - (k[5] * t141 + R(0.9665541626242249) * t138);
-        const gic_real t146 = t139 - t132 * t132 - t74 * (t121 * t128 - t118 * t126);
+        const gic_real t141 = omega_z * t129 - omega_x * t130;
+        const gic_real t142 = t72 * (omega_x * t126 - omega_y * t127) + t70 * (omega_z * t127 - omega_x * t128);
+        const gic_real t143 = omega_y * t91 - omega_z * t90;
+        const gic_real t144 = velocity_z + t133;
+        const gic_real t145 = k[5] * t11 + R(0.21526024724178433) * t12 - R(0.21526024724178433) * t136 - (k[5] * t141 +
+            R(0.9665541626242249) * t138);
+        const gic_real t146 = t139 - t132 * t132 - t74 * (omega_y * t128 - omega_z * t126);
         const gic_real t147 = t140 - t131 * t131 - t42 * t138 - (t38 * t136 + t39 * t141);
         const gic_real t148 = t143 + (t143 + (turn[1] * t104 - turn[2] * t103));
         const gic_real t149 = t144 + (t144 + (turn[0] * t103 - turn[1] * t105));
         const gic_real t150 = t134 - t10;
-        const gic_real t151 = turn[1] + t121;
-        const gic_real t152 = turn[0] + t119;
-        const gic_real t153 = t109 * t116 + (t108 * t120 + t110 * t117);
+        const gic_real t151 = turn[1] + omega_y;
+        const gic_real t152 = turn[0] + omega_x;
+        const gic_real t153 = s_0_0 * t116 + (s_0_2 * t120 + s_0_1 * t117);
         const gic_real t154 = t150 + (t150 + (turn[2] * t105 - turn[0] * t104));
         const gic_real t155 = t146 - t142;
         const gic_real t156 = t120 * t152 + (t93 * t124 + t122 * t151);
         const gic_real t157 = t117 * t152 + (t122 * t124 + t115 * t151);
-        const gic_real t158 = t119 * t134 - t12 - t121 * t143 - turn[1] * t148;
-        const gic_real t159 = t95 * t147 + (t101 * t155 + t98 * t145);
-        motion[18] = t159;
-        const gic_real t160 = t96 * t147 + (t102 * t155 + t99 * t145);
-        motion[19] = t160;
-        const gic_real t161 = t94 * t147 + (t100 * t155 + t97 * t145);
-        motion[20] = t161;
-        const gic_real t162 = turn[2] * t148 + (t118 * t143 - t11 - t119 * t133);
+        const gic_real t158 = omega_x * t134 - t12 - omega_y * t143 - turn[1] * t148;
+        const gic_real alpha_x = t95 * t147 + (t101 * t155 + t98 * t145);
+        motion[TRAILING_ARM_ALPHA_X] = alpha_x;
+        const gic_real alpha_y = t96 * t147 + (t102 * t155 + t99 * t145);
+        motion[TRAILING_ARM_ALPHA_Y] = alpha_y;
+        const gic_real alpha_z = t94 * t147 + (t100 * t155 + t97 * t145);
+        motion[TRAILING_ARM_ALPHA_Z] = alpha_z;
+        const gic_real t162 = turn[2] * t148 + (omega_z * t143 - t11 - omega_x * t133);
         const gic_real t163 = t116 * t152 + (t120 * t124 + t117 * t151);
-        const gic_real t164 = turn[1] * t149 + (t121 * t133 - t118 * t134) - turn[2] * t154;
-        const gic_real t165 = t160 + (turn[2] * t119 - turn[0] * t118);
-        const gic_real t166 = t161 + (turn[0] * t121 - turn[1] * t119);
-        const gic_real t167 = t159 + (turn[1] * t118 - turn[2] * t121);
-        const gic_real t168 = t159 * t90 + (turn[0] * t154 + t158) - t160 * t92;
-        const gic_real t169 = t161 * t92 + (t162 - turn[0] * t149) - t159 * t91;
-        const gic_real t170 = t109 * t117 + (t108 * t122 + t110 * t115);
-        const gic_real t171 = R(90.555) * (t160 * t91 + t164 - t161 * t90);
-        inertia[9] = t171;
+        const gic_real t164 = turn[1] * t149 + (omega_y * t133 - omega_z * t134) - turn[2] * t154;
+        const gic_real t165 = alpha_y + (turn[2] * omega_x - turn[0] * omega_z);
+        const gic_real t166 = alpha_z + (turn[0] * omega_y - turn[1] * omega_x);
+        const gic_real t167 = alpha_x + (turn[1] * omega_z - turn[2] * omega_y);
+        const gic_real t168 = alpha_x * t90 + (turn[0] * t154 + t158) - alpha_y * t92;
+        const gic_real t169 = alpha_z * t92 + (t162 - turn[0] * t149) - alpha_x * t91;
+        const gic_real t170 = s_0_0 * t117 + (s_0_2 * t122 + s_0_1 * t115);
+        const gic_real inertia_force_x = R(90.555) * (alpha_y * t91 + t164 - alpha_z * t90);
+        inertia[TRAILING_ARM_I_FORCE_X] = inertia_force_x;
         const gic_real t172 = t120 * t166 + (t151 * t156 - t124 * t157) + (t117 * t165 + t116 * t167);
         const gic_real t173 = t122 * t166 + (t124 * t163 - t152 * t156) + (t115 * t165 + t117 * t167);
         const gic_real t174 = t93 * t166 + (t152 * t157 - t151 * t163) + (t122 * t165 + t120 * t167);
-        const gic_real t175 = t109 * t120 + (t108 * t93 + t110 * t122);
-        const gic_real t176 = t114 * t91 - t112 * t90;
-        const gic_real t177 = t112 * t92 - t4 - t113 * t91;
-        const gic_real t178 = t5 + t113 * t90 - t114 * t92;
-        const gic_real t179 = t113 * t116 + (t112 * t120 + t114 * t117);
-        const gic_real t180 = t113 * t117 + (t112 * t122 + t114 * t115);
-        const gic_real t181 = t113 * t120 + (t112 * t93 + t114 * t122);
-        const gic_real t182 = t110 * t91 - t108 * t90;
-        const gic_real t183 = t108 * t92 - t109 * t91;
-        const gic_real t184 = R(90.555) * t168;
-        inertia[11] = t184;
-        const gic_real t185 = R(90.555) * t123;
-        inertia[17] = t185;
-        const gic_real t186 = R(90.555) * t176;
-        inertia[22] = t186;
-        const gic_real t187 = ahead[0] * (GIC_FABS(t118) + (GIC_FABS(t119) + GIC_FABS(t121)));
-        const gic_real t188 = R(90.555) * t105;
-        inertia[0] = t188;
-        const gic_real t189 = R(90.555) * t103;
-        inertia[1] = t189;
-        const gic_real t190 = R(90.555) * t169;
-        inertia[10] = t190;
-        const gic_real t191 = R(90.555) * t182;
-        inertia[15] = t191;
-        const gic_real t192 = R(90.555) * t183;
-        inertia[16] = t192;
-        const gic_real t193 = t108 * t174 + t110 * t173 + (t109 * t172 + t184 * t123);
-        const gic_real t194 = R(90.555) * t177;
-        inertia[23] = t194;
-        const gic_real t195 = R(90.555) * t178;
-        inertia[24] = t195;
-        const gic_real t196 = t112 * t174 + t114 * t173 + (t113 * t172 + t184 * t178);
+        const gic_real t175 = s_0_0 * t120 + (s_0_2 * t93 + s_0_1 * t122);
+        const gic_real t176 = s_1_1 * t91 - s_1_2 * t90;
+        const gic_real t177 = s_1_2 * t92 - t4 - s_1_0 * t91;
+        const gic_real t178 = s_1_5 + s_1_0 * t90 - s_1_1 * t92;
+        const gic_real t179 = s_1_0 * t116 + (s_1_2 * t120 + s_1_1 * t117);
+        const gic_real t180 = s_1_0 * t117 + (s_1_2 * t122 + s_1_1 * t115);
+        const gic_real t181 = s_1_0 * t120 + (s_1_2 * t93 + s_1_1 * t122);
+        const gic_real t182 = s_0_1 * t91 - s_0_2 * t90;
+        const gic_real t183 = s_0_2 * t92 - s_0_0 * t91;
+        const gic_real inertia_force_z = R(90.555) * t168;
+        inertia[TRAILING_ARM_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_force_z = R(90.555) * t123;
+        inertia[TRAILING_ARM_I_COORDINATE + 2] = along_0_force_z;
+        const gic_real along_1_force_x = R(90.555) * t176;
+        inertia[TRAILING_ARM_I_COORDINATE + 7] = along_1_force_x;
+        const gic_real t187 = ahead[0] * (GIC_FABS(omega_z) + (GIC_FABS(omega_x) + GIC_FABS(omega_y)));
+        const gic_real inertia_first_x = R(90.555) * t105;
+        inertia[TRAILING_ARM_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_y = R(90.555) * t103;
+        inertia[TRAILING_ARM_I_FIRST_Y] = inertia_first_y;
+        const gic_real inertia_force_y = R(90.555) * t169;
+        inertia[TRAILING_ARM_I_FORCE_Y] = inertia_force_y;
+        const gic_real along_0_force_x = R(90.555) * t182;
+        inertia[TRAILING_ARM_I_COORDINATE + 0] = along_0_force_x;
+        const gic_real along_0_force_y = R(90.555) * t183;
+        inertia[TRAILING_ARM_I_COORDINATE + 1] = along_0_force_y;
+        const gic_real t193 = s_0_2 * t174 + s_0_1 * t173 + (s_0_0 * t172 + inertia_force_z * t123);
+        const gic_real along_1_force_y = R(90.555) * t177;
+        inertia[TRAILING_ARM_I_COORDINATE + 8] = along_1_force_y;
+        const gic_real along_1_force_z = R(90.555) * t178;
+        inertia[TRAILING_ARM_I_COORDINATE + 9] = along_1_force_z;
+        const gic_real t196 = s_1_2 * t174 + s_1_1 * t173 + (s_1_0 * t172 + inertia_force_z * t178);
         if (!(R(-334.7683100636247) * t83 - t187 > R(0.004)))
             return GIC_ERROR_SINGULAR;
-        const gic_real t197 = t108 * t175 + t110 * t170 + (t109 * t153 + t123 * t185);
-        const gic_real t198 = t108 * t181 + t110 * t180 + (t109 * t179 + t182 * t186);
-        const gic_real t199 = t112 * t181 + t114 * t180 + (t113 * t179 + t176 * t186);
-        const gic_real t200 = R(90.555) * t104;
-        inertia[2] = t200;
-        const gic_real t201 = t103 * t189;
-        const gic_real t202 = t105 * t188;
-        const gic_real t203 = t172 + t103 * t184 - t104 * t190;
-        inertia[12] = t203;
-        const gic_real t204 = t173 + t104 * t171 - t105 * t184;
-        inertia[13] = t204;
-        const gic_real t205 = t174 + t105 * t190 - t103 * t171;
-        inertia[14] = t205;
-        const gic_real t206 = t153 + t103 * t185 - t104 * t192;
-        inertia[18] = t206;
-        const gic_real t207 = t170 + t104 * t191 - t105 * t185;
-        inertia[19] = t207;
-        const gic_real t208 = t175 + t105 * t192 - t103 * t191;
-        inertia[20] = t208;
-        const gic_real t209 = t190 * t183 + t171 * t182 + t193;
-        inertia[21] = t209;
-        const gic_real t210 = t179 + t103 * t195 - t104 * t194;
-        inertia[25] = t210;
-        const gic_real t211 = t180 + t104 * t186 - t105 * t195;
-        inertia[26] = t211;
-        const gic_real t212 = t105 * t194 + (t181 - t103 * t186);
-        inertia[27] = t212;
-        const gic_real t213 = t190 * t177 + t171 * t176 + t196;
-        inertia[28] = t213;
-        const gic_real t214 = t183 * t192 + t182 * t191 + t197;
-        inertia[29] = t214;
-        const gic_real t215 = t198 + (t123 * t195 + t183 * t194);
-        inertia[30] = t215;
-        const gic_real t216 = t199 + (t178 * t195 + t177 * t194);
-        inertia[31] = t216;
-        const gic_real t217 = t104 * t200;
-        const gic_real t218 = t201 + (t93 + t202);
-        inertia[5] = t218;
-        const gic_real t219 = t117 - t103 * t188;
-        inertia[6] = t219;
-        const gic_real t220 = t120 - t104 * t188;
-        inertia[7] = t220;
-        const gic_real t221 = t122 - t104 * t189;
-        inertia[8] = t221;
-        const gic_real t222 = t217 + (t116 + t201);
-        inertia[3] = t222;
-        const gic_real t223 = t217 + (t115 + t202);
-        inertia[4] = t223;
+        const gic_real t197 = s_0_2 * t175 + s_0_1 * t170 + (s_0_0 * t153 + t123 * along_0_force_z);
+        const gic_real t198 = s_0_2 * t181 + s_0_1 * t180 + (s_0_0 * t179 + t182 * along_1_force_x);
+        const gic_real t199 = s_1_2 * t181 + s_1_1 * t180 + (s_1_0 * t179 + t176 * along_1_force_x);
+        const gic_real inertia_first_z = R(90.555) * t104;
+        inertia[TRAILING_ARM_I_FIRST_Z] = inertia_first_z;
+        const gic_real t201 = t103 * inertia_first_y;
+        const gic_real t202 = t105 * inertia_first_x;
+        const gic_real inertia_moment_x = t172 + t103 * inertia_force_z - t104 * inertia_force_y;
+        inertia[TRAILING_ARM_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_moment_y = t173 + t104 * inertia_force_x - t105 * inertia_force_z;
+        inertia[TRAILING_ARM_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real inertia_moment_z = t174 + t105 * inertia_force_y - t103 * inertia_force_x;
+        inertia[TRAILING_ARM_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real along_0_moment_x = t153 + t103 * along_0_force_z - t104 * along_0_force_y;
+        inertia[TRAILING_ARM_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_y = t170 + t104 * along_0_force_x - t105 * along_0_force_z;
+        inertia[TRAILING_ARM_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real along_0_moment_z = t175 + t105 * along_0_force_y - t103 * along_0_force_x;
+        inertia[TRAILING_ARM_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_bias = inertia_force_y * t183 + inertia_force_x * t182 + t193;
+        inertia[TRAILING_ARM_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_1_moment_x = t179 + t103 * along_1_force_z - t104 * along_1_force_y;
+        inertia[TRAILING_ARM_I_COORDINATE + 10] = along_1_moment_x;
+        const gic_real along_1_moment_y = t180 + t104 * along_1_force_x - t105 * along_1_force_z;
+        inertia[TRAILING_ARM_I_COORDINATE + 11] = along_1_moment_y;
+        const gic_real along_1_moment_z = t105 * along_1_force_y + (t181 - t103 * along_1_force_x);
+        inertia[TRAILING_ARM_I_COORDINATE + 12] = along_1_moment_z;
+        const gic_real along_1_bias = inertia_force_y * t177 + inertia_force_x * t176 + t196;
+        inertia[TRAILING_ARM_I_COORDINATE + 13] = along_1_bias;
+        const gic_real mass_0 = t183 * along_0_force_y + t182 * along_0_force_x + t197;
+        inertia[TRAILING_ARM_I_COORDINATE + 14] = mass_0;
+        const gic_real mass_1 = t198 + (t123 * along_1_force_z + t183 * along_1_force_y);
+        inertia[TRAILING_ARM_I_COORDINATE + 15] = mass_1;
+        const gic_real mass_2 = t199 + (t178 * along_1_force_z + t177 * along_1_force_y);
+        inertia[TRAILING_ARM_I_COORDINATE + 16] = mass_2;
+        const gic_real t217 = t104 * inertia_first_z;
+        const gic_real inertia_second_zz = t201 + (t93 + t202);
+        inertia[TRAILING_ARM_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xy = t117 - t103 * inertia_first_x;
+        inertia[TRAILING_ARM_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_xz = t120 - t104 * inertia_first_x;
+        inertia[TRAILING_ARM_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_second_yz = t122 - t104 * inertia_first_y;
+        inertia[TRAILING_ARM_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real inertia_second_xx = t217 + (t116 + t201);
+        inertia[TRAILING_ARM_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_second_yy = t217 + (t115 + t202);
+        inertia[TRAILING_ARM_I_SECOND_YY] = inertia_second_yy;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -750,104 +928,152 @@ static int trailing_arm_solve_wheel_f_l(trailing_arm *self, const gic_real *GIC_
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
     const gic_real *const m0 = links->known[0]; /* rack */
     const gic_real *const m1 = links->known[1]; /* lca_f_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
-        const gic_real t1 = k[0] * m1[7];
-        const gic_real t2 = k[0] * m1[10];
-        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[1] - (t1 + k[3]))) + GIC_FABS(R(2.928075656552032) * (motion[2] - t2));
-        const gic_real t4 = R(0.10177780000000003) * motion[11] + (k[14] * motion[10] + R(-0.14025880000000002) * motion[9]);
-        const gic_real t5 = motion[2] + t4 - R(0.05422899999999997);
-        const gic_real t6 = R(0.10177780000000003) * motion[8] + (k[14] * motion[7] + R(-0.14025880000000002) * motion[6]);
-        const gic_real t7 = motion[1] + t6;
-        const gic_real t8 = k[1] + m0[1];
+        const gic_real t1 = k[0] * m1[TRAILING_ARM_A_YY];
+        const gic_real t2 = k[0] * m1[TRAILING_ARM_A_ZY];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = GIC_FABS(R(2.928075656552032) * (motion[TRAILING_ARM_C_Y] - (t1 + k[3]))) +
+            GIC_FABS(R(2.928075656552032) * (motion[TRAILING_ARM_C_Z] - t2));
+        const gic_real t4 = R(0.10177780000000003) * motion[TRAILING_ARM_A_ZZ] + (k[14] * motion[TRAILING_ARM_A_ZY] +
+            R(-0.14025880000000002) * motion[TRAILING_ARM_A_ZX]);
+        const gic_real t5 = motion[TRAILING_ARM_C_Z] + t4 - R(0.05422899999999997);
+        const gic_real t6 = R(0.10177780000000003) * motion[TRAILING_ARM_A_YZ] + (k[14] * motion[TRAILING_ARM_A_YY] +
+            R(-0.14025880000000002) * motion[TRAILING_ARM_A_YX]);
+        const gic_real t7 = motion[TRAILING_ARM_C_Y] + t6;
+        const gic_real t8 = k[1] + m0[TRAILING_ARM_C_Y];
         const gic_real t9 = t7 - t8;
-        const gic_real t10 = R(0.10177780000000003) * motion[5] + (k[14] * motion[4] + R(-0.14025880000000002) * motion[3]);
+        const gic_real t10 = R(0.10177780000000003) * motion[TRAILING_ARM_A_XZ] + (k[14] * motion[TRAILING_ARM_A_XY] +
+            R(-0.14025880000000002) * motion[TRAILING_ARM_A_XX]);
         const gic_real t11 = R(1.653405) + t10 - R(1.438648);
         const gic_real t12 = t5 * t5 + (t9 * t9 + t11 * t11) - R(0.14941089924212003);
         const gic_real t13 = (GIC_FABS(t11) + GIC_FABS(t9) + GIC_FABS(t5)) * R(0.3415212300824065);
         const gic_real t14 = R(2.0) / (t13 + R(0.12727430698933434));
-        const gic_real t15 = R(0.33360360000000006) * motion[11] + (k[15] * motion[10] + R(-0.017475200000000024) * motion[9]);
-        const gic_real t16 = motion[2] + t15 - R(0.23411769999999998);
-        const gic_real t17 = R(0.33360360000000006) * motion[8] + (k[15] * motion[7] + R(-0.017475200000000024) * motion[6]);
-        const gic_real t18 = motion[1] + t17 - k[4];
-        const gic_real t19 = R(0.33360360000000006) * motion[5] + (k[15] * motion[4] + R(-0.017475200000000024) * motion[3]);
+        const gic_real t15 = R(0.33360360000000006) * motion[TRAILING_ARM_A_ZZ] + (k[15] * motion[TRAILING_ARM_A_ZY] +
+            R(-0.017475200000000024) * motion[TRAILING_ARM_A_ZX]);
+        const gic_real t16 = motion[TRAILING_ARM_C_Z] + t15 - R(0.23411769999999998);
+        const gic_real t17 = R(0.33360360000000006) * motion[TRAILING_ARM_A_YZ] + (k[15] * motion[TRAILING_ARM_A_YY] +
+            R(-0.017475200000000024) * motion[TRAILING_ARM_A_YX]);
+        const gic_real t18 = motion[TRAILING_ARM_C_Y] + t17 - k[4];
+        const gic_real t19 = R(0.33360360000000006) * motion[TRAILING_ARM_A_XZ] + (k[15] * motion[TRAILING_ARM_A_XY] +
+            R(-0.017475200000000024) * motion[TRAILING_ARM_A_XX]);
         const gic_real t20 = R(1.653405) + t19 - R(1.593883);
         const gic_real t21 = t16 * t16 + (t18 * t18 + t20 * t20) - R(0.07115456010869);
         const gic_real t22 = R(0.3415212300824065) * (GIC_FABS(t20) + GIC_FABS(t18) + GIC_FABS(t16));
         const gic_real t23 = R(2.0) / (t22 + R(0.08973613759331868));
         const gic_real t24 = t3 + GIC_FABS(R(0.5) * t12 * t14) + GIC_FABS(R(0.5) * t21 * t23);
-        const gic_real t25 = R(0.21526024724178433) * t16 + (k[5] * t18 + R(0.9665541626242249) * t20) - R(4.3116545195287515e-08);
-        const gic_real t26 = motion[9] * motion[9] + (motion[6] * motion[6] + motion[3] * motion[3]) - R(1.0);
-        const gic_real t27 = motion[10] * motion[10] + (motion[7] * motion[7] + motion[4] * motion[4]) - R(1.0);
+        const gic_real t25 = R(0.21526024724178433) * t16 + (k[5] * t18 + R(0.9665541626242249) * t20) -
+            R(4.3116545195287515e-08);
+        const gic_real t26 = motion[TRAILING_ARM_A_ZX] * motion[TRAILING_ARM_A_ZX] + (motion[TRAILING_ARM_A_YX] *
+            motion[TRAILING_ARM_A_YX] + motion[TRAILING_ARM_A_XX] * motion[TRAILING_ARM_A_XX]) - R(1.0);
+        const gic_real t27 = motion[TRAILING_ARM_A_ZY] * motion[TRAILING_ARM_A_ZY] + (motion[TRAILING_ARM_A_YY] *
+            motion[TRAILING_ARM_A_YY] + motion[TRAILING_ARM_A_XY] * motion[TRAILING_ARM_A_XY]) - R(1.0);
         const gic_real t28 = t24 + GIC_FABS(t25 * R(2.559750693852431)) + GIC_FABS(t26) + GIC_FABS(t27);
-        const gic_real t29 = GIC_FABS(motion[9] * motion[10] + (motion[6] * motion[7] + motion[3] * motion[4]));
-        const gic_real t30 = t28 + t29 + GIC_FABS(motion[6] * motion[10] - motion[7] * motion[9] - motion[5]);
-        const gic_real t31 = t30 + GIC_FABS(motion[4] * motion[9] - motion[3] * motion[10] - motion[8]);
-        const gic_real t32 = t31 + GIC_FABS(motion[3] * motion[7] - motion[4] * motion[6] - motion[11]);
+        const gic_real t29 = GIC_FABS(motion[TRAILING_ARM_A_ZX] * motion[TRAILING_ARM_A_ZY] +
+            (motion[TRAILING_ARM_A_YX] * motion[TRAILING_ARM_A_YY] + motion[TRAILING_ARM_A_XX] *
+            motion[TRAILING_ARM_A_XY]));
+        const gic_real t30 = t28 + t29 + GIC_FABS(motion[TRAILING_ARM_A_YX] * motion[TRAILING_ARM_A_ZY] -
+            motion[TRAILING_ARM_A_YY] * motion[TRAILING_ARM_A_ZX] - motion[TRAILING_ARM_A_XZ]);
+        const gic_real t31 = t30 + GIC_FABS(motion[TRAILING_ARM_A_XY] * motion[TRAILING_ARM_A_ZX] -
+            motion[TRAILING_ARM_A_XX] * motion[TRAILING_ARM_A_ZY] - motion[TRAILING_ARM_A_YZ]);
+        const gic_real t32 = t31 + GIC_FABS(motion[TRAILING_ARM_A_XX] * motion[TRAILING_ARM_A_YY] -
+            motion[TRAILING_ARM_A_XY] * motion[TRAILING_ARM_A_YX] - motion[TRAILING_ARM_A_ZZ]);
         const gic_real t33 = t6 * t5 - t4 * t9;
         const gic_real t34 = t4 * t11 - t10 * t5;
         const gic_real t35 = t10 * t9 - t6 * t11;
-        const gic_real t36 = t8 - t7 + t33 * motion[24] + t34 * motion[25] + t35 * motion[26];
+        const gic_real t36 = t8 - t7 + t33 * motion[TRAILING_ARM_S + 0] + t34 * motion[TRAILING_ARM_S + 1] + t35 *
+            motion[TRAILING_ARM_S + 2];
         const gic_real t37 = t17 * t16 - t15 * t18;
         const gic_real t38 = t15 * t20 - t19 * t16;
         const gic_real t39 = t19 * t18 - t17 * t20;
-        const gic_real t40 = t23 * (t37 * motion[24] + t38 * motion[25] + t39 * motion[26]);
+        const gic_real t40 = t23 * (t37 * motion[TRAILING_ARM_S + 0] + t38 * motion[TRAILING_ARM_S + 1] + t39 *
+            motion[TRAILING_ARM_S + 2]);
         const gic_real t41 = R(0.21526024724178433) * t17 - k[5] * t15;
         const gic_real t42 = R(0.9665541626242249) * t15 - R(0.21526024724178433) * t19;
         const gic_real t43 = k[5] * t19 - R(0.9665541626242249) * t17;
-        const gic_real t44 = R(2.559750693852431) * (t41 * motion[24] + t42 * motion[25] + t43 * motion[26]);
+        const gic_real t44 = R(2.559750693852431) * (t41 * motion[TRAILING_ARM_S + 0] + t42 *
+            motion[TRAILING_ARM_S + 1] + t43 * motion[TRAILING_ARM_S + 2]);
         const gic_real t45 = GIC_FABS(t14 * t36) + GIC_FABS(t40) + GIC_FABS(t44);
-        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[24]) + GIC_FABS(motion[25]) + GIC_FABS(motion[26]));
-        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[10] * R(0.49375935710120966) + motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[35] - m1[7] * R(0.49375935710120966)));
-        const gic_real t48 = t33 * motion[30] + t34 * motion[31] + t35 * motion[32] + t9 * motion[34];
-        const gic_real t49 = t37 * motion[30] + t38 * motion[31] + t39 * motion[32] + t18 * motion[34];
-        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[35])) + GIC_FABS(t23 * (t49 + t16 * motion[35]));
-        const gic_real t51 = t41 * motion[30] + t42 * motion[31] + t43 * motion[32] + k[5] * motion[34];
-        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[34]) + GIC_FABS(motion[35])) + (GIC_FABS(motion[30]) + GIC_FABS(motion[31]) + GIC_FABS(motion[32]));
+        const gic_real t46 = R(2.928075656552032) + (GIC_FABS(motion[TRAILING_ARM_S + 0]) +
+            GIC_FABS(motion[TRAILING_ARM_S + 1]) + GIC_FABS(motion[TRAILING_ARM_S + 2]));
+        const gic_real t47 = GIC_FABS(R(2.928075656552032) * (m1[TRAILING_ARM_A_ZY] * R(0.49375935710120966) +
+            motion[TRAILING_ARM_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[TRAILING_ARM_S + 11] -
+            m1[TRAILING_ARM_A_YY] * R(0.49375935710120966)));
+        const gic_real t48 = t33 * motion[TRAILING_ARM_S + 6] + t34 * motion[TRAILING_ARM_S + 7] + t35 *
+            motion[TRAILING_ARM_S + 8] + t9 * motion[TRAILING_ARM_S + 10];
+        const gic_real t49 = t37 * motion[TRAILING_ARM_S + 6] + t38 * motion[TRAILING_ARM_S + 7] + t39 *
+            motion[TRAILING_ARM_S + 8] + t18 * motion[TRAILING_ARM_S + 10];
+        const gic_real t50 = t47 + GIC_FABS(t14 * (t48 + t5 * motion[TRAILING_ARM_S + 11])) + GIC_FABS(t23 * (t49 +
+            t16 * motion[TRAILING_ARM_S + 11]));
+        const gic_real t51 = t41 * motion[TRAILING_ARM_S + 6] + t42 * motion[TRAILING_ARM_S + 7] + t43 *
+            motion[TRAILING_ARM_S + 8] + k[5] * motion[TRAILING_ARM_S + 10];
+        const gic_real t52 = R(2.928075656552032) * (GIC_FABS(motion[TRAILING_ARM_S + 10]) +
+            GIC_FABS(motion[TRAILING_ARM_S + 11])) + (GIC_FABS(motion[TRAILING_ARM_S + 6]) +
+            GIC_FABS(motion[TRAILING_ARM_S + 7]) + GIC_FABS(motion[TRAILING_ARM_S + 8]));
         const gic_real t53 = R(1.0) + t52;
-        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) * motion[35]))) / (R(1e-30) + t53);
-        const gic_real t55 = GIC_FABS(motion[12] - rate[0] * motion[24] - rate[1] * motion[30]) + GIC_FABS(motion[13] - rate[0] * motion[25] - rate[1] * motion[31]);
-        const gic_real t56 = t55 + GIC_FABS(motion[14] - rate[0] * motion[26] - rate[1] * motion[32]);
-        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[16] - rate[1] * motion[34])) + GIC_FABS(R(2.928075656552032) * (motion[17] - rate[1] * motion[35]));
-        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[16]) + GIC_FABS(motion[17]));
-        const gic_real t59 = GIC_FABS(motion[12]) + GIC_FABS(motion[13]) + GIC_FABS(motion[14]);
+        const gic_real t54 = (t50 + GIC_FABS(R(2.559750693852431) * (t51 + R(0.21526024724178433) *
+            motion[TRAILING_ARM_S + 11]))) / (R(1e-30) + t53);
+        const gic_real t55 = GIC_FABS(motion[TRAILING_ARM_OMEGA_X] - rate[0] * motion[TRAILING_ARM_S + 0] - rate[1] *
+            motion[TRAILING_ARM_S + 6]) + GIC_FABS(motion[TRAILING_ARM_OMEGA_Y] - rate[0] * motion[TRAILING_ARM_S + 1] -
+            rate[1] * motion[TRAILING_ARM_S + 7]);
+        const gic_real t56 = t55 + GIC_FABS(motion[TRAILING_ARM_OMEGA_Z] - rate[0] * motion[TRAILING_ARM_S + 2] -
+            rate[1] * motion[TRAILING_ARM_S + 8]);
+        const gic_real t57 = t56 + GIC_FABS(R(2.928075656552032) * (motion[TRAILING_ARM_VELOCITY_Y] - rate[1] *
+            motion[TRAILING_ARM_S + 10])) + GIC_FABS(R(2.928075656552032) * (motion[TRAILING_ARM_VELOCITY_Z] - rate[1] *
+            motion[TRAILING_ARM_S + 11]));
+        const gic_real t58 = R(2.928075656552032) * (GIC_FABS(motion[TRAILING_ARM_VELOCITY_Y]) +
+            GIC_FABS(motion[TRAILING_ARM_VELOCITY_Z]));
+        const gic_real t59 = GIC_FABS(motion[TRAILING_ARM_OMEGA_X]) + GIC_FABS(motion[TRAILING_ARM_OMEGA_Y]) +
+            GIC_FABS(motion[TRAILING_ARM_OMEGA_Z]);
         const gic_real t60 = t46 * GIC_FABS(rate[0]);
         const gic_real t61 = t53 * GIC_FABS(rate[1]);
         const gic_real t62 = t45 / (t46 + R(1e-30)) + t54 + t57 / (R(1e-30) + (t58 + t59 + t60 + t61));
-        const gic_real t63 = GIC_FABS(R(2.928075656552032) * (m1[12] * (m1[12] * t1) + motion[22])) + GIC_FABS(R(2.928075656552032) * (m1[12] * (m1[12] * t2) + motion[23]));
-        const gic_real t64 = t6 * motion[12] - t10 * motion[13];
-        const gic_real t65 = motion[17] + t64;
-        const gic_real t66 = t10 * motion[14] - t4 * motion[12];
-        const gic_real t67 = motion[16] + t66 - m0[16];
-        const gic_real t68 = t4 * motion[13] - t6 * motion[14];
-        const gic_real t69 = motion[12] * t66 - motion[13] * t68 + (t6 * motion[18] - t10 * motion[19]);
-        const gic_real t70 = motion[14] * t68 - motion[12] * t64 + (t10 * motion[20] - t4 * motion[18]);
-        const gic_real t71 = motion[13] * t64 - motion[14] * t66 + (t4 * motion[19] - t6 * motion[20]);
-        const gic_real t72 = t5 * (motion[23] + t69) + (t9 * (motion[22] + t70) + t11 * t71);
+        const gic_real t63 = GIC_FABS(R(2.928075656552032) * (m1[TRAILING_ARM_OMEGA_X] * (m1[TRAILING_ARM_OMEGA_X] *
+            t1) + motion[TRAILING_ARM_ACCELERATION_Y])) + GIC_FABS(R(2.928075656552032) * (m1[TRAILING_ARM_OMEGA_X] *
+            (m1[TRAILING_ARM_OMEGA_X] * t2) + motion[TRAILING_ARM_ACCELERATION_Z]));
+        const gic_real t64 = t6 * motion[TRAILING_ARM_OMEGA_X] - t10 * motion[TRAILING_ARM_OMEGA_Y];
+        const gic_real t65 = motion[TRAILING_ARM_VELOCITY_Z] + t64;
+        const gic_real t66 = t10 * motion[TRAILING_ARM_OMEGA_Z] - t4 * motion[TRAILING_ARM_OMEGA_X];
+        const gic_real t67 = motion[TRAILING_ARM_VELOCITY_Y] + t66 - m0[TRAILING_ARM_VELOCITY_Y];
+        const gic_real t68 = t4 * motion[TRAILING_ARM_OMEGA_Y] - t6 * motion[TRAILING_ARM_OMEGA_Z];
+        const gic_real t69 = motion[TRAILING_ARM_OMEGA_X] * t66 - motion[TRAILING_ARM_OMEGA_Y] * t68 + (t6 *
+            motion[TRAILING_ARM_ALPHA_X] - t10 * motion[TRAILING_ARM_ALPHA_Y]);
+        const gic_real t70 = motion[TRAILING_ARM_OMEGA_Z] * t68 - motion[TRAILING_ARM_OMEGA_X] * t64 + (t10 *
+            motion[TRAILING_ARM_ALPHA_Z] - t4 * motion[TRAILING_ARM_ALPHA_X]);
+        const gic_real t71 = motion[TRAILING_ARM_OMEGA_Y] * t64 - motion[TRAILING_ARM_OMEGA_Z] * t66 + (t4 *
+            motion[TRAILING_ARM_ALPHA_Y] - t6 * motion[TRAILING_ARM_ALPHA_Z]);
+        const gic_real t72 = t5 * (motion[TRAILING_ARM_ACCELERATION_Z] + t69) + (t9 *
+            (motion[TRAILING_ARM_ACCELERATION_Y] + t70) + t11 * t71);
         const gic_real t73 = t65 * t65 + (t67 * t67 + t68 * t68) + t72;
-        const gic_real t74 = t17 * motion[12] - t19 * motion[13];
-        const gic_real t75 = motion[17] + t74;
-        const gic_real t76 = t19 * motion[14] - t15 * motion[12];
-        const gic_real t77 = motion[16] + t76;
-        const gic_real t78 = t15 * motion[13] - t17 * motion[14];
-        const gic_real t79 = motion[12] * t76 - motion[13] * t78 + (t17 * motion[18] - t19 * motion[19]);
-        const gic_real t80 = motion[23] + t79;
-        const gic_real t81 = motion[14] * t78 - motion[12] * t74 + (t19 * motion[20] - t15 * motion[18]);
-        const gic_real t82 = motion[22] + t81;
-        const gic_real t83 = motion[13] * t74 - motion[14] * t76 + (t15 * motion[19] - t17 * motion[20]);
+        const gic_real t74 = t17 * motion[TRAILING_ARM_OMEGA_X] - t19 * motion[TRAILING_ARM_OMEGA_Y];
+        const gic_real t75 = motion[TRAILING_ARM_VELOCITY_Z] + t74;
+        const gic_real t76 = t19 * motion[TRAILING_ARM_OMEGA_Z] - t15 * motion[TRAILING_ARM_OMEGA_X];
+        const gic_real t77 = motion[TRAILING_ARM_VELOCITY_Y] + t76;
+        const gic_real t78 = t15 * motion[TRAILING_ARM_OMEGA_Y] - t17 * motion[TRAILING_ARM_OMEGA_Z];
+        const gic_real t79 = motion[TRAILING_ARM_OMEGA_X] * t76 - motion[TRAILING_ARM_OMEGA_Y] * t78 + (t17 *
+            motion[TRAILING_ARM_ALPHA_X] - t19 * motion[TRAILING_ARM_ALPHA_Y]);
+        const gic_real t80 = motion[TRAILING_ARM_ACCELERATION_Z] + t79;
+        const gic_real t81 = motion[TRAILING_ARM_OMEGA_Z] * t78 - motion[TRAILING_ARM_OMEGA_X] * t74 + (t19 *
+            motion[TRAILING_ARM_ALPHA_Z] - t15 * motion[TRAILING_ARM_ALPHA_X]);
+        const gic_real t82 = motion[TRAILING_ARM_ACCELERATION_Y] + t81;
+        const gic_real t83 = motion[TRAILING_ARM_OMEGA_Y] * t74 - motion[TRAILING_ARM_OMEGA_Z] * t76 + (t15 *
+            motion[TRAILING_ARM_ALPHA_Y] - t17 * motion[TRAILING_ARM_ALPHA_Z]);
         const gic_real t84 = t75 * t75 + (t77 * t77 + t78 * t78) + (t16 * t80 + (t18 * t82 + t20 * t83));
         const gic_real t85 = t63 + GIC_FABS(t73 * t14) + GIC_FABS(t84 * t23);
-        const gic_real t86 = (R(0.21526024724178433) * t80 + (k[5] * t82 + R(0.9665541626242249) * t83)) * R(2.559750693852431);
-        const gic_real t87 = R(2.928075656552032) * (GIC_FABS(motion[22]) + GIC_FABS(motion[23])) + (GIC_FABS(motion[18]) + GIC_FABS(motion[19]) + GIC_FABS(motion[20]));
-        const gic_real t88 = R(2.928075656552032) * GIC_FABS(m0[16]);
+        const gic_real t86 = (R(0.21526024724178433) * t80 + (k[5] * t82 + R(0.9665541626242249) * t83)) *
+            R(2.559750693852431);
+        const gic_real t87 = R(2.928075656552032) * (GIC_FABS(motion[TRAILING_ARM_ACCELERATION_Y]) +
+            GIC_FABS(motion[TRAILING_ARM_ACCELERATION_Z])) + (GIC_FABS(motion[TRAILING_ARM_ALPHA_X]) +
+            GIC_FABS(motion[TRAILING_ARM_ALPHA_Y]) + GIC_FABS(motion[TRAILING_ARM_ALPHA_Z]));
+        const gic_real t88 = R(2.928075656552032) * GIC_FABS(m0[TRAILING_ARM_VELOCITY_Y]);
         const gic_real t89 = t58 * t58 + t59 * t59 + t87 + t88 * t88;
-        const gic_real t90 = GIC_FABS(m1[12]);
+        const gic_real t90 = GIC_FABS(m1[TRAILING_ARM_OMEGA_X]);
         const gic_real t91 = t89 + t90 * t90 + t60 * t60 + t61 * t61;
         const gic_real t92 = t62 + (t85 + GIC_FABS(t86)) / (R(1e-30) + t91);
         worst[0] = t32;
@@ -855,6 +1081,12 @@ static GIC_COLD void trailing_arm_residual_wheel_f_l(const gic_real *GIC_RESTRIC
     }
 }
 
+/* Columns, with the names of arm_r_l:
+ *    0  arm_r_l.J_yz
+ *    1  arm_r_l.J_xy
+ *    2  arm_r_l.point_a_y + arm_r_l.com_y
+ *    3  110.555 * (arm_r_l.point_a_y + arm_r_l.com_y)
+ */
 static const gic_real trailing_arm_k_lca_f_l_2[2][4] = {
     { /* arm_r_l */
         R(0.075632), R(0.729032), R(0.843847), R(93.29150508500001),
@@ -867,96 +1099,99 @@ static const gic_real trailing_arm_k_lca_f_l_2[2][4] = {
 /* Class 'lca_f_l_2': 6 unknowns of arm_r_l, arm_r_r.
  * start: nothing. motion: c 0, A 3, omega 12, velocity 15, alpha 18,
  * acceleration 21, S 24. inertia: first and second moments 0 3, force and moment 9 12, coordinates from 15. */
-static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT inertia)
+static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, gic_real *GIC_RESTRICT start, gic_real *GIC_RESTRICT motion,
+    gic_real *GIC_RESTRICT inertia)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bar_r_l */
     const gic_real *const rate = links->rate;
     const gic_real *const turn = links->turn;
     (void)k, (void)start, (void)motion, (void)inertia;
     {
-        const gic_real t1 = GIC_COS(x[0]);
-        motion[3] = t1;
-        motion[11] = t1;
-        const gic_real t2 = GIC_SIN(x[0]);
-        motion[5] = t2;
-        const gic_real t3 = t1 * R(-0.109132);
-        const gic_real t4 = rate[0];
-        motion[13] = t4;
-        const gic_real t5 = t4 + turn[1];
-        const gic_real t6 = t4 * turn[0];
-        const gic_real t7 = t4 * turn[2];
-        const gic_real t8 = t2 * R(-0.04753299999999999) + t1 * R(-0.45756300000000016);
-        const gic_real t9 = t1 * R(-0.04753299999999999) - t2 * R(-0.45756300000000016);
-        const gic_real t10 = t2 * R(-0.109132);
-        const gic_real t11 = t2 * k[0] + t1 * k[1];
-        const gic_real t12 = t1 * k[0] - t2 * k[1];
-        const gic_real t13 = -t2;
-        motion[9] = t13;
-        const gic_real t14 = t10 + t1 * R(-1.3186999999999998);
+        const gic_real a_xx = GIC_COS(x[0]);
+        motion[TRAILING_ARM_A_XX] = a_xx;
+        motion[TRAILING_ARM_A_ZZ] = a_xx;
+        const gic_real a_xz = GIC_SIN(x[0]);
+        motion[TRAILING_ARM_A_XZ] = a_xz;
+        /* what the bodies add to the inertia and to the equations of motion */
+        const gic_real t3 = a_xx * R(-0.109132);
+        const gic_real omega_y = rate[0];
+        motion[TRAILING_ARM_OMEGA_Y] = omega_y;
+        const gic_real t5 = omega_y + turn[1];
+        const gic_real t6 = omega_y * turn[0];
+        const gic_real t7 = omega_y * turn[2];
+        const gic_real t8 = a_xz * R(-0.04753299999999999) + a_xx * R(-0.45756300000000016);
+        const gic_real t9 = a_xx * R(-0.04753299999999999) - a_xz * R(-0.45756300000000016);
+        const gic_real t10 = a_xz * R(-0.109132);
+        const gic_real t11 = a_xz * k[0] + a_xx * k[1];
+        const gic_real t12 = a_xx * k[0] - a_xz * k[1];
+        /* pose, in closed form */
+        const gic_real a_zx = -a_xz;
+        motion[TRAILING_ARM_A_ZX] = a_zx;
+        const gic_real t14 = t10 + a_xx * R(-1.3186999999999998);
         const gic_real t15 = R(-1.15) + t8;
-        const gic_real t16 = R(6.78001) - t1 * t10 - t2 * (t3 - t2 * R(-1.3186999999999998));
+        const gic_real t16 = R(6.78001) - a_xx * t10 - a_xz * (t3 - a_xz * R(-1.3186999999999998));
         const gic_real t17 = R(0.026000000000000023) + t9;
-        const gic_real t18 = t4 * t8;
-        const gic_real t19 = t4 * t9;
+        const gic_real t18 = omega_y * t8;
+        const gic_real t19 = omega_y * t9;
         const gic_real t20 = turn[0] * t11 + (turn[2] * t12 + R(9.09449) * t5);
-        const gic_real t21 = t1 * t14 + (R(6.78001) + t2 * t3);
+        const gic_real t21 = a_xx * t14 + (R(6.78001) + a_xz * t3);
         const gic_real t22 = turn[0] * k[2] - t18 - t18 - turn[1] * t15;
         const gic_real t23 = turn[1] * t17 + (t19 + (t19 - turn[2] * k[2]));
-        const gic_real t24 = t1 * t3 - t2 * t14;
+        const gic_real t24 = a_xx * t3 - a_xz * t14;
         const gic_real t25 = turn[2] * t15 - turn[0] * t17;
-        const gic_real t26 = R(110.555) * t15;
-        inertia[0] = t26;
-        const gic_real t27 = R(110.555) * t17;
-        inertia[2] = t27;
-        const gic_real t28 = R(110.555) * t9;
-        inertia[15] = t28;
+        const gic_real inertia_first_x = R(110.555) * t15;
+        inertia[TRAILING_ARM_I_FIRST_X] = inertia_first_x;
+        const gic_real inertia_first_z = R(110.555) * t17;
+        inertia[TRAILING_ARM_I_FIRST_Z] = inertia_first_z;
+        const gic_real along_0_force_x = R(110.555) * t9;
+        inertia[TRAILING_ARM_I_COORDINATE + 0] = along_0_force_x;
         const gic_real t29 = R(110.555) * t8;
-        const gic_real t30 = t11 - t15 * k[3];
-        inertia[6] = t30;
-        const gic_real t31 = t12 - t17 * k[3];
-        inertia[8] = t31;
-        const gic_real t32 = t15 * t26;
-        const gic_real t33 = t17 * t27;
+        const gic_real inertia_second_xy = t11 - t15 * k[3];
+        inertia[TRAILING_ARM_I_SECOND_XY] = inertia_second_xy;
+        const gic_real inertia_second_yz = t12 - t17 * k[3];
+        inertia[TRAILING_ARM_I_SECOND_YZ] = inertia_second_yz;
+        const gic_real t32 = t15 * inertia_first_x;
+        const gic_real t33 = t17 * inertia_first_z;
         const gic_real t34 = turn[0] * t21 + (turn[2] * t24 + t11 * t5);
         const gic_real t35 = turn[0] * t24 + (t12 * t5 + turn[2] * t16);
-        const gic_real t36 = turn[1] * t22 - (turn[2] * t25 + t4 * t18);
-        const gic_real t37 = turn[0] * t25 - t4 * t19 - turn[1] * t23;
-        const gic_real t38 = R(110.555) * (turn[2] * t23 - turn[0] * t22);
-        inertia[10] = t38;
+        const gic_real t36 = turn[1] * t22 - (turn[2] * t25 + omega_y * t18);
+        const gic_real t37 = turn[0] * t25 - omega_y * t19 - turn[1] * t23;
+        const gic_real inertia_force_y = R(110.555) * (turn[2] * t23 - turn[0] * t22);
+        inertia[TRAILING_ARM_I_FORCE_Y] = inertia_force_y;
         const gic_real t39 = turn[0] * t20 + (t6 * t16 - t24 * t7) - t5 * t34;
         const gic_real t40 = t5 * t35 + (t24 * t6 - t7 * t21 - turn[2] * t20);
         const gic_real t41 = t12 * t6 - t11 * t7 + turn[2] * t34 - turn[0] * t35;
-        const gic_real t42 = R(110.555) * t36;
-        inertia[9] = t42;
-        const gic_real t43 = R(110.555) * t37;
-        inertia[11] = t43;
-        const gic_real t44 = t17 * t28 + (R(9.09449) + t15 * t29);
-        inertia[19] = t44;
-        const gic_real t45 = t9 * t28 + (R(9.09449) + t8 * t29);
-        inertia[22] = t45;
-        const gic_real t46 = t33 + (R(78.723756691462) + t21);
-        inertia[3] = t46;
-        const gic_real t47 = t15 * t38 + (t39 - k[3] * t36);
-        inertia[14] = t47;
-        const gic_real t48 = t33 + (R(9.09449) + t32);
-        inertia[4] = t48;
-        const gic_real t49 = k[3] * t37 + t40 - t17 * t38;
-        inertia[12] = t49;
-        const gic_real t50 = t32 + (R(78.723756691462) + t16);
-        inertia[5] = t50;
-        const gic_real t51 = t24 - t17 * t26;
-        inertia[7] = t51;
-        const gic_real t52 = t41 + t17 * t42 - t15 * t43;
-        inertia[13] = t52;
-        const gic_real t53 = t41 + t9 * t42 - t8 * t43;
-        inertia[21] = t53;
-        const gic_real t54 = t11 - t8 * k[3];
-        inertia[18] = t54;
-        const gic_real t55 = t12 - t9 * k[3];
-        inertia[20] = t55;
-        const gic_real t56 = -t29;
-        inertia[17] = t56;
+        const gic_real inertia_force_x = R(110.555) * t36;
+        inertia[TRAILING_ARM_I_FORCE_X] = inertia_force_x;
+        const gic_real inertia_force_z = R(110.555) * t37;
+        inertia[TRAILING_ARM_I_FORCE_Z] = inertia_force_z;
+        const gic_real along_0_moment_y = t17 * along_0_force_x + (R(9.09449) + t15 * t29);
+        inertia[TRAILING_ARM_I_COORDINATE + 4] = along_0_moment_y;
+        const gic_real mass_0 = t9 * along_0_force_x + (R(9.09449) + t8 * t29);
+        inertia[TRAILING_ARM_I_COORDINATE + 7] = mass_0;
+        const gic_real inertia_second_xx = t33 + (R(78.723756691462) + t21);
+        inertia[TRAILING_ARM_I_SECOND_XX] = inertia_second_xx;
+        const gic_real inertia_moment_z = t15 * inertia_force_y + (t39 - k[3] * t36);
+        inertia[TRAILING_ARM_I_MOMENT_Z] = inertia_moment_z;
+        const gic_real inertia_second_yy = t33 + (R(9.09449) + t32);
+        inertia[TRAILING_ARM_I_SECOND_YY] = inertia_second_yy;
+        const gic_real inertia_moment_x = k[3] * t37 + t40 - t17 * inertia_force_y;
+        inertia[TRAILING_ARM_I_MOMENT_X] = inertia_moment_x;
+        const gic_real inertia_second_zz = t32 + (R(78.723756691462) + t16);
+        inertia[TRAILING_ARM_I_SECOND_ZZ] = inertia_second_zz;
+        const gic_real inertia_second_xz = t24 - t17 * inertia_first_x;
+        inertia[TRAILING_ARM_I_SECOND_XZ] = inertia_second_xz;
+        const gic_real inertia_moment_y = t41 + t17 * inertia_force_x - t15 * inertia_force_z;
+        inertia[TRAILING_ARM_I_MOMENT_Y] = inertia_moment_y;
+        const gic_real along_0_bias = t41 + t9 * inertia_force_x - t8 * inertia_force_z;
+        inertia[TRAILING_ARM_I_COORDINATE + 6] = along_0_bias;
+        const gic_real along_0_moment_x = t11 - t8 * k[3];
+        inertia[TRAILING_ARM_I_COORDINATE + 3] = along_0_moment_x;
+        const gic_real along_0_moment_z = t12 - t9 * k[3];
+        inertia[TRAILING_ARM_I_COORDINATE + 5] = along_0_moment_z;
+        const gic_real along_0_force_z = -t29;
+        inertia[TRAILING_ARM_I_COORDINATE + 2] = along_0_force_z;
     }
 #ifdef GIC_PLANT_MOTION /* an error that tests plant */
     motion[GIC_PLANT_MOTION] += GIC_PLANT_BY;
@@ -967,30 +1202,36 @@ static int trailing_arm_solve_lca_f_l_2(trailing_arm *self, const gic_real *GIC_
 
 /* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
  * magnitudes of their terms. */
-static GIC_COLD void trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k, const trailing_arm_links *GIC_RESTRICT links,
-    const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
+static GIC_COLD void trailing_arm_residual_lca_f_l_2(const gic_real *GIC_RESTRICT k,
+    const trailing_arm_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
 {
-    const gic_real *const x = links->x;
+    const gic_real *const x = links->x; /* bar_r_l */
     const gic_real *const rate = links->rate;
     (void)k, (void)motion;
     {
         const gic_real t1 = GIC_SIN(x[0]);
         const gic_real t2 = GIC_COS(x[0]);
-        const gic_real t3 = t2 * motion[3];
-        const gic_real t4 = t1 * motion[9];
+        /* quadratic-velocity terms: accelerations of the bodies while those of the coordinates are 0 */
+        const gic_real t3 = t2 * motion[TRAILING_ARM_A_XX];
+        const gic_real t4 = t1 * motion[TRAILING_ARM_A_ZX];
         const gic_real t5 = t3 - t4;
-        const gic_real t6 = GIC_FABS(-(t1 * motion[3] + t2 * motion[9])) + (GIC_FABS(t5) - t5);
-        const gic_real t7 = t6 + GIC_FABS(motion[9] * motion[9] + motion[3] * motion[3] - R(1.0));
-        const gic_real t8 = t7 + GIC_FABS(-(motion[5] + motion[9])) + GIC_FABS(motion[3] - motion[11]);
+        const gic_real t6 = GIC_FABS(-(t1 * motion[TRAILING_ARM_A_XX] + t2 * motion[TRAILING_ARM_A_ZX])) +
+            (GIC_FABS(t5) - t5);
+        const gic_real t7 = t6 + GIC_FABS(motion[TRAILING_ARM_A_ZX] * motion[TRAILING_ARM_A_ZX] +
+            motion[TRAILING_ARM_A_XX] * motion[TRAILING_ARM_A_XX] - R(1.0));
+        const gic_real t8 = t7 + GIC_FABS(-(motion[TRAILING_ARM_A_XZ] + motion[TRAILING_ARM_A_ZX])) +
+            GIC_FABS(motion[TRAILING_ARM_A_XX] - motion[TRAILING_ARM_A_ZZ]);
         const gic_real t9 = t4 - t3;
         const gic_real t10 = R(1.0) + GIC_FABS(t9);
-        const gic_real t11 = GIC_FABS(motion[13]);
+        const gic_real t11 = GIC_FABS(motion[TRAILING_ARM_OMEGA_Y]);
         const gic_real t12 = t10 * GIC_FABS(rate[0]);
-        const gic_real t13 = GIC_FABS(t9 + t5) / (t10 + R(1e-30)) + GIC_FABS(motion[13] - rate[0]) / (R(1e-30) + (t11 + t12));
-        const gic_real t14 = motion[3] * motion[13];
-        const gic_real t15 = motion[9] * motion[13];
+        const gic_real t13 = GIC_FABS(t9 + t5) / (t10 + R(1e-30)) + GIC_FABS(motion[TRAILING_ARM_OMEGA_Y] - rate[0]) /
+            (R(1e-30) + (t11 + t12));
+        const gic_real t14 = motion[TRAILING_ARM_A_XX] * motion[TRAILING_ARM_OMEGA_Y];
+        const gic_real t15 = motion[TRAILING_ARM_A_ZX] * motion[TRAILING_ARM_OMEGA_Y];
         const gic_real t16 = rate[0] * (t2 * t15 + t1 * t14);
-        const gic_real t17 = t1 * (motion[13] * t14) + t2 * (motion[13] * t15) - (t16 + t16);
+        const gic_real t17 = t1 * (motion[TRAILING_ARM_OMEGA_Y] * t14) + t2 * (motion[TRAILING_ARM_OMEGA_Y] * t15) -
+            (t16 + t16);
         const gic_real t18 = GIC_FABS(t17) / (R(1e-30) + (t11 * t11 + t12 * t12));
         const gic_real t19 = t13 + t18;
         worst[0] = t8;
@@ -1010,7 +1251,8 @@ static const gic_real trailing_arm_piece[TRAILING_ARM_COORDINATE_ROOM] = {
 };
 
 /* start[] from old[], both with the coordinates in front. */
-static int trailing_arm_recover_piece(trailing_arm *self, trailing_arm_links *links, const gic_real *old, gic_real *start)
+static int trailing_arm_recover_piece(trailing_arm *self, trailing_arm_links *links, const gic_real *old,
+    gic_real *start)
 {
     const gic_real *const xd = self->xd;
     int status = GIC_OK; /* stays so where no subset can fail */
@@ -1020,103 +1262,112 @@ static int trailing_arm_recover_piece(trailing_arm *self, trailing_arm_links *li
     (void)xd;
     (void)status;
     /* stage 2: rack */
-    if (links->again && links->same[4]) {
+    if (links->again && links->same[TRAILING_ARM_X_RACK]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        status = trailing_arm_solve_rack(self, trailing_arm_k_rack[0], links, start + 5, self->motion + 0, self->inertia + 0);
+        links->x[0] = start[TRAILING_ARM_X_RACK];
+        links->rate[0] = xd[TRAILING_ARM_X_RACK];
+        status = trailing_arm_solve_rack(self, trailing_arm_k_rack[0], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_RACK, self->inertia + TRAILING_ARM_INERTIA_RACK);
         if (status != GIC_OK) {
-            self->head.subset = 1;
+            self->head.subset = TRAILING_ARM_SUBSET_RACK;
             return status;
         }
     }
     /* stage 2: lca_f_l */
-    if (links->again && links->same[0]) {
+    if (links->again && links->same[TRAILING_ARM_X_BAR_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[0]; /* bar_f_l */
-        links->rate[0] = xd[0];
-        status = trailing_arm_solve_lca_f_l(self, trailing_arm_k_lca_f_l[0], links, start + 5, self->motion + 30, self->inertia + 23);
+        links->x[0] = start[TRAILING_ARM_X_BAR_F_L];
+        links->rate[0] = xd[TRAILING_ARM_X_BAR_F_L];
+        status = trailing_arm_solve_lca_f_l(self, trailing_arm_k_lca_f_l[0], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_LCA_F_L, self->inertia + TRAILING_ARM_INERTIA_LCA_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 2;
+            self->head.subset = TRAILING_ARM_SUBSET_LCA_F_L;
             return status;
         }
     }
     /* stage 2: lca_f_r */
-    if (links->again && links->same[1]) {
+    if (links->again && links->same[TRAILING_ARM_X_BAR_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[1]; /* bar_f_r */
-        links->rate[0] = xd[1];
-        status = trailing_arm_solve_lca_f_l(self, trailing_arm_k_lca_f_l[1], links, start + 5, self->motion + 60, self->inertia + 46);
+        links->x[0] = start[TRAILING_ARM_X_BAR_F_R];
+        links->rate[0] = xd[TRAILING_ARM_X_BAR_F_R];
+        status = trailing_arm_solve_lca_f_l(self, trailing_arm_k_lca_f_l[1], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_LCA_F_R, self->inertia + TRAILING_ARM_INERTIA_LCA_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 3;
+            self->head.subset = TRAILING_ARM_SUBSET_LCA_F_R;
             return status;
         }
     }
     /* stage 2: arm_r_l */
-    if (links->again && links->same[2]) {
+    if (links->again && links->same[TRAILING_ARM_X_BAR_R_L]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[2]; /* bar_r_l */
-        links->rate[0] = xd[2];
-        status = trailing_arm_solve_lca_f_l_2(self, trailing_arm_k_lca_f_l_2[0], links, start + 5, self->motion + 90, self->inertia + 69);
+        links->x[0] = start[TRAILING_ARM_X_BAR_R_L];
+        links->rate[0] = xd[TRAILING_ARM_X_BAR_R_L];
+        status = trailing_arm_solve_lca_f_l_2(self, trailing_arm_k_lca_f_l_2[0], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_ARM_R_L, self->inertia + TRAILING_ARM_INERTIA_ARM_R_L);
         if (status != GIC_OK) {
-            self->head.subset = 4;
+            self->head.subset = TRAILING_ARM_SUBSET_ARM_R_L;
             return status;
         }
     }
     /* stage 2: arm_r_r */
-    if (links->again && links->same[3]) {
+    if (links->again && links->same[TRAILING_ARM_X_BAR_R_R]) {
         ++self->head.kept_count;
     } else {
-        links->x[0] = start[3]; /* bar_r_r */
-        links->rate[0] = xd[3];
-        status = trailing_arm_solve_lca_f_l_2(self, trailing_arm_k_lca_f_l_2[1], links, start + 5, self->motion + 120, self->inertia + 92);
+        links->x[0] = start[TRAILING_ARM_X_BAR_R_R];
+        links->rate[0] = xd[TRAILING_ARM_X_BAR_R_R];
+        status = trailing_arm_solve_lca_f_l_2(self, trailing_arm_k_lca_f_l_2[1], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_ARM_R_R, self->inertia + TRAILING_ARM_INERTIA_ARM_R_R);
         if (status != GIC_OK) {
-            self->head.subset = 5;
+            self->head.subset = TRAILING_ARM_SUBSET_ARM_R_R;
             return status;
         }
     }
     /* stage 3: wheel_f_l */
-    if (links->again && links->same[4] && links->same[0]) {
+    if (links->again && links->same[TRAILING_ARM_X_RACK] && links->same[TRAILING_ARM_X_BAR_F_L]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 30; /* lca_f_l */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[0]; /* bar_f_l */
-        links->rate[1] = xd[0];
-        status = trailing_arm_solve_wheel_f_l(self, trailing_arm_k_wheel_f_l[0], links, start + 5, self->motion + 150, self->inertia + 115);
+        links->known[0] = self->motion + TRAILING_ARM_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + TRAILING_ARM_MOTION_LCA_F_L; /* lca_f_l */
+        links->x[0] = start[TRAILING_ARM_X_RACK];
+        links->rate[0] = xd[TRAILING_ARM_X_RACK];
+        links->x[1] = start[TRAILING_ARM_X_BAR_F_L];
+        links->rate[1] = xd[TRAILING_ARM_X_BAR_F_L];
+        status = trailing_arm_solve_wheel_f_l(self, trailing_arm_k_wheel_f_l[0], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_WHEEL_F_L, self->inertia + TRAILING_ARM_INERTIA_WHEEL_F_L);
         if (status != GIC_OK) {
-            self->head.subset = 6;
+            self->head.subset = TRAILING_ARM_SUBSET_WHEEL_F_L;
             return status;
         }
     }
     /* stage 3: wheel_f_r */
-    if (links->again && links->same[4] && links->same[1]) {
+    if (links->again && links->same[TRAILING_ARM_X_RACK] && links->same[TRAILING_ARM_X_BAR_F_R]) {
         ++self->head.kept_count;
     } else {
-        links->known[0] = self->motion + 0; /* rack */
-        links->known[1] = self->motion + 60; /* lca_f_r */
-        links->x[0] = start[4]; /* rack */
-        links->rate[0] = xd[4];
-        links->x[1] = start[1]; /* bar_f_r */
-        links->rate[1] = xd[1];
-        status = trailing_arm_solve_wheel_f_l(self, trailing_arm_k_wheel_f_l[1], links, start + 5, self->motion + 186, self->inertia + 147);
+        links->known[0] = self->motion + TRAILING_ARM_MOTION_RACK; /* rack */
+        links->known[1] = self->motion + TRAILING_ARM_MOTION_LCA_F_R; /* lca_f_r */
+        links->x[0] = start[TRAILING_ARM_X_RACK];
+        links->rate[0] = xd[TRAILING_ARM_X_RACK];
+        links->x[1] = start[TRAILING_ARM_X_BAR_F_R];
+        links->rate[1] = xd[TRAILING_ARM_X_BAR_F_R];
+        status = trailing_arm_solve_wheel_f_l(self, trailing_arm_k_wheel_f_l[1], links, start + 5, self->motion +
+            TRAILING_ARM_MOTION_WHEEL_F_R, self->inertia + TRAILING_ARM_INERTIA_WHEEL_F_R);
         if (status != GIC_OK) {
-            self->head.subset = 7;
+            self->head.subset = TRAILING_ARM_SUBSET_WHEEL_F_R;
             return status;
         }
     }
     return GIC_OK;
 }
 
-/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece that
- * fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's start. */
-static int trailing_arm_recover_way(trailing_arm *self, trailing_arm_links *links, const gic_real *way, int far, int32_t *last)
+/* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
+ * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
+ * start. */
+static int trailing_arm_recover_way(trailing_arm *self, trailing_arm_links *links, const gic_real *way, int far,
+    int32_t *last)
 {
     const int32_t first = self->head.flip, hold = self->head.hold;
     int32_t now = first, next;
@@ -1138,13 +1389,11 @@ static int trailing_arm_recover_way(trailing_arm *self, trailing_arm_links *link
             now = *last = next;
             if (piece >= pieces)
                 return GIC_OK;
-            if (piece % 2 == 0 && pieces > usual)
-                piece /= 2, pieces /= 2;
-            ++piece;
+            GIC_NEXT_PIECE(piece, pieces, usual);
         } else {
             if (TRAILING_ARM_FOLLOWED == 0 || pieces >= GIC_SPLIT * usual)
                 return status;
-            piece = 2 * piece - 1, pieces *= 2;
+            GIC_HALVE_PIECE(piece, pieces);
             self->head.subset = -1;
         }
     }
@@ -1171,14 +1420,18 @@ static int trailing_arm_recover(trailing_arm *self, const gic_real turn[3], int 
     links.ahead[0] = self->head.ahead;
     for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
         way[i] = self->x[i] - self->start[first][i];
-    if (!(GIC_FABS(way[0]) < R(GIC_PIECES) * trailing_arm_piece[0])) /* bar_f_l */
-        way[0] = gic_unwound(way[0]);
-    if (!(GIC_FABS(way[1]) < R(GIC_PIECES) * trailing_arm_piece[1])) /* bar_f_r */
-        way[1] = gic_unwound(way[1]);
-    if (!(GIC_FABS(way[2]) < R(GIC_PIECES) * trailing_arm_piece[2])) /* bar_r_l */
-        way[2] = gic_unwound(way[2]);
-    if (!(GIC_FABS(way[3]) < R(GIC_PIECES) * trailing_arm_piece[3])) /* bar_r_r */
-        way[3] = gic_unwound(way[3]);
+    if (!(GIC_FABS(way[TRAILING_ARM_X_BAR_F_L]) < R(GIC_PIECES) * trailing_arm_piece[TRAILING_ARM_X_BAR_F_L])) /*
+        bar_f_l */
+        way[TRAILING_ARM_X_BAR_F_L] = gic_unwound(way[TRAILING_ARM_X_BAR_F_L]);
+    if (!(GIC_FABS(way[TRAILING_ARM_X_BAR_F_R]) < R(GIC_PIECES) * trailing_arm_piece[TRAILING_ARM_X_BAR_F_R])) /*
+        bar_f_r */
+        way[TRAILING_ARM_X_BAR_F_R] = gic_unwound(way[TRAILING_ARM_X_BAR_F_R]);
+    if (!(GIC_FABS(way[TRAILING_ARM_X_BAR_R_L]) < R(GIC_PIECES) * trailing_arm_piece[TRAILING_ARM_X_BAR_R_L])) /*
+        bar_r_l */
+        way[TRAILING_ARM_X_BAR_R_L] = gic_unwound(way[TRAILING_ARM_X_BAR_R_L]);
+    if (!(GIC_FABS(way[TRAILING_ARM_X_BAR_R_R]) < R(GIC_PIECES) * trailing_arm_piece[TRAILING_ARM_X_BAR_R_R])) /*
+        bar_r_r */
+        way[TRAILING_ARM_X_BAR_R_R] = gic_unwound(way[TRAILING_ARM_X_BAR_R_R]);
     for (i = 0; i < TRAILING_ARM_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < trailing_arm_piece[i]);
     if (far)
@@ -1213,15 +1466,15 @@ static void trailing_arm_gather(trailing_arm *self, const gic_real *y)
     (void)u;
     (void)x;
     (void)xd;
-    memcpy(x + 0, y + 7, 5 * sizeof *x); /* bar_f_l to rack */
-    memcpy(xd + 0, y + 18, 5 * sizeof *xd);
+    memcpy(x + TRAILING_ARM_X_BAR_F_L, y + TRAILING_ARM_STATE_BAR_F_L, 5 * sizeof *x); /* bar_f_l to rack */
+    memcpy(xd + TRAILING_ARM_X_BAR_F_L, y + TRAILING_ARM_STATE_BAR_F_L_RATE, 5 * sizeof *xd);
 }
 
 /* ---- base, forces, equations of motion, outputs ----------------------------------------------------------------- */
 
-/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity of the
- * base is: vectors read from a copy that was just written number by number would wait for it. Which one is dependent is
- * settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
+/* Euler parameters with the dependent one recovered from the other three, and where in the state the angular velocity
+ * of the base is: vectors read from a copy that was just written number by number would wait for it. Which one is
+ * dependent is settled at the end of a step only, so that a stage of a step that fails leaves no trace. */
 static int trailing_arm_orient(const trailing_arm *self, const gic_real *y, gic_real e[4], const gic_real **turn)
 {
     int32_t dependent = self->discrete[0];
@@ -1258,7 +1511,8 @@ static GIC_COLD int trailing_arm_about(trailing_arm *self, int status, int32_t s
 
 /* Applied forces, composite inertia, and elimination of 11 accelerations: alpha and a of a free base, then the
  * free coordinates'. rate = d state / dt. */
-static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *rate)
+static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *rate)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -1268,142 +1522,229 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)n, (void)rate;
     (void)lambda;
     {
-        if (!(n[91] > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 4, 9);
-        if (!(n[114] > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 5, 10);
-        const gic_real t1 = n[3] + n[26] + n[49] + n[72] + n[95] + n[118] + n[150];
+        /* composite inertia: mass, first and second moments of all bodies, what each coordinate couples */
+        if (!(n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 7] > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_ARM_R_L, TRAILING_ARM_STATE_BAR_R_L);
+        if (!(n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 7] > R(0.0)))
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_ARM_R_R, TRAILING_ARM_STATE_BAR_R_R);
+        const gic_real t1 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_XX] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_XX];
         const gic_real t2 = t1 + R(1173.18332588);
-        const gic_real t3 = R(0.4919654879999997) + n[25] + n[48] + n[71] + n[94] + n[117] + n[149];
+        const gic_real t3 = R(0.4919654879999997) + n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_FIRST_Z] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_FIRST_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_FIRST_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_FIRST_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FIRST_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FIRST_Z];
         const gic_real t4 = t3 + R(444.4287600000002);
+        /* mass matrix: elimination of the coordinates' accelerations, then the base equations */
         const gic_real t5 = t4 * R(0.0003928127830707118);
-        const gic_real t6 = R(1.0) / n[91];
-        const gic_real t7 = n[87] * t6;
-        const gic_real t8 = R(1.0) / n[114];
-        const gic_real t9 = n[110] * t8;
-        const gic_real t10 = t2 - t4 * t5 - n[87] * t7 - n[110] * t9;
+        const gic_real t6 = R(1.0) / n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 7];
+        const gic_real t7 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 3] * t6;
+        const gic_real t8 = R(1.0) / n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 7];
+        const gic_real t9 = n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 3] * t8;
+        const gic_real t10 = t2 - t4 * t5 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 3] * t7 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 3] * t9;
         if (!(t10 - t2 * R(1e-06) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 15);
-        const gic_real t11 = R(19.803070388473838) + n[27] + n[50] + n[73] + n[96] + n[119] + n[151];
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_OMEGA_X);
+        const gic_real t11 = R(19.803070388473838) + n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_YY] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_YY] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_YY] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_YY] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_YY] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_YY];
         const gic_real t12 = t11 + R(3056.8666525999997);
-        const gic_real t13 = n[88] * t6;
-        const gic_real t14 = n[111] * t8;
-        const gic_real t15 = n[6] + n[29] + n[52] + n[75] + n[98] + n[121] + n[153];
-        const gic_real t16 = t15 - n[88] * t7 - n[111] * t9;
+        const gic_real t13 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 4] * t6;
+        const gic_real t14 = n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 4] * t8;
+        const gic_real t15 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_XY] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_XY];
+        const gic_real t16 = t15 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 4] * t7 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 4] * t9;
         const gic_real t17 = R(1.0) / t10;
         const gic_real t18 = t16 * t17;
-        const gic_real t19 = t12 - n[88] * t13 - n[111] * t14 - t16 * t18;
+        const gic_real t19 = t12 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 4] * t13 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 4] * t14 - t16 * t18;
         if (!(t19 - t12 * R(1e-06) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 16);
-        const gic_real t20 = R(94.003507106) + n[69] + n[92] + n[115] + n[147] + R(116.84512);
-        const gic_real t21 = n[1] + n[24] + n[47] + n[116] + n[148];
-        const gic_real t22 = t21 - n[86] * t7 - n[109] * t9;
-        const gic_real t23 = t20 + n[86] * t13 + n[109] * t14 + t22 * t18;
-        const gic_real t24 = n[8] + n[31] + n[54] + n[77] + n[100] + n[123] + n[155];
-        const gic_real t25 = R(-0.7077651653802236) + n[30] + n[53] + n[76] + n[99] + n[122] + n[154];
-        const gic_real t26 = t25 + R(-24.88801056000001) + t20 * t5 - n[89] * t7 - n[112] * t9;
-        const gic_real t27 = t24 - n[89] * t13 - n[112] * t14 - t26 * t18;
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_OMEGA_Y);
+        const gic_real t20 = R(94.003507106) + n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_FIRST_X] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_FIRST_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FIRST_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FIRST_X] + R(116.84512);
+        const gic_real t21 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_FIRST_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_FIRST_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_FIRST_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FIRST_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FIRST_Y];
+        const gic_real t22 = t21 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] * t7 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t9;
+        const gic_real t23 = t20 + n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] * t13 +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t14 + t22 * t18;
+        const gic_real t24 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_YZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_YZ];
+        const gic_real t25 = R(-0.7077651653802236) + n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_XZ] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_XZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_XZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_XZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_XZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_XZ];
+        const gic_real t26 = t25 + R(-24.88801056000001) + t20 * t5 -
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 5] * t7 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 5] * t9;
+        const gic_real t27 = t24 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 5] * t13 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 5] * t14 - t26 * t18;
         const gic_real t28 = R(1.0) / t19;
         const gic_real t29 = t27 * t28;
-        const gic_real t30 = n[89] * t6;
-        const gic_real t31 = n[112] * t8;
+        const gic_real t30 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 5] * t6;
+        const gic_real t31 = n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 5] * t8;
         const gic_real t32 = t26 * t17;
-        const gic_real t33 = t23 * t29 - (n[86] * t30 + n[109] * t31 + t22 * t32);
-        const gic_real t34 = n[84] * t7 + n[107] * t9;
-        const gic_real t35 = t34 * t32 - (t21 + n[84] * t30 + n[107] * t31);
-        const gic_real t36 = t4 - n[84] * t13 - n[107] * t14 + t34 * t18;
+        const gic_real t33 = t23 * t29 - (n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] * t30 +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t31 + t22 * t32);
+        const gic_real t34 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 0] * t7 +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 0] * t9;
+        const gic_real t35 = t34 * t32 - (t21 + n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 0] * t30 +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 0] * t31);
+        const gic_real t36 = t4 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 0] * t13 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 0] * t14 + t34 * t18;
         const gic_real t37 = t35 - t36 * t29;
         const gic_real t38 = t34 * t17;
-        const gic_real t39 = n[84] * t6;
-        const gic_real t40 = n[107] * t8;
+        const gic_real t39 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 0] * t6;
+        const gic_real t40 = n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 0] * t8;
         const gic_real t41 = t36 * t28;
-        const gic_real t42 = t22 * t38 - (n[86] * t39 + n[109] * t40) + t23 * t41;
-        const gic_real t43 = R(2545.7419999999997) - n[84] * t39 - n[107] * t40 - t34 * t38;
+        const gic_real t42 = t22 * t38 - (n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] * t39 +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t40) + t23 * t41;
+        const gic_real t43 = R(2545.7419999999997) - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 0] *
+            t39 - n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 0] * t40 - t34 * t38;
         const gic_real t44 = t43 - t36 * t41;
         const gic_real t45 = t37 * t42 - t33 * t44;
-        const gic_real t46 = n[86] * t6;
-        const gic_real t47 = n[109] * t8;
+        const gic_real t46 = n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] * t6;
+        const gic_real t47 = n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t8;
         const gic_real t48 = t22 * t17;
-        const gic_real t49 = R(2545.7419999999997) - n[86] * t46 - n[109] * t47 - t22 * t48;
+        const gic_real t49 = R(2545.7419999999997) - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 2] *
+            t46 - n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 2] * t47 - t22 * t48;
         const gic_real t50 = t23 * t28;
         const gic_real t51 = t49 - t23 * t50;
         const gic_real t52 = t33 * t42 - t37 * t51;
-        const gic_real t53 = n[5] + n[28] + n[51] + n[74] + n[97] + n[120] + n[152];
+        const gic_real t53 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_SECOND_ZZ] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_SECOND_ZZ];
         const gic_real t54 = t53 + R(3576.74332672);
         const gic_real t55 = t20 * R(0.0003928127830707118);
-        const gic_real t56 = t54 - t20 * t55 - n[89] * t30 - n[112] * t31;
+        const gic_real t56 = t54 - t20 * t55 - n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 5] * t30 -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 5] * t31;
         const gic_real t57 = t56 - t26 * t32 - t27 * t29;
         const gic_real t58 = t44 * t51 - t42 * t42;
         const gic_real t59 = t33 * t45 + (t37 * t52 + t57 * t58);
         const gic_real t60 = t57 * t44;
         const gic_real t61 = t60 - t37 * t37;
         if (!(t59 - t61 * R(0.0025457419999999997) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 14);
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_V_Z);
         const gic_real t62 = t57 * t51 - t33 * t33;
         if (!(t59 - t62 * R(0.0025457419999999997) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 12);
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_V_X);
         if (!(t59 - R(1e-06) * (t54 * t58) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 17);
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_OMEGA_Z);
         if (!(t59 - R(1e-06) * (t51 * t60) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, -1, 17);
-        const gic_real t63 = n[45] + n[146];
-        const gic_real t64 = n[39] + n[138];
+            return trailing_arm_about(self, GIC_ERROR_MASS, -1, TRAILING_ARM_STATE_OMEGA_Z);
+        const gic_real t63 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 7] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 16];
+        const gic_real t64 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 1] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 8];
         const gic_real t65 = t64 * R(0.0003928127830707118);
-        const gic_real t66 = n[41] + n[140] + t64 * t5;
+        const gic_real t66 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 3] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 10] + t64 * t5;
         const gic_real t67 = t66 * t17;
-        const gic_real t68 = n[42] + n[141] - t66 * t18;
+        const gic_real t68 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 4] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 11] - t66 * t18;
         const gic_real t69 = t68 * t28;
         const gic_real t70 = t63 - t64 * t65 - t66 * t67 - t68 * t69;
         const gic_real t71 = R(1.0) / t59;
-        const gic_real t72 = n[43] + n[142] - t64 * t55 - t66 * t32 - t68 * t29;
-        const gic_real t73 = n[137] + t66 * t38 - t68 * t41;
-        const gic_real t74 = n[40] + n[139] - t66 * t48 + t68 * t50;
+        const gic_real t72 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 5] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 12] - t64 * t55 - t66 * t32 - t68 * t29;
+        const gic_real t73 = n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 7] + t66 * t38 - t68 * t41;
+        const gic_real t74 = n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 2] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 9] - t66 * t48 + t68 * t50;
         const gic_real t75 = t72 * t58 + t73 * t52 + t74 * t45;
         const gic_real t76 = t37 * t33 - t57 * t42;
         const gic_real t77 = t72 * t52 + t73 * t62 + t74 * t76;
         const gic_real t78 = t72 * t45 + t73 * t76 + t74 * t61;
         const gic_real t79 = t71 * (t72 * t75 + t73 * t77 + t74 * t78);
         const gic_real t80 = t70 - t79;
-        const gic_real t81 = n[68] + n[178];
-        const gic_real t82 = n[62] + n[170];
+        const gic_real t81 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 7] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 16];
+        const gic_real t82 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 1] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 8];
         const gic_real t83 = t82 * R(0.0003928127830707118);
-        const gic_real t84 = n[64] + n[172] + t82 * t5;
+        const gic_real t84 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 3] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 10] + t82 * t5;
         const gic_real t85 = t84 * t17;
-        const gic_real t86 = n[65] + n[173] - t84 * t18;
+        const gic_real t86 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 4] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 11] - t84 * t18;
         const gic_real t87 = t86 * t28;
         const gic_real t88 = t81 - t82 * t83 - t84 * t85 - t86 * t87;
-        const gic_real t89 = n[66] + n[174] - t82 * t55 - t84 * t32 - t86 * t29;
-        const gic_real t90 = n[169] + t84 * t38 - t86 * t41;
-        const gic_real t91 = n[63] + n[171] - t84 * t48 + t86 * t50;
+        const gic_real t89 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 5] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 12] - t82 * t55 - t84 * t32 - t86 * t29;
+        const gic_real t90 = n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 7] + t84 * t38 - t86 * t41;
+        const gic_real t91 = n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 2] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 9] - t84 * t48 + t86 * t50;
         const gic_real t92 = t89 * t58 + t90 * t52 + t91 * t45;
         const gic_real t93 = t89 * t52 + t90 * t62 + t91 * t76;
         const gic_real t94 = t89 * t45 + t90 * t76 + t91 * t61;
         const gic_real t95 = t71 * (t89 * t92 + t90 * t93 + t91 * t94);
         const gic_real t96 = t88 - t95;
-        const gic_real t97 = R(9.072) + n[144] + n[176];
-        const gic_real t98 = R(9.072) + n[131] + n[163];
+        const gic_real t97 = R(9.072) + n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 14] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 14];
+        const gic_real t98 = R(9.072) + n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 1] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 1];
         const gic_real t99 = t98 * R(0.0003928127830707118);
-        const gic_real t100 = R(-0.4919654879999997) + n[133] + n[165] + t98 * t5;
+        const gic_real t100 = R(-0.4919654879999997) +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 3] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 3] + t98 * t5;
         const gic_real t101 = t100 * t17;
-        const gic_real t102 = n[134] + n[166] - t100 * t18;
+        const gic_real t102 = n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 4] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 4] - t100 * t18;
         const gic_real t103 = t102 * t28;
         const gic_real t104 = t97 - t98 * t99 - t100 * t101 - t102 * t103;
-        const gic_real t105 = R(13.051414655999999) + n[135] + n[167] - t98 * t55 - t100 * t32;
+        const gic_real t105 = R(13.051414655999999) +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 5] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 5] - t98 * t55 - t100 * t32;
         const gic_real t106 = t105 - t102 * t29;
-        const gic_real t107 = n[130] + n[162] + t100 * t38 - t102 * t41;
-        const gic_real t108 = n[132] + n[164] - t100 * t48 + t102 * t50;
+        const gic_real t107 = n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 0] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 0] + t100 * t38 - t102 * t41;
+        const gic_real t108 = n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 2] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 2] - t100 * t48 + t102 * t50;
         const gic_real t109 = t106 * t58 + t107 * t52 + t108 * t45;
         const gic_real t110 = t106 * t52 + t107 * t62 + t108 * t76;
         const gic_real t111 = t106 * t45 + t107 * t76 + t108 * t61;
         const gic_real t112 = t71 * (t106 * t109 + t107 * t110 + t108 * t111);
         const gic_real t113 = t104 - t112;
-        const gic_real t114 = n[177] - t98 * t83 - t100 * t85 - t102 * t87;
+        const gic_real t114 = n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 15] - t98 * t83 - t100 *
+            t85 - t102 * t87;
         const gic_real t115 = t71 * (t89 * t109 + t90 * t110 + t91 * t111);
         const gic_real t116 = t114 - t115;
         const gic_real t117 = t96 * t113 - t116 * t116;
         const gic_real t118 = t71 * (t72 * t92 + t73 * t93 + t74 * t94);
         const gic_real t119 = t82 * t65 + t84 * t67 + t86 * t69 + t118;
-        const gic_real t120 = n[145] - t98 * t65 - t100 * t67 - t102 * t69;
+        const gic_real t120 = n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 15] - t98 * t65 - t100 *
+            t67 - t102 * t69;
         const gic_real t121 = t71 * (t72 * t109 + t73 * t110 + t74 * t111);
         const gic_real t122 = t120 - t121;
         const gic_real t123 = t119 * t113 + t122 * t116;
@@ -1412,120 +1753,154 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t126 = t80 * t96;
         const gic_real t127 = t126 - t119 * t119;
         if (!(t125 - R(1e-06) * (t97 * t127) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 1, 11);
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_RACK, TRAILING_ARM_STATE_RACK);
         const gic_real t128 = t80 * t113 - t122 * t122;
         if (!(t125 - R(1e-06) * (t81 * t128) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 3, 8);
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_LCA_F_R, TRAILING_ARM_STATE_BAR_F_R);
         if (!(t125 - R(1e-06) * (t63 * t117) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 2, 7);
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_LCA_F_L, TRAILING_ARM_STATE_BAR_F_L);
         if (!(t125 - R(1e-06) * (t113 * t126) > R(0.0)))
-            return trailing_arm_about(self, GIC_ERROR_MASS, 2, 7);
-        const gic_real t129 = y[17] * R(0.5);
-        const gic_real t130 = y[16] * R(0.5);
-        const gic_real t131 = y[15] * R(0.5);
-        const gic_real t132 = -(e[3] * t129 + (e[2] * t130 + e[1] * t131));
+            return trailing_arm_about(self, GIC_ERROR_MASS, TRAILING_ARM_SUBSET_LCA_F_L, TRAILING_ARM_STATE_BAR_F_L);
+        /* rates of the state */
+        const gic_real t129 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.5);
+        const gic_real t130 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.5);
+        const gic_real t131 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.5);
+        const gic_real rate_of_e0 = -(e[3] * t129 + (e[2] * t130 + e[1] * t131));
         const gic_real t133 = e[3] + e[3];
         const gic_real t134 = e[1] * t133;
         const gic_real t135 = e[2] + e[2];
         const gic_real t136 = e[0] * t135;
         const gic_real t137 = t134 + t136;
-        const gic_real t138 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        /* wheel tire_r_r */
+        const gic_real t138 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t139 = e[3] * t135;
         const gic_real t140 = e[1] + e[1];
         const gic_real t141 = e[0] * t140;
         const gic_real t142 = t139 + t141;
         const gic_real t143 = t139 - t141;
         const gic_real t144 = R(-1.15) + t138;
-        const gic_real t145 = y[15] * R(-0.909701) - y[16] * t144 - m[133] * t138;
+        const gic_real t145 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t144 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t138;
         const gic_real t146 = e[1] * t140;
         const gic_real t147 = e[3] * t133;
         const gic_real t148 = R(1.0) - (t146 + t147);
-        const gic_real t149 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real t149 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t150 = R(0.026000000000000023) + t149;
-        const gic_real t151 = y[17] * t144 - y[15] * t150;
+        const gic_real t151 = y[TRAILING_ARM_STATE_OMEGA_Z] * t144 - y[TRAILING_ARM_STATE_OMEGA_X] * t150;
         const gic_real t152 = e[2] * t140;
         const gic_real t153 = e[0] * t133;
         const gic_real t154 = t152 + t153;
-        const gic_real t155 = m[133] * t149 + (y[16] * t150 - y[17] * R(-0.909701));
-        const gic_real t156 = y[13] + (t143 * t145 + (t148 * t151 + t154 * t155));
+        const gic_real t155 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t149 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t150 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t156 = y[TRAILING_ARM_STATE_V_Y] + (t143 * t145 + (t148 * t151 + t154 * t155));
         const gic_real t157 = t152 - t153;
         const gic_real t158 = e[2] * t135;
         const gic_real t159 = R(1.0) - (t158 + t147);
-        const gic_real t160 = y[0] + (t137 * t150 + (t157 * R(-0.909701) + t159 * t144));
-        const gic_real t161 = y[1] + (t143 * t150 + (t148 * R(-0.909701) + t154 * t144));
+        const gic_real t160 = y[TRAILING_ARM_STATE_R_X] + (t137 * t150 + (t157 * R(-0.909701) + t159 * t144));
+        const gic_real t161 = y[TRAILING_ARM_STATE_R_Y] + (t143 * t150 + (t148 * R(-0.909701) + t154 * t144));
         gic_real road162[3];
         if (!trailing_arm_road_height(self, time, t160, t161, road162))
             return GIC_ERROR_ROAD;
-        const gic_real t163 = y[12] + (t137 * t145 + (t157 * t151 + t159 * t155));
+        const gic_real t163 = y[TRAILING_ARM_STATE_V_X] + (t137 * t145 + (t157 * t151 + t159 * t155));
         const gic_real t164 = R(1.0) - (t146 + t158);
         const gic_real t165 = t134 - t136;
-        const gic_real t166 = y[14] + (t164 * t145 + (t142 * t151 + t165 * t155));
+        const gic_real t166 = y[TRAILING_ARM_STATE_V_Z] + (t164 * t145 + (t142 * t151 + t165 * t155));
         const gic_real t167 = t156 * road162[2] + t163 * road162[1] - t166;
-        const gic_real t168 = y[2] + (t164 * t150 + (t142 * R(-0.909701) + t165 * t144));
+        const gic_real t168 = y[TRAILING_ARM_STATE_R_Z] + (t164 * t150 + (t142 * R(-0.909701) + t165 * t144));
         const gic_real t169 = R(0.4699) + road162[0] - t168;
         const gic_real t170 = GIC_MIN(GIC_MAX(R(100.0) * t169, R(0.0)), R(1.0));
         const gic_real t171 = t167 * (R(500.0) * ((R(3.0) - (t170 + t170)) * (t170 * t170)));
         const gic_real t172 = GIC_MAX(t171 + R(283000.0) * t169, R(0.0));
         const gic_real t173 = t142 * t172;
         const gic_real t174 = t165 * t172;
-        const gic_real t175 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
-        const gic_real t176 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        /* force shock_r_r */
+        const gic_real t175 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
+        const gic_real t176 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t177 = R(0.026000000000000023) + t176 - R(0.376);
         const gic_real t178 = R(-1.15) + t175 - R(-1.6);
         const gic_real t179 = R(1.0) / GIC_SQRT(t177 * t177 + (R(0.0025000000000000044) + t178 * t178));
-        const gic_real t180 = t179 * (m[133] * t176 * t178 - m[133] * t175 * t177);
+        const gic_real t180 = t179 * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t176 * t178 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t175 * t177);
         const gic_real t181 = t179 * (R(9500.0) * t180);
         const gic_real t182 = R(-0.050000000000000044) * t181;
-        const gic_real t183 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        /* wheel tire_r_l */
+        const gic_real t183 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t184 = R(-1.15) + t183;
-        const gic_real t185 = y[15] * R(0.909701) - y[16] * t184 - m[103] * t183;
-        const gic_real t186 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real t185 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t184 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t183;
+        const gic_real t186 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t187 = R(0.026000000000000023) + t186;
-        const gic_real t188 = y[17] * t184 - y[15] * t187;
-        const gic_real t189 = m[103] * t186 + (y[16] * t187 - y[17] * R(0.909701));
-        const gic_real t190 = y[13] + (t143 * t185 + (t148 * t188 + t154 * t189));
-        const gic_real t191 = y[0] + (t137 * t187 + (t157 * R(0.909701) + t159 * t184));
-        const gic_real t192 = y[1] + (t143 * t187 + (t148 * R(0.909701) + t154 * t184));
+        const gic_real t188 = y[TRAILING_ARM_STATE_OMEGA_Z] * t184 - y[TRAILING_ARM_STATE_OMEGA_X] * t187;
+        const gic_real t189 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t186 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t187 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t190 = y[TRAILING_ARM_STATE_V_Y] + (t143 * t185 + (t148 * t188 + t154 * t189));
+        const gic_real t191 = y[TRAILING_ARM_STATE_R_X] + (t137 * t187 + (t157 * R(0.909701) + t159 * t184));
+        const gic_real t192 = y[TRAILING_ARM_STATE_R_Y] + (t143 * t187 + (t148 * R(0.909701) + t154 * t184));
         gic_real road193[3];
         if (!trailing_arm_road_height(self, time, t191, t192, road193))
             return GIC_ERROR_ROAD;
-        const gic_real t194 = y[12] + (t137 * t185 + (t157 * t188 + t159 * t189));
-        const gic_real t195 = y[14] + (t164 * t185 + (t142 * t188 + t165 * t189));
+        const gic_real t194 = y[TRAILING_ARM_STATE_V_X] + (t137 * t185 + (t157 * t188 + t159 * t189));
+        const gic_real t195 = y[TRAILING_ARM_STATE_V_Z] + (t164 * t185 + (t142 * t188 + t165 * t189));
         const gic_real t196 = t190 * road193[2] + t194 * road193[1] - t195;
-        const gic_real t197 = y[2] + (t164 * t187 + (t142 * R(0.909701) + t165 * t184));
+        const gic_real t197 = y[TRAILING_ARM_STATE_R_Z] + (t164 * t187 + (t142 * R(0.909701) + t165 * t184));
         const gic_real t198 = R(0.4699) + road193[0] - t197;
         const gic_real t199 = GIC_MIN(GIC_MAX(R(100.0) * t198, R(0.0)), R(1.0));
         const gic_real t200 = t196 * (R(500.0) * ((R(3.0) - (t199 + t199)) * (t199 * t199)));
         const gic_real t201 = GIC_MAX(t200 + R(283000.0) * t198, R(0.0));
         const gic_real t202 = t142 * t201;
         const gic_real t203 = t165 * t201;
-        const gic_real t204 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
-        const gic_real t205 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        /* force shock_r_l */
+        const gic_real t204 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
+        const gic_real t205 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t206 = R(0.026000000000000023) + t205 - R(0.376);
         const gic_real t207 = R(-1.15) + t204 - R(-1.6);
         const gic_real t208 = R(1.0) / GIC_SQRT(t206 * t206 + (R(0.0025000000000000044) + t207 * t207));
-        const gic_real t209 = t208 * (m[103] * t205 * t207 - m[103] * t204 * t206);
+        const gic_real t209 = t208 * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t205 * t207 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t204 * t206);
         const gic_real t210 = t208 * (t209 * R(9500.0));
         const gic_real t211 = R(0.050000000000000044) * t210;
-        const gic_real t212 = m[191] * R(0.09182100000000004) + (m[190] * R(-0.12319000000000002) + m[189] * R(-0.004825999999999997));
-        const gic_real t213 = m[194] * R(0.09182100000000004) + (m[193] * R(-0.12319000000000002) + m[192] * R(-0.004825999999999997));
-        const gic_real t214 = m[187] + t213;
+        /* wheel tire_f_r */
+        const gic_real t212 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997));
+        const gic_real t213 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997));
+        const gic_real t214 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t213;
         const gic_real t215 = R(1.653405) + t212;
-        const gic_real t216 = m[203] + (m[198] * t213 - m[199] * t212) + (y[15] * t214 - y[16] * t215);
-        const gic_real t217 = m[197] * R(0.09182100000000004) + (m[196] * R(-0.12319000000000002) + m[195] * R(-0.004825999999999997));
-        const gic_real t218 = m[188] + t217;
-        const gic_real t219 = m[202] + (m[200] * t212 - m[198] * t217) + (y[17] * t215 - y[15] * t218);
-        const gic_real t220 = m[199] * t217 - m[200] * t213 + (y[16] * t218 - y[17] * t214);
-        const gic_real t221 = y[13] + (t143 * t216 + (t148 * t219 + t154 * t220));
-        const gic_real t222 = y[0] + (t137 * t218 + (t157 * t214 + t159 * t215));
-        const gic_real t223 = y[1] + (t143 * t218 + (t148 * t214 + t154 * t215));
+        const gic_real t216 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t213 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t212) + (y[TRAILING_ARM_STATE_OMEGA_X] * t214 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t215);
+        const gic_real t217 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997));
+        const gic_real t218 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t217;
+        const gic_real t219 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t212 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t217) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t215 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t218);
+        const gic_real t220 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t217 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t213 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t218 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t214);
+        const gic_real t221 = y[TRAILING_ARM_STATE_V_Y] + (t143 * t216 + (t148 * t219 + t154 * t220));
+        const gic_real t222 = y[TRAILING_ARM_STATE_R_X] + (t137 * t218 + (t157 * t214 + t159 * t215));
+        const gic_real t223 = y[TRAILING_ARM_STATE_R_Y] + (t143 * t218 + (t148 * t214 + t154 * t215));
         gic_real road224[3];
         if (!trailing_arm_road_height(self, time, t222, t223, road224))
             return GIC_ERROR_ROAD;
-        const gic_real t225 = y[12] + (t137 * t216 + (t157 * t219 + t159 * t220));
-        const gic_real t226 = y[14] + (t164 * t216 + (t142 * t219 + t165 * t220));
+        const gic_real t225 = y[TRAILING_ARM_STATE_V_X] + (t137 * t216 + (t157 * t219 + t159 * t220));
+        const gic_real t226 = y[TRAILING_ARM_STATE_V_Z] + (t164 * t216 + (t142 * t219 + t165 * t220));
         const gic_real t227 = t221 * road224[2] + t225 * road224[1] - t226;
-        const gic_real t228 = y[2] + (t164 * t218 + (t142 * t214 + t165 * t215));
+        const gic_real t228 = y[TRAILING_ARM_STATE_R_Z] + (t164 * t218 + (t142 * t214 + t165 * t215));
         const gic_real t229 = R(0.4699) + road224[0] - t228;
         const gic_real t230 = GIC_MIN(GIC_MAX(R(100.0) * t229, R(0.0)), R(1.0));
         const gic_real t231 = t227 * (R(500.0) * ((R(3.0) - (t230 + t230)) * (t230 * t230)));
@@ -1533,25 +1908,40 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t233 = t142 * t232;
         const gic_real t234 = t165 * t232;
         const gic_real t235 = t212 * t233 - t213 * t234;
-        const gic_real t236 = m[155] * R(0.09182100000000004) + (m[154] * R(0.12319000000000002) + m[153] * R(-0.004825999999999997));
-        const gic_real t237 = m[158] * R(0.09182100000000004) + (m[157] * R(0.12319000000000002) + m[156] * R(-0.004825999999999997));
-        const gic_real t238 = m[151] + t237;
+        /* wheel tire_f_l */
+        const gic_real t236 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997));
+        const gic_real t237 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997));
+        const gic_real t238 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t237;
         const gic_real t239 = R(1.653405) + t236;
-        const gic_real t240 = m[167] + (m[162] * t237 - m[163] * t236) + (y[15] * t238 - y[16] * t239);
-        const gic_real t241 = m[161] * R(0.09182100000000004) + (m[160] * R(0.12319000000000002) + m[159] * R(-0.004825999999999997));
-        const gic_real t242 = m[152] + t241;
-        const gic_real t243 = m[166] + (m[164] * t236 - m[162] * t241) + (y[17] * t239 - y[15] * t242);
-        const gic_real t244 = m[163] * t241 - m[164] * t237 + (y[16] * t242 - y[17] * t238);
-        const gic_real t245 = y[13] + (t143 * t240 + (t148 * t243 + t154 * t244));
-        const gic_real t246 = y[0] + (t137 * t242 + (t157 * t238 + t159 * t239));
-        const gic_real t247 = y[1] + (t143 * t242 + (t148 * t238 + t154 * t239));
+        const gic_real t240 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t237 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t236) + (y[TRAILING_ARM_STATE_OMEGA_X] * t238 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t239);
+        const gic_real t241 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997));
+        const gic_real t242 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t241;
+        const gic_real t243 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t236 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t241) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t239 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t242);
+        const gic_real t244 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t241 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t237 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t242 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t238);
+        const gic_real t245 = y[TRAILING_ARM_STATE_V_Y] + (t143 * t240 + (t148 * t243 + t154 * t244));
+        const gic_real t246 = y[TRAILING_ARM_STATE_R_X] + (t137 * t242 + (t157 * t238 + t159 * t239));
+        const gic_real t247 = y[TRAILING_ARM_STATE_R_Y] + (t143 * t242 + (t148 * t238 + t154 * t239));
         gic_real road248[3];
         if (!trailing_arm_road_height(self, time, t246, t247, road248))
             return GIC_ERROR_ROAD;
-        const gic_real t249 = y[12] + (t137 * t240 + (t157 * t243 + t159 * t244));
-        const gic_real t250 = y[14] + (t164 * t240 + (t142 * t243 + t165 * t244));
+        const gic_real t249 = y[TRAILING_ARM_STATE_V_X] + (t137 * t240 + (t157 * t243 + t159 * t244));
+        const gic_real t250 = y[TRAILING_ARM_STATE_V_Z] + (t164 * t240 + (t142 * t243 + t165 * t244));
         const gic_real t251 = t245 * road248[2] + t249 * road248[1] - t250;
-        const gic_real t252 = y[2] + (t164 * t242 + (t142 * t238 + t165 * t239));
+        const gic_real t252 = y[TRAILING_ARM_STATE_R_Z] + (t164 * t242 + (t142 * t238 + t165 * t239));
         const gic_real t253 = road248[0] + R(0.4699) - t252;
         const gic_real t254 = GIC_MIN(GIC_MAX(t253 * R(100.0), R(0.0)), R(1.0));
         const gic_real t255 = t251 * ((R(3.0) - (t254 + t254)) * (t254 * t254) * R(500.0));
@@ -1559,54 +1949,89 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t257 = t142 * t256;
         const gic_real t258 = t165 * t256;
         const gic_real t259 = t236 * t257 - t237 * t258;
-        const gic_real t260 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
-        const gic_real t261 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t260 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.2403881036540444);
+        const gic_real t261 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.2403881036540444);
         const gic_real t262 = t261 - R(0.32313880000000006);
         const gic_real t263 = R(-0.307086) + t260 - R(-0.4977892);
         const gic_real t264 = R(1.0) / GIC_SQRT(t262 * t262 + (R(4.633797183999867e-05) + t263 * t263));
-        const gic_real t265 = t264 * (m[72] * t260 * t262 - m[72] * t261 * t263);
+        const gic_real t265 = t264 * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t260 * t262 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t261 * t263);
         const gic_real t266 = t264 * (R(17490.8) * t265);
         const gic_real t267 = R(-0.006807199999999902) * t266;
         const gic_real t268 = t263 * t266;
-        const gic_real t269 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
-        const gic_real t270 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t269 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.2403881036540444);
+        const gic_real t270 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.2403881036540444);
         const gic_real t271 = t270 - R(0.32313880000000006);
         const gic_real t272 = R(0.307086) + t269 - R(0.4977892);
         const gic_real t273 = R(1.0) / GIC_SQRT(t271 * t271 + (t272 * t272 + R(4.633797183999867e-05)));
-        const gic_real t274 = t273 * (m[42] * t269 * t271 - m[42] * t270 * t272);
+        const gic_real t274 = t273 * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t269 * t271 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t270 * t272);
         const gic_real t275 = t273 * (t274 * R(17490.8));
         const gic_real t276 = R(-0.006807199999999902) * t275;
         const gic_real t277 = t272 * t275;
-        const gic_real t278 = R(1.792978) * t277 - t275 * R(-0.003388550642239951) + (R(1.792978) * t268 - t266 * R(0.003388550642239951));
+        const gic_real t278 = R(1.792978) * t277 - t275 * R(-0.003388550642239951) + (R(1.792978) * t268 - t266 *
+            R(0.003388550642239951));
         const gic_real t279 = t207 * t210;
         const gic_real t280 = t178 * t181;
-        const gic_real t281 = t278 + (t210 * R(-0.08000000000000007) - R(0.6) * t279) + (t181 * R(0.08000000000000007) - R(-0.6) * t280);
-        const gic_real t282 = t269 * t276 - R(0.09720579999999998) * t277 + (t281 + (t275 * R(-0.00209039581919997) - R(1.688965) * t277));
-        const gic_real t283 = t260 * t267 - R(0.09720579999999998) * t268 + (t282 + (t266 * R(0.00209039581919997) - R(1.688965) * t268));
-        const gic_real t284 = t259 + (t283 + (R(1.653405) * t257 - m[151] * t258)) + (R(1.653405) * t233 - m[187] * t234);
+        const gic_real t281 = t278 + (t210 * R(-0.08000000000000007) - R(0.6) * t279) + (t181 * R(0.08000000000000007) -
+            R(-0.6) * t280);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t282 = t269 * t276 - R(0.09720579999999998) * t277 + (t281 + (t275 * R(-0.00209039581919997) -
+            R(1.688965) * t277));
+        const gic_real t283 = t260 * t267 - R(0.09720579999999998) * t268 + (t282 + (t266 * R(0.00209039581919997) -
+            R(1.688965) * t268));
+        const gic_real t284 = t259 + (t283 + (R(1.653405) * t257 - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] *
+            t258)) + (R(1.653405) * t233 - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t234);
         const gic_real t285 = t202 - t211;
         const gic_real t286 = t203 - t279;
-        const gic_real t287 = t183 * t202 - R(0.25970099999999996) * t203 - t204 * t211 + (t235 + t284 + (R(-1.15) * t285 - R(0.65) * t286));
+        const gic_real t287 = t183 * t202 - R(0.25970099999999996) * t203 - t204 * t211 + (t235 + t284 + (R(-1.15) *
+            t285 - R(0.65) * t286));
         const gic_real t288 = t173 - t182;
         const gic_real t289 = t174 - t280;
-        const gic_real t290 = t138 * t173 - R(-0.25970099999999996) * t174 - t175 * t182 + (t287 + (R(-1.15) * t288 - R(-0.65) * t289));
-        const gic_real t291 = n[14] + n[37] + n[60] + n[83] + n[106] + n[129] + n[161];
-        const gic_real t292 = y[16] * R(3056.8666525999997);
-        const gic_real t293 = y[17] * R(-24.88801056000001) + y[15] * R(1173.18332588);
+        const gic_real t290 = t138 * t173 - R(-0.25970099999999996) * t174 - t175 * t182 + (t287 + (R(-1.15) * t288 -
+            R(-0.65) * t289));
+        const gic_real t291 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_MOMENT_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_MOMENT_Z];
+        const gic_real t292 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(3056.8666525999997);
+        const gic_real t293 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(-24.88801056000001) + y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(1173.18332588);
         const gic_real t294 = t257 + (t277 + t268 + t211 + t182 - t277 - t268);
-        const gic_real t295 = n[10] + n[33] + n[56] + n[79] + n[102] + n[125] + n[157];
-        const gic_real t296 = y[16] * R(0.056);
-        const gic_real t297 = y[16] * R(0.21300000000000008);
-        const gic_real t298 = t288 + (t285 + (t233 + t294)) - (t295 + R(2086.52) * (y[15] * t296 + y[17] * t297));
-        const gic_real t299 = t290 - (t291 + (y[15] * t292 - y[16] * t293)) - t298 * t55;
+        const gic_real t295 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FORCE_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FORCE_Y];
+        const gic_real t296 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t297 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008);
+        /* right-hand side: applied forces less the quadratic-velocity terms (Proposition 2.1) */
+        const gic_real t298 = t288 + (t285 + (t233 + t294)) - (t295 + R(2086.52) * (y[TRAILING_ARM_STATE_OMEGA_X] *
+            t296 + y[TRAILING_ARM_STATE_OMEGA_Z] * t297));
+        /* accelerations */
+        const gic_real t299 = t290 - (t291 + (y[TRAILING_ARM_STATE_OMEGA_X] * t292 - y[TRAILING_ARM_STATE_OMEGA_Y] *
+            t293)) - t298 * t55;
         const gic_real t300 = t206 * t210;
         const gic_real t301 = t164 * t201;
         const gic_real t302 = t204 * t300 - t205 * t279 + (t186 * t203 - t183 * t301);
-        const gic_real t303 = t302 - (x[2] - R(-0.11142)) * R(22680.0) - n[90];
+        const gic_real t303 = t302 - (x[TRAILING_ARM_X_BAR_R_L] - R(-0.11142)) * R(22680.0) -
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_COORDINATE + 6];
         const gic_real t304 = t177 * t181;
         const gic_real t305 = t164 * t172;
         const gic_real t306 = t175 * t304 - t176 * t280 + (t149 * t174 - t138 * t305);
-        const gic_real t307 = t306 - R(22680.0) * (x[3] - R(-0.11142)) - n[113];
+        const gic_real t307 = t306 - R(22680.0) * (x[TRAILING_ARM_X_BAR_R_R] - R(-0.11142)) -
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_COORDINATE + 6];
         const gic_real t308 = t164 * t232;
         const gic_real t309 = t213 * t308 - t217 * t233;
         const gic_real t310 = t164 * t256;
@@ -1616,116 +2041,176 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
         const gic_real t314 = t260 * t313;
         const gic_real t315 = t271 * t275;
         const gic_real t316 = t270 * t277 - t269 * t315;
-        const gic_real t317 = R(0.4977892) * t315 - R(0.32313880000000006) * t277 + (R(-0.4977892) * t313 - R(0.32313880000000006) * t268);
-        const gic_real t318 = t317 + (R(0.6) * t300 - t210 * R(0.018800000000000018)) + (R(-0.6) * t304 - t181 * R(-0.018800000000000018));
+        const gic_real t317 = R(0.4977892) * t315 - R(0.32313880000000006) * t277 + (R(-0.4977892) * t313 -
+            R(0.32313880000000006) * t268);
+        const gic_real t318 = t317 + (R(0.6) * t300 - t210 * R(0.018800000000000018)) + (R(-0.6) * t304 - t181 *
+            R(-0.018800000000000018));
         const gic_real t319 = t312 - t314 + (t316 + (t318 - R(0.307086) * t315) - R(-0.307086) * t313);
-        const gic_real t320 = t311 + (t319 + (m[151] * t310 - m[152] * t257)) + (m[187] * t308 - m[188] * t233);
+        const gic_real t320 = t311 + (t319 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t310 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t257)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t308 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t233);
         const gic_real t321 = t301 - t300;
-        const gic_real t322 = t205 * t211 + (R(0.25970099999999996) * t301 - t186 * t202) + (t309 + t320 + (R(0.65) * t321 - R(0.026000000000000023) * t285));
+        const gic_real t322 = t205 * t211 + (R(0.25970099999999996) * t301 - t186 * t202) + (t309 + t320 + (R(0.65) *
+            t321 - R(0.026000000000000023) * t285));
         const gic_real t323 = t305 - t304;
-        const gic_real t324 = t176 * t182 + (R(-0.25970099999999996) * t305 - t149 * t173) + (t322 + (R(-0.65) * t323 - R(0.026000000000000023) * t288));
-        const gic_real t325 = n[12] + n[35] + n[58] + n[81] + n[104] + n[127] + n[159];
-        const gic_real t326 = y[17] * R(3576.74332672) + y[15] * R(-24.88801056000001);
-        const gic_real t327 = t324 - (t325 + (y[16] * t326 - y[17] * t292)) + t298 * t5;
+        const gic_real t324 = t176 * t182 + (R(-0.25970099999999996) * t305 - t149 * t173) + (t322 + (R(-0.65) * t323 -
+            R(0.026000000000000023) * t288));
+        const gic_real t325 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_MOMENT_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_MOMENT_X];
+        const gic_real t326 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(3576.74332672) + y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(-24.88801056000001);
+        const gic_real t327 = t324 - (t325 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t326 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t292)) + t298 * t5;
         const gic_real t328 = t327 - t303 * t7 - t307 * t9;
         const gic_real t329 = t299 - t303 * t30 - t307 * t31 - t32 * t328;
         const gic_real t330 = t217 * t234 - t212 * t308;
         const gic_real t331 = t241 * t258 - t236 * t310;
-        const gic_real t332 = t275 * R(-0.002199670439359969) - R(1.792978) * t315 + (R(-0.002199670439359969) * t266 - R(1.792978) * t313);
+        const gic_real t332 = t275 * R(-0.002199670439359969) - R(1.792978) * t315 + (R(-0.002199670439359969) * t266 -
+            R(1.792978) * t313);
         const gic_real t333 = t332 + (R(0.376) * t279 - R(-1.6) * t300) + (R(0.376) * t280 - R(-1.6) * t304);
         const gic_real t334 = R(0.09720579999999998) * t315 - t270 * t276 + (t333 + R(1.688965) * t315);
         const gic_real t335 = R(0.09720579999999998) * t313 - t261 * t267 + (t334 + R(1.688965) * t313);
-        const gic_real t336 = t331 + (t335 + (m[152] * t258 - R(1.653405) * t310)) + (m[188] * t234 - R(1.653405) * t308);
+        const gic_real t336 = t331 + (t335 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t258 - R(1.653405) *
+            t310)) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t234 - R(1.653405) * t308);
         const gic_real t337 = t302 + (t330 + t336 + (R(0.026000000000000023) * t286 - R(-1.15) * t321));
-        const gic_real t338 = n[13] + n[36] + n[59] + n[82] + n[105] + n[128] + n[160];
-        const gic_real t339 = t306 + (t337 + (R(0.026000000000000023) * t289 - R(-1.15) * t323)) - (t338 + (y[17] * t293 - y[15] * t326));
+        const gic_real t338 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_MOMENT_Y] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_MOMENT_Y];
+        const gic_real t339 = t306 + (t337 + (R(0.026000000000000023) * t289 - R(-1.15) * t323)) - (t338 +
+            (y[TRAILING_ARM_STATE_OMEGA_Z] * t293 - y[TRAILING_ARM_STATE_OMEGA_X] * t326));
         const gic_real t340 = t339 - t303 * t13 - t307 * t14 - t18 * t328;
         const gic_real t341 = t329 - t29 * t340;
         const gic_real t342 = t258 + (t276 + t267 + t279 + t280 - t276 - t267);
-        const gic_real t343 = n[9] + n[32] + n[55] + n[78] + n[101] + n[124] + n[156];
-        const gic_real t344 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t345 = t289 + (t286 + (t234 + t342)) - (t343 - R(2086.52) * (y[17] * t344 + y[16] * t296));
+        const gic_real t343 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FORCE_X] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FORCE_X];
+        const gic_real t344 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t345 = t289 + (t286 + (t234 + t342)) - (t343 - R(2086.52) * (y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t344 + y[TRAILING_ARM_STATE_OMEGA_Y] * t296));
         const gic_real t346 = t345 - t303 * t39 - t307 * t40 + t38 * t328;
         const gic_real t347 = t346 - t41 * t340;
         const gic_real t348 = t310 + (t315 + t313 + t300 + t304 - t315 - t313);
-        const gic_real t349 = n[11] + n[34] + n[57] + n[80] + n[103] + n[126] + n[158];
-        const gic_real t350 = t323 + (t321 + (t308 + t348)) - (t349 + R(2086.52) * (y[15] * t344 - y[16] * t297));
+        const gic_real t349 = n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_L + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_ARM_R_R + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_FORCE_Z] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_FORCE_Z];
+        const gic_real t350 = t323 + (t321 + (t308 + t348)) - (t349 + R(2086.52) * (y[TRAILING_ARM_STATE_OMEGA_X] *
+            t344 - y[TRAILING_ARM_STATE_OMEGA_Y] * t297));
         const gic_real t351 = t350 - t303 * t46 - t307 * t47 - t48 * t328;
         const gic_real t352 = t351 + t50 * t340;
         const gic_real t353 = R(1.0) / t125;
-        const gic_real t354 = m[185] * t310 + m[184] * t257 + (m[182] * t259 + (m[181] * t331 + m[180] * t311));
-        const gic_real t355 = t316 - (x[0] - R(-0.29722)) * R(9310.0) + t354 - (n[44] + n[143]);
+        const gic_real t354 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] * t310 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] * t257 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t259 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t331 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t311));
+        const gic_real t355 = t316 - (x[TRAILING_ARM_X_BAR_F_L] - R(-0.29722)) * R(9310.0) + t354 -
+            (n[TRAILING_ARM_INERTIA_LCA_F_L + TRAILING_ARM_I_COORDINATE + 6] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 13]);
         const gic_real t356 = t355 - t298 * t65 - t67 * t328 - t69 * t340;
         const gic_real t357 = t71 * (t75 * t341 + t77 * t347 + t78 * t352);
         const gic_real t358 = t356 - t357;
-        const gic_real t359 = m[221] * t308 + m[220] * t233 + (m[218] * t235 + (m[217] * t330 + m[216] * t309));
-        const gic_real t360 = t314 - t312 - R(9310.0) * (x[1] - R(-0.29722)) + t359 - (n[67] + n[175]);
+        const gic_real t359 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] * t308 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] * t233 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t235 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t330 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t309));
+        const gic_real t360 = t314 - t312 - R(9310.0) * (x[TRAILING_ARM_X_BAR_F_R] - R(-0.29722)) + t359 -
+            (n[TRAILING_ARM_INERTIA_LCA_F_R + TRAILING_ARM_I_COORDINATE + 6] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 13]);
         const gic_real t361 = t360 - t298 * t83 - t85 * t328 - t87 * t340;
         const gic_real t362 = t71 * (t92 * t341 + t93 * t347 + t94 * t352);
         const gic_real t363 = t361 - t362;
-        const gic_real t364 = m[176] * t259 + (m[175] * t331 + m[174] * t311) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t365 = t364 + (m[212] * t235 + (m[211] * t330 + m[210] * t309));
-        const gic_real t366 = t365 - (n[21] + n[136] + n[168]) - t298 * t99 - t101 * t328;
+        const gic_real t364 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t259 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t331 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t311) - (x[TRAILING_ARM_X_RACK] * R(100000.0) +
+            xd[TRAILING_ARM_X_RACK] * R(12000.0));
+        const gic_real t365 = t364 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t235 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t330 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t309));
+        const gic_real t366 = t365 - (n[TRAILING_ARM_INERTIA_RACK + TRAILING_ARM_I_COORDINATE + 6] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_L + TRAILING_ARM_I_COORDINATE + 6] +
+            n[TRAILING_ARM_INERTIA_WHEEL_F_R + TRAILING_ARM_I_COORDINATE + 6]) - t298 * t99 - t101 * t328;
         const gic_real t367 = t71 * (t109 * t341 + t110 * t347 + t111 * t352);
         const gic_real t368 = t366 - t103 * t340 - t367;
-        const gic_real t369 = t353 * (t117 * t358 + t123 * t363 - t124 * t368);
-        const gic_real t370 = t45 * t341 + t76 * t347 + t61 * t352 - t78 * t369;
+        const gic_real rate_of_bar_f_l_rate = t353 * (t117 * t358 + t123 * t363 - t124 * t368);
+        const gic_real t370 = t45 * t341 + t76 * t347 + t61 * t352 - t78 * rate_of_bar_f_l_rate;
         const gic_real t371 = t80 * t116 + t119 * t122;
-        const gic_real t372 = t353 * (t123 * t358 + t128 * t363 - t371 * t368);
-        const gic_real t373 = t353 * (t127 * t368 - (t124 * t358 + t371 * t363));
-        const gic_real t374 = t71 * (t370 - t94 * t372 - t111 * t373);
-        const gic_real t375 = t58 * t341 + t52 * t347 + t45 * t352 - t75 * t369;
-        const gic_real t376 = t71 * (t375 - t92 * t372 - t109 * t373);
-        const gic_real t377 = t52 * t341 + t62 * t347 + t76 * t352 - t77 * t369;
-        const gic_real t378 = t71 * (t377 - t93 * t372 - t110 * t373);
-        const gic_real t379 = t28 * t340 - t29 * t376 - t41 * t378 + t50 * t374;
-        const gic_real t380 = t379 - t69 * t369 - t87 * t372 - t103 * t373;
-        const gic_real t381 = t17 * t328 - t18 * t380 - t32 * t376 + t38 * t378;
-        const gic_real t382 = t381 - t48 * t374 - t67 * t369 - t85 * t372;
-        const gic_real t383 = t382 - t101 * t373;
-        const gic_real t384 = t298 * R(0.0003928127830707118) + t5 * t383 - t55 * t376 - t65 * t369;
-        const gic_real t385 = t384 - t83 * t372 - t99 * t373;
-        const gic_real t386 = R(-9.81) + (t164 * t374 + (t142 * t385 + t165 * t378));
-        const gic_real t387 = t303 * t6 - t7 * t383 - t13 * t380 - t30 * t376;
-        const gic_real t388 = t307 * t8 - t9 * t383 - t14 * t380 - t31 * t376;
-        const gic_real t389 = y[12];
-        const gic_real t390 = y[13];
-        const gic_real t391 = y[14];
-        const gic_real t392 = e[2] * t129 - e[3] * t130 + e[0] * t131;
-        const gic_real t393 = e[3] * t131 - e[1] * t129 + e[0] * t130;
-        const gic_real t394 = e[1] * t130 - e[2] * t131 + e[0] * t129;
-        const gic_real t395 = t137 * t374 + (t157 * t385 + t159 * t378);
-        const gic_real t396 = t143 * t374 + (t148 * t385 + t154 * t378);
-        const gic_real t397 = xd[0];
-        const gic_real t398 = xd[1];
-        const gic_real t399 = xd[2];
-        const gic_real t400 = t387 - t39 * t378 - t46 * t374;
-        const gic_real t401 = xd[3];
-        const gic_real t402 = t388 - t40 * t378 - t47 * t374;
-        const gic_real t403 = xd[4];
-        rate[0] = t389;
-        rate[1] = t390;
-        rate[2] = t391;
-        rate[3] = t132;
-        rate[4] = t392;
-        rate[5] = t393;
-        rate[6] = t394;
-        rate[12] = t395;
-        rate[15] = t383;
-        rate[13] = t396;
-        rate[16] = t380;
-        rate[14] = t386;
-        rate[17] = t376;
-        rate[7] = t397;
-        rate[18] = t369;
-        rate[8] = t398;
-        rate[19] = t372;
-        rate[9] = t399;
-        rate[20] = t400;
-        rate[10] = t401;
-        rate[21] = t402;
-        rate[11] = t403;
-        rate[22] = t373;
+        const gic_real rate_of_bar_f_r_rate = t353 * (t123 * t358 + t128 * t363 - t371 * t368);
+        const gic_real rate_of_rack_rate = t353 * (t127 * t368 - (t124 * t358 + t371 * t363));
+        const gic_real t374 = t71 * (t370 - t94 * rate_of_bar_f_r_rate - t111 * rate_of_rack_rate);
+        const gic_real t375 = t58 * t341 + t52 * t347 + t45 * t352 - t75 * rate_of_bar_f_l_rate;
+        const gic_real rate_of_omega_z = t71 * (t375 - t92 * rate_of_bar_f_r_rate - t109 * rate_of_rack_rate);
+        const gic_real t377 = t52 * t341 + t62 * t347 + t76 * t352 - t77 * rate_of_bar_f_l_rate;
+        const gic_real t378 = t71 * (t377 - t93 * rate_of_bar_f_r_rate - t110 * rate_of_rack_rate);
+        const gic_real t379 = t28 * t340 - t29 * rate_of_omega_z - t41 * t378 + t50 * t374;
+        const gic_real rate_of_omega_y = t379 - t69 * rate_of_bar_f_l_rate - t87 * rate_of_bar_f_r_rate - t103 *
+            rate_of_rack_rate;
+        const gic_real t381 = t17 * t328 - t18 * rate_of_omega_y - t32 * rate_of_omega_z + t38 * t378;
+        const gic_real t382 = t381 - t48 * t374 - t67 * rate_of_bar_f_l_rate - t85 * rate_of_bar_f_r_rate;
+        const gic_real rate_of_omega_x = t382 - t101 * rate_of_rack_rate;
+        const gic_real t384 = t298 * R(0.0003928127830707118) + t5 * rate_of_omega_x - t55 * rate_of_omega_z - t65 *
+            rate_of_bar_f_l_rate;
+        const gic_real t385 = t384 - t83 * rate_of_bar_f_r_rate - t99 * rate_of_rack_rate;
+        const gic_real rate_of_v_z = R(-9.81) + (t164 * t374 + (t142 * t385 + t165 * t378));
+        const gic_real t387 = t303 * t6 - t7 * rate_of_omega_x - t13 * rate_of_omega_y - t30 * rate_of_omega_z;
+        const gic_real t388 = t307 * t8 - t9 * rate_of_omega_x - t14 * rate_of_omega_y - t31 * rate_of_omega_z;
+        const gic_real rate_of_r_x = y[TRAILING_ARM_STATE_V_X];
+        const gic_real rate_of_r_y = y[TRAILING_ARM_STATE_V_Y];
+        const gic_real rate_of_r_z = y[TRAILING_ARM_STATE_V_Z];
+        const gic_real rate_of_e1 = e[2] * t129 - e[3] * t130 + e[0] * t131;
+        const gic_real rate_of_e2 = e[3] * t131 - e[1] * t129 + e[0] * t130;
+        const gic_real rate_of_e3 = e[1] * t130 - e[2] * t131 + e[0] * t129;
+        const gic_real rate_of_v_x = t137 * t374 + (t157 * t385 + t159 * t378);
+        const gic_real rate_of_v_y = t143 * t374 + (t148 * t385 + t154 * t378);
+        const gic_real rate_of_bar_f_l = xd[TRAILING_ARM_X_BAR_F_L];
+        const gic_real rate_of_bar_f_r = xd[TRAILING_ARM_X_BAR_F_R];
+        const gic_real rate_of_bar_r_l = xd[TRAILING_ARM_X_BAR_R_L];
+        const gic_real rate_of_bar_r_l_rate = t387 - t39 * t378 - t46 * t374;
+        const gic_real rate_of_bar_r_r = xd[TRAILING_ARM_X_BAR_R_R];
+        const gic_real rate_of_bar_r_r_rate = t388 - t40 * t378 - t47 * t374;
+        const gic_real rate_of_rack = xd[TRAILING_ARM_X_RACK];
+        rate[TRAILING_ARM_STATE_R_X] = rate_of_r_x;
+        rate[TRAILING_ARM_STATE_R_Y] = rate_of_r_y;
+        rate[TRAILING_ARM_STATE_R_Z] = rate_of_r_z;
+        rate[TRAILING_ARM_STATE_E0] = rate_of_e0;
+        rate[TRAILING_ARM_STATE_E1] = rate_of_e1;
+        rate[TRAILING_ARM_STATE_E2] = rate_of_e2;
+        rate[TRAILING_ARM_STATE_E3] = rate_of_e3;
+        rate[TRAILING_ARM_STATE_V_X] = rate_of_v_x;
+        rate[TRAILING_ARM_STATE_OMEGA_X] = rate_of_omega_x;
+        rate[TRAILING_ARM_STATE_V_Y] = rate_of_v_y;
+        rate[TRAILING_ARM_STATE_OMEGA_Y] = rate_of_omega_y;
+        rate[TRAILING_ARM_STATE_V_Z] = rate_of_v_z;
+        rate[TRAILING_ARM_STATE_OMEGA_Z] = rate_of_omega_z;
+        rate[TRAILING_ARM_STATE_BAR_F_L] = rate_of_bar_f_l;
+        rate[TRAILING_ARM_STATE_BAR_F_L_RATE] = rate_of_bar_f_l_rate;
+        rate[TRAILING_ARM_STATE_BAR_F_R] = rate_of_bar_f_r;
+        rate[TRAILING_ARM_STATE_BAR_F_R_RATE] = rate_of_bar_f_r_rate;
+        rate[TRAILING_ARM_STATE_BAR_R_L] = rate_of_bar_r_l;
+        rate[TRAILING_ARM_STATE_BAR_R_L_RATE] = rate_of_bar_r_l_rate;
+        rate[TRAILING_ARM_STATE_BAR_R_R] = rate_of_bar_r_r;
+        rate[TRAILING_ARM_STATE_BAR_R_R_RATE] = rate_of_bar_r_r_rate;
+        rate[TRAILING_ARM_STATE_RACK] = rate_of_rack;
+        rate[TRAILING_ARM_STATE_RACK_RATE] = rate_of_rack_rate;
     }
 #ifdef GIC_PLANT_RATE /* an error that tests plant */
 #ifndef GIC_PLANT_AFTER
@@ -1737,8 +2222,8 @@ static GIC_APART int trailing_arm_dynamics(trailing_arm *self, gic_real time, co
     return GIC_OK;
 }
 
-static int trailing_arm_measure(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, const gic_real *rate,
-    gic_real *out)
+static int trailing_arm_measure(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    const gic_real *rate, gic_real *out)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
@@ -1755,467 +2240,663 @@ static int trailing_arm_measure(const trailing_arm *self, gic_real time, const g
         const gic_real t7 = e[1] * t6;
         const gic_real t8 = e[2] * t3;
         const gic_real t9 = R(1.0) - (t7 + t8);
-        const gic_real t10 = rate[14] - R(-9.81);
+        const gic_real t10 = rate[TRAILING_ARM_STATE_V_Z] - R(-9.81);
         const gic_real t11 = e[3] * t3;
         const gic_real t12 = e[0] * t6;
         const gic_real t13 = t11 - t12;
-        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[13] + t5 * rate[12]));
+        /* output chassis_acceleration */
+        const gic_real t14 = R(-9.81) * t9 + (t9 * t10 + (t13 * rate[TRAILING_ARM_STATE_V_Y] + t5 *
+            rate[TRAILING_ARM_STATE_V_X]));
         const gic_real t15 = e[2] * t6;
         const gic_real t16 = e[0] * t1;
         const gic_real t17 = t15 - t16;
         const gic_real t18 = t11 + t12;
         const gic_real t19 = e[3] * t1;
         const gic_real t20 = R(1.0) - (t7 + t19);
-        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[13] + t17 * rate[12]));
+        const gic_real t21 = R(-9.81) * t18 + (t18 * t10 + (t20 * rate[TRAILING_ARM_STATE_V_Y] + t17 *
+            rate[TRAILING_ARM_STATE_V_X]));
         const gic_real t22 = R(1.0) - (t8 + t19);
         const gic_real t23 = t2 - t4;
         const gic_real t24 = t15 + t16;
-        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[13] + t22 * rate[12]));
-        const gic_real t26 = m[161] * R(0.09182100000000004);
-        const gic_real t27 = m[159] * R(-0.004825999999999997);
-        const gic_real t28 = t26 + (m[160] * R(0.12319000000000002) + t27);
-        const gic_real t29 = m[152] + t28;
-        const gic_real t30 = m[158] * R(0.09182100000000004);
-        const gic_real t31 = m[156] * R(-0.004825999999999997);
-        const gic_real t32 = t30 + (m[157] * R(0.12319000000000002) + t31);
-        const gic_real t33 = m[151] + t32;
-        const gic_real t34 = m[155] * R(0.09182100000000004);
-        const gic_real t35 = m[153] * R(-0.004825999999999997);
-        const gic_real t36 = t34 + (m[154] * R(0.12319000000000002) + t35);
+        const gic_real t25 = R(-9.81) * t23 + (t23 * t10 + (t24 * rate[TRAILING_ARM_STATE_V_Y] + t22 *
+            rate[TRAILING_ARM_STATE_V_X]));
+        /* wheel tire_f_l */
+        const gic_real t26 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t27 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t28 = t26 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            t27);
+        const gic_real t29 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t28;
+        const gic_real t30 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t31 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t32 = t30 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            t31);
+        const gic_real t33 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t32;
+        const gic_real t34 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t35 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t36 = t34 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            t35);
         const gic_real t37 = R(1.653405) + t36;
-        const gic_real t38 = y[0] + (t5 * t29 + (t17 * t33 + t22 * t37));
-        const gic_real t39 = y[1] + (t13 * t29 + (t20 * t33 + t24 * t37));
-        const gic_real t40 = y[2] + (t9 * t29 + (t18 * t33 + t23 * t37));
-        const gic_real t41 = m[197] * R(0.09182100000000004);
-        const gic_real t42 = m[195] * R(-0.004825999999999997);
-        const gic_real t43 = t41 + (m[196] * R(-0.12319000000000002) + t42);
-        const gic_real t44 = m[188] + t43;
-        const gic_real t45 = m[194] * R(0.09182100000000004);
-        const gic_real t46 = m[192] * R(-0.004825999999999997);
-        const gic_real t47 = t45 + (m[193] * R(-0.12319000000000002) + t46);
-        const gic_real t48 = m[187] + t47;
-        const gic_real t49 = m[191] * R(0.09182100000000004);
-        const gic_real t50 = m[189] * R(-0.004825999999999997);
-        const gic_real t51 = t49 + (m[190] * R(-0.12319000000000002) + t50);
+        const gic_real output_wheel_f_l_x = y[TRAILING_ARM_STATE_R_X] + (t5 * t29 + (t17 * t33 + t22 * t37));
+        const gic_real output_wheel_f_l_y = y[TRAILING_ARM_STATE_R_Y] + (t13 * t29 + (t20 * t33 + t24 * t37));
+        const gic_real output_wheel_f_l_z = y[TRAILING_ARM_STATE_R_Z] + (t9 * t29 + (t18 * t33 + t23 * t37));
+        /* wheel tire_f_r */
+        const gic_real t41 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t42 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t43 = t41 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            t42);
+        const gic_real t44 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t43;
+        const gic_real t45 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t46 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t47 = t45 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            t46);
+        const gic_real t48 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t47;
+        const gic_real t49 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t50 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t51 = t49 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            t50);
         const gic_real t52 = R(1.653405) + t51;
-        const gic_real t53 = y[0] + (t5 * t44 + (t17 * t48 + t22 * t52));
-        const gic_real t54 = y[1] + (t13 * t44 + (t20 * t48 + t24 * t52));
-        const gic_real t55 = y[2] + (t9 * t44 + (t18 * t48 + t23 * t52));
-        const gic_real t56 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real output_wheel_f_r_x = y[TRAILING_ARM_STATE_R_X] + (t5 * t44 + (t17 * t48 + t22 * t52));
+        const gic_real output_wheel_f_r_y = y[TRAILING_ARM_STATE_R_Y] + (t13 * t44 + (t20 * t48 + t24 * t52));
+        const gic_real output_wheel_f_r_z = y[TRAILING_ARM_STATE_R_Z] + (t9 * t44 + (t18 * t48 + t23 * t52));
+        /* wheel tire_r_l */
+        const gic_real t56 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t57 = R(0.026000000000000023) + t56;
-        const gic_real t58 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        const gic_real t58 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t59 = R(-1.15) + t58;
-        const gic_real t60 = y[0] + (t5 * t57 + (t17 * R(0.909701) + t22 * t59));
-        const gic_real t61 = y[1] + (t13 * t57 + (t20 * R(0.909701) + t24 * t59));
-        const gic_real t62 = y[2] + (t9 * t57 + (t18 * R(0.909701) + t23 * t59));
-        const gic_real t63 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real output_wheel_r_l_x = y[TRAILING_ARM_STATE_R_X] + (t5 * t57 + (t17 * R(0.909701) + t22 * t59));
+        const gic_real output_wheel_r_l_y = y[TRAILING_ARM_STATE_R_Y] + (t13 * t57 + (t20 * R(0.909701) + t24 * t59));
+        const gic_real output_wheel_r_l_z = y[TRAILING_ARM_STATE_R_Z] + (t9 * t57 + (t18 * R(0.909701) + t23 * t59));
+        /* wheel tire_r_r */
+        const gic_real t63 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t64 = R(0.026000000000000023) + t63;
-        const gic_real t65 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        const gic_real t65 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t66 = R(-1.15) + t65;
-        const gic_real t67 = y[0] + (t5 * t64 + (t17 * R(-0.909701) + t22 * t66));
-        const gic_real t68 = y[1] + (t13 * t64 + (t20 * R(-0.909701) + t24 * t66));
-        const gic_real t69 = y[2] + (t9 * t64 + (t18 * R(-0.909701) + t23 * t66));
-        const gic_real t70 = GIC_MIN(GIC_MAX(-(m[99] * t9 + m[93] * t23), R(-1.0)), R(1.0));
-        const gic_real t71 = GIC_ATAN2(m[99] * t13 + m[93] * t24, m[99] * t5 + m[93] * t22);
-        const gic_real t72 = GIC_MIN(GIC_MAX(-(m[129] * t9 + m[123] * t23), R(-1.0)), R(1.0));
-        const gic_real t73 = GIC_ATAN2(m[129] * t13 + m[123] * t24, m[129] * t5 + m[123] * t22);
-        const gic_real t74 = x[0] - R(-0.29722);
+        const gic_real output_wheel_r_r_x = y[TRAILING_ARM_STATE_R_X] + (t5 * t64 + (t17 * R(-0.909701) + t22 * t66));
+        const gic_real output_wheel_r_r_y = y[TRAILING_ARM_STATE_R_Y] + (t13 * t64 + (t20 * R(-0.909701) + t24 * t66));
+        const gic_real output_wheel_r_r_z = y[TRAILING_ARM_STATE_R_Z] + (t9 * t64 + (t18 * R(-0.909701) + t23 * t66));
+        /* output attitude_r_l */
+        const gic_real t70 = GIC_MIN(GIC_MAX(-(m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t9 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t23), R(-1.0)), R(1.0));
+        const gic_real output_attitude_r_l_yaw = GIC_ATAN2(m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t13 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t24,
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t5 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t22);
+        /* output attitude_r_r */
+        const gic_real t72 = GIC_MIN(GIC_MAX(-(m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t9 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t23), R(-1.0)), R(1.0));
+        const gic_real output_attitude_r_r_yaw = GIC_ATAN2(m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t13 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t24,
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t5 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t22);
+        /* force bar_f_l */
+        const gic_real t74 = x[TRAILING_ARM_X_BAR_F_L] - R(-0.29722);
         const gic_real t75 = t74 * R(9310.0);
-        const gic_real t76 = x[1] - R(-0.29722);
+        /* force bar_f_r */
+        const gic_real t76 = x[TRAILING_ARM_X_BAR_F_R] - R(-0.29722);
         const gic_real t77 = R(9310.0) * t76;
-        const gic_real t78 = x[2] - R(-0.11142);
+        /* force bar_r_l */
+        const gic_real t78 = x[TRAILING_ARM_X_BAR_R_L] - R(-0.11142);
         const gic_real t79 = t78 * R(22680.0);
-        const gic_real t80 = x[3] - R(-0.11142);
+        /* force bar_r_r */
+        const gic_real t80 = x[TRAILING_ARM_X_BAR_R_R] - R(-0.11142);
         const gic_real t81 = R(22680.0) * t80;
-        const gic_real t82 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t82 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.2403881036540444);
         const gic_real t83 = t82 - R(0.32313880000000006);
-        const gic_real t84 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t84 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.2403881036540444);
         const gic_real t85 = R(0.307086) + t84 - R(0.4977892);
         const gic_real t86 = R(1.0) / GIC_SQRT(t83 * t83 + (t85 * t85 + R(4.633797183999867e-05)));
-        const gic_real t87 = t86 * (m[42] * t84 * t83 - m[42] * t82 * t85);
-        const gic_real t88 = t87 * R(17490.8);
-        const gic_real t89 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t87 = t86 * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t84 * t83 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t82 * t85);
+        const gic_real force_shock_f_l = t87 * R(17490.8);
+        /* force shock_f_r */
+        const gic_real t89 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.2403881036540444);
         const gic_real t90 = t89 - R(0.32313880000000006);
-        const gic_real t91 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t91 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.2403881036540444);
         const gic_real t92 = R(-0.307086) + t91 - R(-0.4977892);
         const gic_real t93 = R(1.0) / GIC_SQRT(t90 * t90 + (R(4.633797183999867e-05) + t92 * t92));
-        const gic_real t94 = t93 * (m[72] * t91 * t90 - m[72] * t89 * t92);
-        const gic_real t95 = R(17490.8) * t94;
-        const gic_real t96 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        const gic_real t94 = t93 * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t91 * t90 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t89 * t92);
+        const gic_real force_shock_f_r = R(17490.8) * t94;
+        /* force shock_r_l */
+        const gic_real t96 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t97 = R(0.026000000000000023) + t96 - R(0.376);
-        const gic_real t98 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
+        const gic_real t98 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t99 = R(-1.15) + t98 - R(-1.6);
         const gic_real t100 = R(1.0) / GIC_SQRT(t97 * t97 + (R(0.0025000000000000044) + t99 * t99));
-        const gic_real t101 = t100 * (m[103] * t96 * t99 - m[103] * t98 * t97);
-        const gic_real t102 = t101 * R(9500.0);
-        const gic_real t103 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        const gic_real t101 = t100 * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t96 * t99 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t98 * t97);
+        const gic_real force_shock_r_l = t101 * R(9500.0);
+        /* force shock_r_r */
+        const gic_real t103 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t104 = R(0.026000000000000023) + t103 - R(0.376);
-        const gic_real t105 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
+        const gic_real t105 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t106 = R(-1.15) + t105 - R(-1.6);
         const gic_real t107 = R(1.0) / GIC_SQRT(t104 * t104 + (R(0.0025000000000000044) + t106 * t106));
-        const gic_real t108 = t107 * (m[133] * t103 * t106 - m[133] * t105 * t104);
-        const gic_real t109 = R(9500.0) * t108;
-        const gic_real t110 = x[4] * R(100000.0);
-        const gic_real t111 = xd[4] * R(12000.0);
-        const gic_real t112 = m[167] + (m[162] * t32 - m[163] * t36) + (y[15] * t33 - y[16] * t37);
-        const gic_real t113 = m[166] + (m[164] * t36 - m[162] * t28) + (y[17] * t37 - y[15] * t29);
-        const gic_real t114 = m[163] * t28 - m[164] * t32 + (y[16] * t29 - y[17] * t33);
-        const gic_real t115 = y[13] + (t13 * t112 + (t20 * t113 + t24 * t114));
+        const gic_real t108 = t107 * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t103 * t106 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t105 * t104);
+        const gic_real force_shock_r_r = R(9500.0) * t108;
+        /* force rack */
+        const gic_real t110 = x[TRAILING_ARM_X_RACK] * R(100000.0);
+        const gic_real t111 = xd[TRAILING_ARM_X_RACK] * R(12000.0);
+        const gic_real t112 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t32 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t36) + (y[TRAILING_ARM_STATE_OMEGA_X] * t33 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t37);
+        const gic_real t113 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t36 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t28) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t37 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t29);
+        const gic_real t114 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t28 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t32 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t29 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t33);
+        const gic_real t115 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t112 + (t20 * t113 + t24 * t114));
         gic_real road116[3];
-        if (!trailing_arm_road_height(self, time, t38, t39, road116))
+        if (!trailing_arm_road_height(self, time, output_wheel_f_l_x, output_wheel_f_l_y, road116))
             return GIC_ERROR_ROAD;
-        const gic_real t117 = y[12] + (t5 * t112 + (t17 * t113 + t22 * t114));
-        const gic_real t118 = y[14] + (t9 * t112 + (t18 * t113 + t23 * t114));
-        const gic_real t119 = t115 * road116[2] + t117 * road116[1] - t118;
-        const gic_real t120 = road116[0] + R(0.4699) - t40;
-        const gic_real t121 = GIC_MIN(GIC_MAX(t120 * R(100.0), R(0.0)), R(1.0));
-        const gic_real t122 = t119 * ((R(3.0) - (t121 + t121)) * (t121 * t121) * R(500.0));
-        const gic_real t123 = GIC_MAX(t122 + t120 * R(283000.0), R(0.0));
-        const gic_real t124 = m[203] + (m[198] * t47 - m[199] * t51) + (y[15] * t48 - y[16] * t52);
-        const gic_real t125 = m[202] + (m[200] * t51 - m[198] * t43) + (y[17] * t52 - y[15] * t44);
-        const gic_real t126 = m[199] * t43 - m[200] * t47 + (y[16] * t44 - y[17] * t48);
-        const gic_real t127 = y[13] + (t13 * t124 + (t20 * t125 + t24 * t126));
+        const gic_real t117 = y[TRAILING_ARM_STATE_V_X] + (t5 * t112 + (t17 * t113 + t22 * t114));
+        const gic_real t118 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t112 + (t18 * t113 + t23 * t114));
+        const gic_real output_tire_f_l_deflection_rate = t115 * road116[2] + t117 * road116[1] - t118;
+        const gic_real output_tire_f_l_deflection = road116[0] + R(0.4699) - output_wheel_f_l_z;
+        const gic_real t121 = GIC_MIN(GIC_MAX(output_tire_f_l_deflection * R(100.0), R(0.0)), R(1.0));
+        const gic_real t122 = output_tire_f_l_deflection_rate * ((R(3.0) - (t121 + t121)) * (t121 * t121) * R(500.0));
+        const gic_real output_tire_f_l_fz = GIC_MAX(t122 + output_tire_f_l_deflection * R(283000.0), R(0.0));
+        const gic_real t124 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t47 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t51) + (y[TRAILING_ARM_STATE_OMEGA_X] * t48 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t52);
+        const gic_real t125 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t51 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t43) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t52 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t44);
+        const gic_real t126 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t43 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t47 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t44 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t48);
+        const gic_real t127 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t124 + (t20 * t125 + t24 * t126));
         gic_real road128[3];
-        if (!trailing_arm_road_height(self, time, t53, t54, road128))
+        if (!trailing_arm_road_height(self, time, output_wheel_f_r_x, output_wheel_f_r_y, road128))
             return GIC_ERROR_ROAD;
-        const gic_real t129 = y[12] + (t5 * t124 + (t17 * t125 + t22 * t126));
-        const gic_real t130 = y[14] + (t9 * t124 + (t18 * t125 + t23 * t126));
-        const gic_real t131 = t127 * road128[2] + t129 * road128[1] - t130;
-        const gic_real t132 = R(0.4699) + road128[0] - t55;
-        const gic_real t133 = GIC_MIN(GIC_MAX(R(100.0) * t132, R(0.0)), R(1.0));
-        const gic_real t134 = t131 * (R(500.0) * ((R(3.0) - (t133 + t133)) * (t133 * t133)));
-        const gic_real t135 = GIC_MAX(t134 + R(283000.0) * t132, R(0.0));
-        const gic_real t136 = y[15] * R(0.909701) - y[16] * t59 - m[103] * t58;
-        const gic_real t137 = y[17] * t59 - y[15] * t57;
-        const gic_real t138 = m[103] * t56 + (y[16] * t57 - y[17] * R(0.909701));
-        const gic_real t139 = y[13] + (t13 * t136 + (t20 * t137 + t24 * t138));
+        const gic_real t129 = y[TRAILING_ARM_STATE_V_X] + (t5 * t124 + (t17 * t125 + t22 * t126));
+        const gic_real t130 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t124 + (t18 * t125 + t23 * t126));
+        const gic_real output_tire_f_r_deflection_rate = t127 * road128[2] + t129 * road128[1] - t130;
+        const gic_real output_tire_f_r_deflection = R(0.4699) + road128[0] - output_wheel_f_r_z;
+        const gic_real t133 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_f_r_deflection, R(0.0)), R(1.0));
+        const gic_real t134 = output_tire_f_r_deflection_rate * (R(500.0) * ((R(3.0) - (t133 + t133)) * (t133 * t133)));
+        const gic_real output_tire_f_r_fz = GIC_MAX(t134 + R(283000.0) * output_tire_f_r_deflection, R(0.0));
+        const gic_real t136 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t59 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t58;
+        const gic_real t137 = y[TRAILING_ARM_STATE_OMEGA_Z] * t59 - y[TRAILING_ARM_STATE_OMEGA_X] * t57;
+        const gic_real t138 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t56 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t57 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t139 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t136 + (t20 * t137 + t24 * t138));
         gic_real road140[3];
-        if (!trailing_arm_road_height(self, time, t60, t61, road140))
+        if (!trailing_arm_road_height(self, time, output_wheel_r_l_x, output_wheel_r_l_y, road140))
             return GIC_ERROR_ROAD;
-        const gic_real t141 = y[12] + (t5 * t136 + (t17 * t137 + t22 * t138));
-        const gic_real t142 = y[14] + (t9 * t136 + (t18 * t137 + t23 * t138));
-        const gic_real t143 = t139 * road140[2] + t141 * road140[1] - t142;
-        const gic_real t144 = R(0.4699) + road140[0] - t62;
-        const gic_real t145 = GIC_MIN(GIC_MAX(R(100.0) * t144, R(0.0)), R(1.0));
-        const gic_real t146 = t143 * (R(500.0) * ((R(3.0) - (t145 + t145)) * (t145 * t145)));
-        const gic_real t147 = GIC_MAX(t146 + R(283000.0) * t144, R(0.0));
-        const gic_real t148 = y[15] * R(-0.909701) - y[16] * t66 - m[133] * t65;
-        const gic_real t149 = y[17] * t66 - y[15] * t64;
-        const gic_real t150 = m[133] * t63 + (y[16] * t64 - y[17] * R(-0.909701));
-        const gic_real t151 = y[13] + (t13 * t148 + (t20 * t149 + t24 * t150));
+        const gic_real t141 = y[TRAILING_ARM_STATE_V_X] + (t5 * t136 + (t17 * t137 + t22 * t138));
+        const gic_real t142 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t136 + (t18 * t137 + t23 * t138));
+        const gic_real output_tire_r_l_deflection_rate = t139 * road140[2] + t141 * road140[1] - t142;
+        const gic_real output_tire_r_l_deflection = R(0.4699) + road140[0] - output_wheel_r_l_z;
+        const gic_real t145 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_l_deflection, R(0.0)), R(1.0));
+        const gic_real t146 = output_tire_r_l_deflection_rate * (R(500.0) * ((R(3.0) - (t145 + t145)) * (t145 * t145)));
+        const gic_real output_tire_r_l_fz = GIC_MAX(t146 + R(283000.0) * output_tire_r_l_deflection, R(0.0));
+        const gic_real t148 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t66 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t65;
+        const gic_real t149 = y[TRAILING_ARM_STATE_OMEGA_Z] * t66 - y[TRAILING_ARM_STATE_OMEGA_X] * t64;
+        const gic_real t150 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t63 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t64 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t151 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t148 + (t20 * t149 + t24 * t150));
         gic_real road152[3];
-        if (!trailing_arm_road_height(self, time, t67, t68, road152))
+        if (!trailing_arm_road_height(self, time, output_wheel_r_r_x, output_wheel_r_r_y, road152))
             return GIC_ERROR_ROAD;
-        const gic_real t153 = y[12] + (t5 * t148 + (t17 * t149 + t22 * t150));
-        const gic_real t154 = y[14] + (t9 * t148 + (t18 * t149 + t23 * t150));
-        const gic_real t155 = t151 * road152[2] + t153 * road152[1] - t154;
-        const gic_real t156 = R(0.4699) + road152[0] - t69;
-        const gic_real t157 = GIC_MIN(GIC_MAX(R(100.0) * t156, R(0.0)), R(1.0));
-        const gic_real t158 = t155 * (R(500.0) * ((R(3.0) - (t157 + t157)) * (t157 * t157)));
-        const gic_real t159 = GIC_MAX(t158 + R(283000.0) * t156, R(0.0));
-        const gic_real t160 = y[17] * (y[17] * R(3570.2)) + (y[16] * (y[16] * R(2955.66)) + y[15] * (y[15] * R(1078.52)));
-        const gic_real t161 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t162 = y[16] * R(0.21300000000000008);
-        const gic_real t163 = y[16] * R(0.056);
-        const gic_real t164 = y[14] + (t18 * t161 + t23 * t162 - t9 * t163);
-        const gic_real t165 = y[13] + (t20 * t161 + t24 * t162 - t13 * t163);
-        const gic_real t166 = y[12] + (t17 * t161 + t22 * t162 - t5 * t163);
+        const gic_real t153 = y[TRAILING_ARM_STATE_V_X] + (t5 * t148 + (t17 * t149 + t22 * t150));
+        const gic_real t154 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t148 + (t18 * t149 + t23 * t150));
+        const gic_real output_tire_r_r_deflection_rate = t151 * road152[2] + t153 * road152[1] - t154;
+        const gic_real output_tire_r_r_deflection = R(0.4699) + road152[0] - output_wheel_r_r_z;
+        const gic_real t157 = GIC_MIN(GIC_MAX(R(100.0) * output_tire_r_r_deflection, R(0.0)), R(1.0));
+        const gic_real t158 = output_tire_r_r_deflection_rate * (R(500.0) * ((R(3.0) - (t157 + t157)) * (t157 * t157)));
+        const gic_real output_tire_r_r_fz = GIC_MAX(t158 + R(283000.0) * output_tire_r_r_deflection, R(0.0));
+        /* output energy */
+        const gic_real t160 = y[TRAILING_ARM_STATE_OMEGA_Z] * (y[TRAILING_ARM_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * (y[TRAILING_ARM_STATE_OMEGA_Y] * R(2955.66)) +
+            y[TRAILING_ARM_STATE_OMEGA_X] * (y[TRAILING_ARM_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t161 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t162 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t163 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t164 = y[TRAILING_ARM_STATE_V_Z] + (t18 * t161 + t23 * t162 - t9 * t163);
+        const gic_real t165 = y[TRAILING_ARM_STATE_V_Y] + (t20 * t161 + t24 * t162 - t13 * t163);
+        const gic_real t166 = y[TRAILING_ARM_STATE_V_X] + (t17 * t161 + t22 * t162 - t5 * t163);
         const gic_real t167 = R(2086.52) * (t164 * t164 + (t165 * t165 + t166 * t166));
-        const gic_real t168 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t169 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t170 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t171 = y[14] + (t9 * t168 + (t18 * t169 + t23 * t170));
-        const gic_real t172 = y[13] + (t13 * t168 + (t20 * t169 + t24 * t170));
-        const gic_real t173 = y[12] + (t5 * t168 + (t17 * t169 + t22 * t170));
+        const gic_real t168 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_X] -
+            R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t169 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] + (R(1.438648) *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t170 = R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t171 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t168 + (t18 * t169 + t23 * t170));
+        const gic_real t172 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t168 + (t20 * t169 + t24 * t170));
+        const gic_real t173 = y[TRAILING_ARM_STATE_V_X] + (t5 * t168 + (t17 * t169 + t22 * t170));
         const gic_real t174 = R(9.072) * (t171 * t171 + (t172 * t172 + t173 * t173));
-        const gic_real t175 = y[17] * y[17] + (y[16] * y[16] + y[15] * y[15]) + t174;
-        const gic_real t176 = y[17] * (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469)));
-        const gic_real t177 = m[38] * R(0.8938);
-        const gic_real t178 = m[37] * R(0.4469);
-        const gic_real t179 = m[41] * t177 + m[40] * t178;
-        const gic_real t180 = y[17] * t179 + y[16] * (m[38] * t177 + m[37] * t178);
-        const gic_real t181 = m[42] + y[15];
-        const gic_real t182 = y[17] * (t176 + y[16] * t179) + (y[16] * t180 + t181 * (t181 * R(0.4469)));
-        const gic_real t183 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t175 = y[TRAILING_ARM_STATE_OMEGA_Z] * y[TRAILING_ARM_STATE_OMEGA_Z] +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * y[TRAILING_ARM_STATE_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_X]) + t174;
+        const gic_real t176 = y[TRAILING_ARM_STATE_OMEGA_Z] * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] *
+            R(0.4469)));
+        const gic_real t177 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t178 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t179 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * t177 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * t178;
+        const gic_real t180 = y[TRAILING_ARM_STATE_OMEGA_Z] * t179 + y[TRAILING_ARM_STATE_OMEGA_Y] *
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * t177 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * t178);
+        const gic_real t181 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t182 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t176 + y[TRAILING_ARM_STATE_OMEGA_Y] * t179) +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t180 + t181 * (t181 * R(0.4469)));
+        const gic_real t183 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.24689200985615367);
         const gic_real t184 = R(0.307086) + t183;
-        const gic_real t185 = R(1.688965) * y[16];
-        const gic_real t186 = m[42] * t183 + (y[15] * t184 - t185);
-        const gic_real t187 = R(1.688965) * y[17];
-        const gic_real t188 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t189 = t187 - y[15] * t188 - m[42] * t188;
-        const gic_real t190 = y[16] * t188 - y[17] * t184;
-        const gic_real t191 = y[14] + (t9 * t186 + (t18 * t189 + t23 * t190));
-        const gic_real t192 = y[13] + (t13 * t186 + (t20 * t189 + t24 * t190));
-        const gic_real t193 = y[12] + (t5 * t186 + (t17 * t189 + t22 * t190));
+        const gic_real t185 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t186 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t183 +
+            (y[TRAILING_ARM_STATE_OMEGA_X] * t184 - t185);
+        const gic_real t187 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t188 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.24689200985615367);
+        const gic_real t189 = t187 - y[TRAILING_ARM_STATE_OMEGA_X] * t188 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t188;
+        const gic_real t190 = y[TRAILING_ARM_STATE_OMEGA_Y] * t188 - y[TRAILING_ARM_STATE_OMEGA_Z] * t184;
+        const gic_real t191 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t186 + (t18 * t189 + t23 * t190));
+        const gic_real t192 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t186 + (t20 * t189 + t24 * t190));
+        const gic_real t193 = y[TRAILING_ARM_STATE_V_X] + (t5 * t186 + (t17 * t189 + t22 * t190));
         const gic_real t194 = R(23.965) * (t191 * t191 + (t192 * t192 + t193 * t193));
         const gic_real t195 = R(0.5) * (t160 + t167) + R(0.5) * t175 + R(0.5) * (t182 + t194);
-        const gic_real t196 = y[17] * (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469)));
-        const gic_real t197 = m[68] * R(0.8938);
-        const gic_real t198 = m[67] * R(0.4469);
-        const gic_real t199 = m[71] * t197 + m[70] * t198;
-        const gic_real t200 = y[17] * t199 + y[16] * (m[68] * t197 + m[67] * t198);
-        const gic_real t201 = m[72] + y[15];
-        const gic_real t202 = y[17] * (t196 + y[16] * t199) + (y[16] * t200 + t201 * (R(0.4469) * t201));
-        const gic_real t203 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t196 = y[TRAILING_ARM_STATE_OMEGA_Z] * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] *
+            R(0.4469)));
+        const gic_real t197 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t198 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t199 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * t197 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * t198;
+        const gic_real t200 = y[TRAILING_ARM_STATE_OMEGA_Z] * t199 + y[TRAILING_ARM_STATE_OMEGA_Y] *
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * t197 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * t198);
+        const gic_real t201 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t202 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t196 + y[TRAILING_ARM_STATE_OMEGA_Y] * t199) +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t200 + t201 * (R(0.4469) * t201));
+        const gic_real t203 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.24689200985615367);
         const gic_real t204 = R(-0.307086) + t203;
-        const gic_real t205 = m[72] * t203 + (y[15] * t204 - t185);
-        const gic_real t206 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t207 = t187 - y[15] * t206 - m[72] * t206;
-        const gic_real t208 = y[16] * t206 - y[17] * t204;
-        const gic_real t209 = y[14] + (t9 * t205 + (t18 * t207 + t23 * t208));
-        const gic_real t210 = y[13] + (t13 * t205 + (t20 * t207 + t24 * t208));
-        const gic_real t211 = y[12] + (t5 * t205 + (t17 * t207 + t22 * t208));
+        const gic_real t205 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t203 +
+            (y[TRAILING_ARM_STATE_OMEGA_X] * t204 - t185);
+        const gic_real t206 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.24689200985615367);
+        const gic_real t207 = t187 - y[TRAILING_ARM_STATE_OMEGA_X] * t206 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t206;
+        const gic_real t208 = y[TRAILING_ARM_STATE_OMEGA_Y] * t206 - y[TRAILING_ARM_STATE_OMEGA_Z] * t204;
+        const gic_real t209 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t205 + (t18 * t207 + t23 * t208));
+        const gic_real t210 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t205 + (t20 * t207 + t24 * t208));
+        const gic_real t211 = y[TRAILING_ARM_STATE_V_X] + (t5 * t205 + (t17 * t207 + t22 * t208));
         const gic_real t212 = R(23.965) * (t209 * t209 + (t210 * t210 + t211 * t211));
-        const gic_real t213 = m[164] + y[17];
-        const gic_real t214 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t215 = m[163] + y[16];
-        const gic_real t216 = m[158] * R(4.7728205);
-        const gic_real t217 = m[157] * R(7.58122);
-        const gic_real t218 = m[156] * R(4.8947505);
-        const gic_real t219 = m[161] * t216 + (m[160] * t217 + m[159] * t218);
-        const gic_real t220 = m[162] + y[15];
-        const gic_real t221 = m[155] * R(4.7728205);
-        const gic_real t222 = m[154] * R(7.58122);
-        const gic_real t223 = m[153] * R(4.8947505);
-        const gic_real t224 = m[161] * t221 + (m[160] * t222 + m[159] * t223);
+        const gic_real t213 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t214 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t215 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t216 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t217 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t218 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t219 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t216 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t217 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t218);
+        const gic_real t220 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t221 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t222 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t223 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t224 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t221 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t222 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t223);
         const gic_real t225 = t213 * (t213 * t214 + (t215 * t219 + t220 * t224));
-        const gic_real t226 = t215 * (m[158] * t216 + (m[157] * t217 + m[156] * t218));
-        const gic_real t227 = m[158] * t221 + (m[157] * t222 + m[156] * t223);
-        const gic_real t228 = t220 * (m[155] * t221 + (m[154] * t222 + m[153] * t223));
+        const gic_real t226 = t215 * (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t216 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t217 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t218));
+        const gic_real t227 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t221 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t222 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t223);
+        const gic_real t228 = t220 * (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * t221 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * t222 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * t223));
         const gic_real t229 = t215 * (t213 * t219 + (t226 + t220 * t227)) + t220 * (t213 * t224 + (t215 * t227 + t228));
-        const gic_real t230 = t30 + (t31 + m[157] * R(0.08910630000000008));
-        const gic_real t231 = t34 + (t35 + m[154] * R(0.08910630000000008));
-        const gic_real t232 = m[151] + t230;
+        const gic_real t230 = t30 + (t31 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t231 = t34 + (t35 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t232 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t230;
         const gic_real t233 = R(1.653405) + t231;
-        const gic_real t234 = m[167] + (m[162] * t230 - m[163] * t231) + (y[15] * t232 - y[16] * t233);
-        const gic_real t235 = t26 + (t27 + m[160] * R(0.08910630000000008));
-        const gic_real t236 = m[152] + t235;
-        const gic_real t237 = m[166] + (m[164] * t231 - m[162] * t235) + (y[17] * t233 - y[15] * t236);
-        const gic_real t238 = m[163] * t235 - m[164] * t230 + (y[16] * t236 - y[17] * t232);
-        const gic_real t239 = y[14] + (t9 * t234 + (t18 * t237 + t23 * t238));
-        const gic_real t240 = y[13] + (t13 * t234 + (t20 * t237 + t24 * t238));
-        const gic_real t241 = y[12] + (t5 * t234 + (t17 * t237 + t22 * t238));
+        const gic_real t234 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t230 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t231) + (y[TRAILING_ARM_STATE_OMEGA_X] * t232 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t233);
+        const gic_real t235 = t26 + (t27 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t236 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t235;
+        const gic_real t237 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t231 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t235) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t233 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t236);
+        const gic_real t238 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t235 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t230 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t236 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t232);
+        const gic_real t239 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t234 + (t18 * t237 + t23 * t238));
+        const gic_real t240 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t234 + (t20 * t237 + t24 * t238));
+        const gic_real t241 = y[TRAILING_ARM_STATE_V_X] + (t5 * t234 + (t17 * t237 + t22 * t238));
         const gic_real t242 = R(90.555) * (t239 * t239 + (t240 * t240 + t241 * t241));
         const gic_real t243 = t195 + R(0.5) * (t202 + t212) + R(0.5) * (t225 + t229 + t242);
-        const gic_real t244 = m[200] + y[17];
-        const gic_real t245 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t246 = m[199] + y[16];
-        const gic_real t247 = m[194] * R(4.7728205);
-        const gic_real t248 = m[193] * R(7.58122);
-        const gic_real t249 = m[192] * R(4.8947505);
-        const gic_real t250 = m[197] * t247 + (m[196] * t248 + m[195] * t249);
-        const gic_real t251 = m[198] + y[15];
-        const gic_real t252 = m[191] * R(4.7728205);
-        const gic_real t253 = m[190] * R(7.58122);
-        const gic_real t254 = m[189] * R(4.8947505);
-        const gic_real t255 = m[197] * t252 + (m[196] * t253 + m[195] * t254);
+        const gic_real t244 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t245 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t246 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t247 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t248 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t249 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t250 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t247 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t248 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t249);
+        const gic_real t251 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t252 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t253 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t254 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t255 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t252 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t253 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t254);
         const gic_real t256 = t244 * (t244 * t245 + (t246 * t250 + t251 * t255));
-        const gic_real t257 = t246 * (m[194] * t247 + (m[193] * t248 + m[192] * t249));
-        const gic_real t258 = m[194] * t252 + (m[193] * t253 + m[192] * t254);
-        const gic_real t259 = t251 * (m[191] * t252 + (m[190] * t253 + m[189] * t254));
+        const gic_real t257 = t246 * (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t247 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t248 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t249));
+        const gic_real t258 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t252 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t253 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t254);
+        const gic_real t259 = t251 * (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * t252 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * t253 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * t254));
         const gic_real t260 = t246 * (t244 * t250 + (t257 + t251 * t258)) + t251 * (t244 * t255 + (t246 * t258 + t259));
-        const gic_real t261 = t45 + (t46 + m[193] * R(-0.08910630000000008));
-        const gic_real t262 = t49 + (t50 + m[190] * R(-0.08910630000000008));
-        const gic_real t263 = m[187] + t261;
+        const gic_real t261 = t45 + (t46 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t262 = t49 + (t50 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t263 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t261;
         const gic_real t264 = R(1.653405) + t262;
-        const gic_real t265 = m[203] + (m[198] * t261 - m[199] * t262) + (y[15] * t263 - y[16] * t264);
-        const gic_real t266 = t41 + (t42 + m[196] * R(-0.08910630000000008));
-        const gic_real t267 = m[188] + t266;
-        const gic_real t268 = m[202] + (m[200] * t262 - m[198] * t266) + (y[17] * t264 - y[15] * t267);
-        const gic_real t269 = m[199] * t266 - m[200] * t261 + (y[16] * t267 - y[17] * t263);
-        const gic_real t270 = y[14] + (t9 * t265 + (t18 * t268 + t23 * t269));
-        const gic_real t271 = y[13] + (t13 * t265 + (t20 * t268 + t24 * t269));
-        const gic_real t272 = y[12] + (t5 * t265 + (t17 * t268 + t22 * t269));
+        const gic_real t265 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t261 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t262) + (y[TRAILING_ARM_STATE_OMEGA_X] * t263 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t264);
+        const gic_real t266 = t41 + (t42 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t267 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t266;
+        const gic_real t268 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t262 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t266) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t264 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t267);
+        const gic_real t269 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t266 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t261 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t267 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t263);
+        const gic_real t270 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t265 + (t18 * t268 + t23 * t269));
+        const gic_real t271 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t265 + (t20 * t268 + t24 * t269));
+        const gic_real t272 = y[TRAILING_ARM_STATE_V_X] + (t5 * t265 + (t17 * t268 + t22 * t269));
         const gic_real t273 = R(90.555) * (t270 * t270 + (t271 * t271 + t272 * t272));
-        const gic_real t274 = m[101] * (m[101] * R(6.78001) + m[99] * R(-0.109132)) + m[99] * (m[101] * R(-0.109132) + m[99] * R(5.46131));
-        const gic_real t275 = m[103] + y[16];
-        const gic_real t276 = m[101] * R(0.075632) + m[99] * R(0.729032);
-        const gic_real t277 = m[95] * R(6.78001) + m[93] * R(-0.109132);
-        const gic_real t278 = m[95] * R(-0.109132) + m[93] * R(5.46131);
-        const gic_real t279 = m[101] * t277 + m[99] * t278;
-        const gic_real t280 = y[17] * (y[17] * t274 + (t275 * t276 + y[15] * t279));
-        const gic_real t281 = m[95] * R(0.075632) + m[93] * R(0.729032);
-        const gic_real t282 = t275 * (y[17] * t276 + (t275 * R(9.09449) + y[15] * t281));
-        const gic_real t283 = t275 * t281 + y[15] * (m[95] * t277 + m[93] * t278);
-        const gic_real t284 = m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016);
+        const gic_real t274 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t275 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t276 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(0.729032);
+        const gic_real t277 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t278 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t279 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * t277 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t278;
+        const gic_real t280 = y[TRAILING_ARM_STATE_OMEGA_Z] * (y[TRAILING_ARM_STATE_OMEGA_Z] * t274 + (t275 * t276 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t279));
+        const gic_real t281 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(0.729032);
+        const gic_real t282 = t275 * (y[TRAILING_ARM_STATE_OMEGA_Z] * t276 + (t275 * R(9.09449) +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t281));
+        const gic_real t283 = t275 * t281 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * t277 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t278);
+        const gic_real t284 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t285 = R(-1.15) + t284;
-        const gic_real t286 = y[15] * R(0.843847) - y[16] * t285 - m[103] * t284;
-        const gic_real t287 = m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016);
+        const gic_real t286 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t285 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t284;
+        const gic_real t287 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t288 = R(0.026000000000000023) + t287;
-        const gic_real t289 = y[17] * t285 - y[15] * t288;
-        const gic_real t290 = m[103] * t287 + (y[16] * t288 - y[17] * R(0.843847));
-        const gic_real t291 = y[14] + (t9 * t286 + (t18 * t289 + t23 * t290));
-        const gic_real t292 = y[13] + (t13 * t286 + (t20 * t289 + t24 * t290));
-        const gic_real t293 = y[12] + (t5 * t286 + (t17 * t289 + t22 * t290));
+        const gic_real t289 = y[TRAILING_ARM_STATE_OMEGA_Z] * t285 - y[TRAILING_ARM_STATE_OMEGA_X] * t288;
+        const gic_real t290 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t287 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t288 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.843847));
+        const gic_real t291 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t286 + (t18 * t289 + t23 * t290));
+        const gic_real t292 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t286 + (t20 * t289 + t24 * t290));
+        const gic_real t293 = y[TRAILING_ARM_STATE_V_X] + (t5 * t286 + (t17 * t289 + t22 * t290));
         const gic_real t294 = R(110.555) * (t291 * t291 + (t292 * t292 + t293 * t293));
-        const gic_real t295 = t280 + (t282 + y[15] * (y[17] * t279 + t283)) + t294;
+        const gic_real t295 = t280 + (t282 + y[TRAILING_ARM_STATE_OMEGA_X] * (y[TRAILING_ARM_STATE_OMEGA_Z] * t279 +
+            t283)) + t294;
         const gic_real t296 = t243 + R(0.5) * (t256 + t260 + t273) + R(0.5) * t295;
-        const gic_real t297 = m[131] * (m[131] * R(6.78001) + m[129] * R(-0.109132)) + m[129] * (m[131] * R(-0.109132) + m[129] * R(5.46131));
-        const gic_real t298 = m[133] + y[16];
-        const gic_real t299 = m[131] * R(-0.075632) + m[129] * R(-0.729032);
-        const gic_real t300 = m[125] * R(6.78001) + m[123] * R(-0.109132);
-        const gic_real t301 = m[125] * R(-0.109132) + m[123] * R(5.46131);
-        const gic_real t302 = m[131] * t300 + m[129] * t301;
-        const gic_real t303 = y[17] * (y[17] * t297 + (t298 * t299 + y[15] * t302));
-        const gic_real t304 = m[125] * R(-0.075632) + m[123] * R(-0.729032);
-        const gic_real t305 = t298 * (y[17] * t299 + (R(9.09449) * t298 + y[15] * t304));
-        const gic_real t306 = t298 * t304 + y[15] * (m[125] * t300 + m[123] * t301);
-        const gic_real t307 = m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016);
+        const gic_real t297 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t298 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t299 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.729032);
+        const gic_real t300 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t301 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t302 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * t300 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t301;
+        const gic_real t303 = y[TRAILING_ARM_STATE_OMEGA_Z] * (y[TRAILING_ARM_STATE_OMEGA_Z] * t297 + (t298 * t299 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t302));
+        const gic_real t304 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.729032);
+        const gic_real t305 = t298 * (y[TRAILING_ARM_STATE_OMEGA_Z] * t299 + (R(9.09449) * t298 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t304));
+        const gic_real t306 = t298 * t304 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * t300 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t301);
+        const gic_real t307 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t308 = R(-1.15) + t307;
-        const gic_real t309 = y[15] * R(-0.843847) - y[16] * t308 - m[133] * t307;
-        const gic_real t310 = m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016);
+        const gic_real t309 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t308 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t307;
+        const gic_real t310 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t311 = R(0.026000000000000023) + t310;
-        const gic_real t312 = y[17] * t308 - y[15] * t311;
-        const gic_real t313 = m[133] * t310 + (y[16] * t311 - y[17] * R(-0.843847));
-        const gic_real t314 = y[14] + (t9 * t309 + (t18 * t312 + t23 * t313));
-        const gic_real t315 = y[13] + (t13 * t309 + (t20 * t312 + t24 * t313));
-        const gic_real t316 = y[12] + (t5 * t309 + (t17 * t312 + t22 * t313));
+        const gic_real t312 = y[TRAILING_ARM_STATE_OMEGA_Z] * t308 - y[TRAILING_ARM_STATE_OMEGA_X] * t311;
+        const gic_real t313 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t310 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t311 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.843847));
+        const gic_real t314 = y[TRAILING_ARM_STATE_V_Z] + (t9 * t309 + (t18 * t312 + t23 * t313));
+        const gic_real t315 = y[TRAILING_ARM_STATE_V_Y] + (t13 * t309 + (t20 * t312 + t24 * t313));
+        const gic_real t316 = y[TRAILING_ARM_STATE_V_X] + (t5 * t309 + (t17 * t312 + t22 * t313));
         const gic_real t317 = R(110.555) * (t314 * t314 + (t315 * t315 + t316 * t316));
-        const gic_real t318 = t303 + (t305 + y[15] * (y[17] * t302 + t306)) + t317;
+        const gic_real t318 = t303 + (t305 + y[TRAILING_ARM_STATE_OMEGA_X] * (y[TRAILING_ARM_STATE_OMEGA_Z] * t302 +
+            t306)) + t317;
         const gic_real t319 = t74 * t75 * R(0.5) + R(0.5) * (t76 * t77) + R(0.5) * (t78 * t79);
-        const gic_real t320 = t319 + R(0.5) * (t80 * t81) + R(0.5) * (x[4] * t110);
-        const gic_real t321 = t320 - (y[2] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) * R(-20468.7612);
-        const gic_real t322 = y[2] + (R(0.05422899999999997) * t9 + (m[1] * t18 + R(1.438648) * t23));
+        const gic_real t320 = t319 + R(0.5) * (t80 * t81) + R(0.5) * (x[TRAILING_ARM_X_RACK] * t110);
+        const gic_real t321 = t320 - (y[TRAILING_ARM_STATE_R_Z] + (t9 * R(0.21300000000000008) + t23 * R(0.056))) *
+            R(-20468.7612);
+        const gic_real t322 = y[TRAILING_ARM_STATE_R_Z] + (R(0.05422899999999997) * t9 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t18 + R(1.438648) * t23));
         const gic_real t323 = R(1.688965) * t23;
-        const gic_real t324 = (y[2] + (t9 * t188 + (t18 * t184 + t323))) * R(-235.09665);
-        const gic_real t325 = R(-235.09665) * (y[2] + (t9 * t206 + (t323 + t18 * t204)));
-        const gic_real t326 = y[2] + (t9 * t236 + (t18 * t232 + t23 * t233));
+        const gic_real t324 = (y[TRAILING_ARM_STATE_R_Z] + (t9 * t188 + (t18 * t184 + t323))) * R(-235.09665);
+        const gic_real t325 = R(-235.09665) * (y[TRAILING_ARM_STATE_R_Z] + (t9 * t206 + (t323 + t18 * t204)));
+        const gic_real t326 = y[TRAILING_ARM_STATE_R_Z] + (t9 * t236 + (t18 * t232 + t23 * t233));
         const gic_real t327 = t321 - t322 * R(-88.99632) - t324 - t325 - t326 * R(-888.3445500000001);
-        const gic_real t328 = y[2] + (t9 * t267 + (t18 * t263 + t23 * t264));
-        const gic_real t329 = y[2] + (t9 * t288 + (t18 * R(0.843847) + t23 * t285));
-        const gic_real t330 = y[2] + (t9 * t311 + (t18 * R(-0.843847) + t23 * t308));
-        const gic_real t331 = t327 - R(-888.3445500000001) * t328 - t329 * R(-1084.54455) - R(-1084.54455) * t330;
-        const gic_real t332 = t87 * t88 + t94 * t95 + t101 * t102 + t108 * t109;
-        const gic_real t333 = t118 * t123 - (t332 + xd[4] * t111) + t130 * t135;
-        const gic_real t334 = y[0];
-        const gic_real t335 = y[1];
-        const gic_real t336 = y[2];
-        const gic_real t337 = y[12];
-        const gic_real t338 = y[13];
-        const gic_real t339 = y[14];
-        const gic_real t340 = t5 * t14 + (t17 * t21 + t22 * t25);
-        const gic_real t341 = t13 * t14 + (t20 * t21 + t24 * t25);
-        const gic_real t342 = t9 * t14 + (t18 * t21 + t23 * t25);
-        const gic_real t343 = e[0];
-        const gic_real t344 = e[1];
-        const gic_real t345 = e[2];
-        const gic_real t346 = e[3];
-        const gic_real t347 = GIC_ATAN2(t18, t9);
-        const gic_real t348 = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
-        const gic_real t349 = GIC_ATAN2(t24, t22);
-        const gic_real t350 = y[15];
-        const gic_real t351 = y[16];
-        const gic_real t352 = y[17];
-        const gic_real t353 = GIC_ATAN2(t18, m[101] * t9 + m[95] * t23);
-        const gic_real t354 = GIC_ASIN(t70);
-        const gic_real t355 = GIC_ATAN2(t18, m[131] * t9 + m[125] * t23);
-        const gic_real t356 = GIC_ASIN(t72);
-        const gic_real t357 = x[0];
-        const gic_real t358 = xd[0];
-        const gic_real t359 = rate[18];
-        const gic_real t360 = x[1];
-        const gic_real t361 = xd[1];
-        const gic_real t362 = rate[19];
-        const gic_real t363 = x[2];
-        const gic_real t364 = xd[2];
-        const gic_real t365 = rate[20];
-        const gic_real t366 = x[3];
-        const gic_real t367 = xd[3];
-        const gic_real t368 = rate[21];
-        const gic_real t369 = x[4];
-        const gic_real t370 = xd[4];
-        const gic_real t371 = rate[22];
-        const gic_real t372 = -t75;
-        const gic_real t373 = -t77;
-        const gic_real t374 = -t79;
-        const gic_real t375 = -t81;
-        const gic_real t376 = -(t110 + t111);
-        const gic_real t377 = road116[0];
-        const gic_real t378 = road128[0];
-        const gic_real t379 = road140[0];
-        const gic_real t380 = road152[0];
-        const gic_real t381 = t296 + R(0.5) * t318;
-        const gic_real t382 = t333 + t142 * t147 + t154 * t159;
-        out[0] = t334;
-        out[1] = t335;
-        out[2] = t336;
-        out[3] = t337;
-        out[4] = t338;
-        out[5] = t339;
-        out[6] = t340;
-        out[7] = t341;
-        out[8] = t342;
-        out[9] = t343;
-        out[10] = t344;
-        out[11] = t345;
-        out[12] = t346;
-        out[13] = t347;
-        out[14] = t348;
-        out[15] = t349;
-        out[16] = t350;
-        out[17] = t351;
-        out[18] = t352;
-        out[19] = t38;
-        out[20] = t39;
-        out[21] = t40;
-        out[22] = t53;
-        out[23] = t54;
-        out[24] = t55;
-        out[25] = t60;
-        out[26] = t61;
-        out[27] = t62;
-        out[28] = t67;
-        out[29] = t68;
-        out[30] = t69;
-        out[31] = t353;
-        out[32] = t354;
-        out[33] = t71;
-        out[34] = t355;
-        out[35] = t356;
-        out[36] = t73;
-        out[37] = t357;
-        out[38] = t358;
-        out[39] = t359;
-        out[40] = t360;
-        out[41] = t361;
-        out[42] = t362;
-        out[43] = t363;
-        out[44] = t364;
-        out[45] = t365;
-        out[46] = t366;
-        out[47] = t367;
-        out[48] = t368;
-        out[49] = t369;
-        out[50] = t370;
-        out[51] = t371;
-        out[52] = t372;
-        out[53] = t373;
-        out[54] = t374;
-        out[55] = t375;
-        out[56] = t88;
-        out[57] = t95;
-        out[58] = t102;
-        out[59] = t109;
-        out[60] = t376;
-        out[61] = t123;
-        out[62] = t120;
-        out[63] = t119;
-        out[64] = t377;
-        out[65] = t135;
-        out[66] = t132;
-        out[67] = t131;
-        out[68] = t378;
-        out[69] = t147;
-        out[70] = t144;
-        out[71] = t143;
-        out[72] = t379;
-        out[73] = t159;
-        out[74] = t156;
-        out[75] = t155;
-        out[76] = t380;
-        out[77] = t381;
-        out[78] = t331;
-        out[79] = t382;
+        const gic_real t328 = y[TRAILING_ARM_STATE_R_Z] + (t9 * t267 + (t18 * t263 + t23 * t264));
+        const gic_real t329 = y[TRAILING_ARM_STATE_R_Z] + (t9 * t288 + (t18 * R(0.843847) + t23 * t285));
+        const gic_real t330 = y[TRAILING_ARM_STATE_R_Z] + (t9 * t311 + (t18 * R(-0.843847) + t23 * t308));
+        const gic_real output_energy_potential = t327 - R(-888.3445500000001) * t328 - t329 * R(-1084.54455) -
+            R(-1084.54455) * t330;
+        const gic_real t332 = t87 * force_shock_f_l + t94 * force_shock_f_r + t101 * force_shock_r_l + t108 *
+            force_shock_r_r;
+        const gic_real t333 = t118 * output_tire_f_l_fz - (t332 + xd[TRAILING_ARM_X_RACK] * t111) + t130 *
+            output_tire_f_r_fz;
+        const gic_real output_chassis_x = y[TRAILING_ARM_STATE_R_X];
+        const gic_real output_chassis_y = y[TRAILING_ARM_STATE_R_Y];
+        const gic_real output_chassis_z = y[TRAILING_ARM_STATE_R_Z];
+        const gic_real output_chassis_velocity_x = y[TRAILING_ARM_STATE_V_X];
+        const gic_real output_chassis_velocity_y = y[TRAILING_ARM_STATE_V_Y];
+        const gic_real output_chassis_velocity_z = y[TRAILING_ARM_STATE_V_Z];
+        const gic_real output_chassis_acceleration_x = t5 * t14 + (t17 * t21 + t22 * t25);
+        const gic_real output_chassis_acceleration_y = t13 * t14 + (t20 * t21 + t24 * t25);
+        const gic_real output_chassis_acceleration_z = t9 * t14 + (t18 * t21 + t23 * t25);
+        const gic_real output_chassis_orientation_e0 = e[0];
+        const gic_real output_chassis_orientation_e1 = e[1];
+        const gic_real output_chassis_orientation_e2 = e[2];
+        const gic_real output_chassis_orientation_e3 = e[3];
+        /* output chassis_attitude */
+        const gic_real output_chassis_attitude_roll = GIC_ATAN2(t18, t9);
+        const gic_real output_chassis_attitude_pitch = GIC_ASIN(GIC_MIN(GIC_MAX(t4 - t2, R(-1.0)), R(1.0)));
+        const gic_real output_chassis_attitude_yaw = GIC_ATAN2(t24, t22);
+        const gic_real output_chassis_angular_velocity_x = y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real output_chassis_angular_velocity_y = y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real output_chassis_angular_velocity_z = y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real output_attitude_r_l_roll = GIC_ATAN2(t18, m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            t9 + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * t23);
+        const gic_real output_attitude_r_l_pitch = GIC_ASIN(t70);
+        const gic_real output_attitude_r_r_roll = GIC_ATAN2(t18, m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            t9 + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * t23);
+        const gic_real output_attitude_r_r_pitch = GIC_ASIN(t72);
+        const gic_real output_bar_f_l_value = x[TRAILING_ARM_X_BAR_F_L];
+        const gic_real output_bar_f_l_rate = xd[TRAILING_ARM_X_BAR_F_L];
+        const gic_real output_bar_f_l_acceleration = rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real output_bar_f_r_value = x[TRAILING_ARM_X_BAR_F_R];
+        const gic_real output_bar_f_r_rate = xd[TRAILING_ARM_X_BAR_F_R];
+        const gic_real output_bar_f_r_acceleration = rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real output_bar_r_l_value = x[TRAILING_ARM_X_BAR_R_L];
+        const gic_real output_bar_r_l_rate = xd[TRAILING_ARM_X_BAR_R_L];
+        const gic_real output_bar_r_l_acceleration = rate[TRAILING_ARM_STATE_BAR_R_L_RATE];
+        const gic_real output_bar_r_r_value = x[TRAILING_ARM_X_BAR_R_R];
+        const gic_real output_bar_r_r_rate = xd[TRAILING_ARM_X_BAR_R_R];
+        const gic_real output_bar_r_r_acceleration = rate[TRAILING_ARM_STATE_BAR_R_R_RATE];
+        const gic_real output_rack_value = x[TRAILING_ARM_X_RACK];
+        const gic_real output_rack_rate = xd[TRAILING_ARM_X_RACK];
+        const gic_real output_rack_acceleration = rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real force_bar_f_l = -t75;
+        const gic_real force_bar_f_r = -t77;
+        const gic_real force_bar_r_l = -t79;
+        const gic_real force_bar_r_r = -t81;
+        const gic_real force_rack = -(t110 + t111);
+        const gic_real output_tire_f_l_height = road116[0];
+        const gic_real output_tire_f_r_height = road128[0];
+        const gic_real output_tire_r_l_height = road140[0];
+        const gic_real output_tire_r_r_height = road152[0];
+        const gic_real output_energy_kinetic = t296 + R(0.5) * t318;
+        const gic_real output_energy_power = t333 + t142 * output_tire_r_l_fz + t154 * output_tire_r_r_fz;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_X] = output_chassis_x;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_Y] = output_chassis_y;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_Z] = output_chassis_z;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_VELOCITY_X] = output_chassis_velocity_x;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_VELOCITY_Y] = output_chassis_velocity_y;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_VELOCITY_Z] = output_chassis_velocity_z;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ACCELERATION_X] = output_chassis_acceleration_x;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ACCELERATION_Y] = output_chassis_acceleration_y;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ACCELERATION_Z] = output_chassis_acceleration_z;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ORIENTATION_E0] = output_chassis_orientation_e0;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ORIENTATION_E1] = output_chassis_orientation_e1;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ORIENTATION_E2] = output_chassis_orientation_e2;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ORIENTATION_E3] = output_chassis_orientation_e3;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ATTITUDE_ROLL] = output_chassis_attitude_roll;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ATTITUDE_PITCH] = output_chassis_attitude_pitch;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ATTITUDE_YAW] = output_chassis_attitude_yaw;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ANGULAR_VELOCITY_X] = output_chassis_angular_velocity_x;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Y] = output_chassis_angular_velocity_y;
+        out[TRAILING_ARM_OUTPUT_CHASSIS_ANGULAR_VELOCITY_Z] = output_chassis_angular_velocity_z;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_L_X] = output_wheel_f_l_x;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_L_Y] = output_wheel_f_l_y;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_L_Z] = output_wheel_f_l_z;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_R_X] = output_wheel_f_r_x;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_R_Y] = output_wheel_f_r_y;
+        out[TRAILING_ARM_OUTPUT_WHEEL_F_R_Z] = output_wheel_f_r_z;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_L_X] = output_wheel_r_l_x;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_L_Y] = output_wheel_r_l_y;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_L_Z] = output_wheel_r_l_z;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_R_X] = output_wheel_r_r_x;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_R_Y] = output_wheel_r_r_y;
+        out[TRAILING_ARM_OUTPUT_WHEEL_R_R_Z] = output_wheel_r_r_z;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_L_ROLL] = output_attitude_r_l_roll;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_L_PITCH] = output_attitude_r_l_pitch;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_L_YAW] = output_attitude_r_l_yaw;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_R_ROLL] = output_attitude_r_r_roll;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_R_PITCH] = output_attitude_r_r_pitch;
+        out[TRAILING_ARM_OUTPUT_ATTITUDE_R_R_YAW] = output_attitude_r_r_yaw;
+        out[TRAILING_ARM_OUTPUT_BAR_F_L_VALUE] = output_bar_f_l_value;
+        out[TRAILING_ARM_OUTPUT_BAR_F_L_RATE] = output_bar_f_l_rate;
+        out[TRAILING_ARM_OUTPUT_BAR_F_L_ACCELERATION] = output_bar_f_l_acceleration;
+        out[TRAILING_ARM_OUTPUT_BAR_F_R_VALUE] = output_bar_f_r_value;
+        out[TRAILING_ARM_OUTPUT_BAR_F_R_RATE] = output_bar_f_r_rate;
+        out[TRAILING_ARM_OUTPUT_BAR_F_R_ACCELERATION] = output_bar_f_r_acceleration;
+        out[TRAILING_ARM_OUTPUT_BAR_R_L_VALUE] = output_bar_r_l_value;
+        out[TRAILING_ARM_OUTPUT_BAR_R_L_RATE] = output_bar_r_l_rate;
+        out[TRAILING_ARM_OUTPUT_BAR_R_L_ACCELERATION] = output_bar_r_l_acceleration;
+        out[TRAILING_ARM_OUTPUT_BAR_R_R_VALUE] = output_bar_r_r_value;
+        out[TRAILING_ARM_OUTPUT_BAR_R_R_RATE] = output_bar_r_r_rate;
+        out[TRAILING_ARM_OUTPUT_BAR_R_R_ACCELERATION] = output_bar_r_r_acceleration;
+        out[TRAILING_ARM_OUTPUT_RACK_VALUE] = output_rack_value;
+        out[TRAILING_ARM_OUTPUT_RACK_RATE] = output_rack_rate;
+        out[TRAILING_ARM_OUTPUT_RACK_ACCELERATION] = output_rack_acceleration;
+        out[TRAILING_ARM_OUTPUT_TORQUE_F_L] = force_bar_f_l;
+        out[TRAILING_ARM_OUTPUT_TORQUE_F_R] = force_bar_f_r;
+        out[TRAILING_ARM_OUTPUT_TORQUE_R_L] = force_bar_r_l;
+        out[TRAILING_ARM_OUTPUT_TORQUE_R_R] = force_bar_r_r;
+        out[TRAILING_ARM_OUTPUT_SHOCK_F_L] = force_shock_f_l;
+        out[TRAILING_ARM_OUTPUT_SHOCK_F_R] = force_shock_f_r;
+        out[TRAILING_ARM_OUTPUT_SHOCK_R_L] = force_shock_r_l;
+        out[TRAILING_ARM_OUTPUT_SHOCK_R_R] = force_shock_r_r;
+        out[TRAILING_ARM_OUTPUT_FORCE_RACK] = force_rack;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_L_FZ] = output_tire_f_l_fz;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_L_DEFLECTION] = output_tire_f_l_deflection;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_L_DEFLECTION_RATE] = output_tire_f_l_deflection_rate;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_L_HEIGHT] = output_tire_f_l_height;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_R_FZ] = output_tire_f_r_fz;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_R_DEFLECTION] = output_tire_f_r_deflection;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_R_DEFLECTION_RATE] = output_tire_f_r_deflection_rate;
+        out[TRAILING_ARM_OUTPUT_TIRE_F_R_HEIGHT] = output_tire_f_r_height;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_L_FZ] = output_tire_r_l_fz;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_L_DEFLECTION] = output_tire_r_l_deflection;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_L_DEFLECTION_RATE] = output_tire_r_l_deflection_rate;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_L_HEIGHT] = output_tire_r_l_height;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_R_FZ] = output_tire_r_r_fz;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_R_DEFLECTION] = output_tire_r_r_deflection;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_R_DEFLECTION_RATE] = output_tire_r_r_deflection_rate;
+        out[TRAILING_ARM_OUTPUT_TIRE_R_R_HEIGHT] = output_tire_r_r_height;
+        out[TRAILING_ARM_OUTPUT_ENERGY_KINETIC] = output_energy_kinetic;
+        out[TRAILING_ARM_OUTPUT_ENERGY_POTENTIAL] = output_energy_potential;
+        out[TRAILING_ARM_OUTPUT_ENERGY_POWER] = output_energy_power;
     }
     return GIC_OK;
 }
@@ -2237,26 +2918,36 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t10 = e[2] * t3;
         const gic_real t11 = e[3] * t1;
         const gic_real t12 = R(1.0) - (t10 + t11);
-        const gic_real t13 = y[0] + (R(0.05422899999999997) * t5 + (m[1] * t9 + R(1.438648) * t12));
+        /* pose of rack */
+        const gic_real t13 = y[TRAILING_ARM_STATE_R_X] + (R(0.05422899999999997) * t5 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t9 + R(1.438648) * t12));
         const gic_real t14 = e[3] * t3;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 - t15;
         const gic_real t17 = e[1] * t6;
         const gic_real t18 = R(1.0) - (t17 + t11);
         const gic_real t19 = t7 + t8;
-        const gic_real t20 = y[1] + (R(0.05422899999999997) * t16 + (m[1] * t18 + R(1.438648) * t19));
+        const gic_real t20 = y[TRAILING_ARM_STATE_R_Y] + (R(0.05422899999999997) * t16 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t18 + R(1.438648) * t19));
         const gic_real t21 = R(1.0) - (t17 + t10);
         const gic_real t22 = t14 + t15;
         const gic_real t23 = t2 - t4;
-        const gic_real t24 = y[2] + (R(0.05422899999999997) * t21 + (m[1] * t22 + R(1.438648) * t23));
-        const gic_real t25 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t26 = R(0.307086) + (m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367));
+        const gic_real t24 = y[TRAILING_ARM_STATE_R_Z] + (R(0.05422899999999997) * t21 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t22 + R(1.438648) * t23));
+        /* pose of lca_f_l */
+        const gic_real t25 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.24689200985615367);
+        const gic_real t26 = R(0.307086) + (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] *
+            R(3.0379110359107786e-06) + m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.24689200985615367));
         const gic_real t27 = R(1.688965) * t12;
         const gic_real t28 = R(1.688965) * t19;
         const gic_real t29 = R(1.688965) * t23;
-        const gic_real t30 = R(1.0) + (m[41] - (R(1.0) + m[37]));
-        const gic_real t31 = R(1.0) + (m[37] - (R(1.0) + m[41]));
-        const gic_real t32 = m[37] + m[41];
+        const gic_real t30 = R(1.0) + (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY]));
+        const gic_real t31 = R(1.0) + (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ]));
+        const gic_real t32 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ];
         const gic_real t33 = R(1.0) + (R(1.0) - t32);
         const gic_real t34 = R(1.0) + (R(1.0) + t32);
         const gic_real t35 = GIC_MAX(t33, t34);
@@ -2264,12 +2955,14 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t37 = t30 - t36;
         const gic_real t38 = t31 - t35;
         const gic_real t39 = t33 - t34;
-        const gic_real t40 = m[40] - m[38];
+        const gic_real t40 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ];
         const gic_real t41 = (t37 > GIC_R(0) ? R(0.0) : (t38 > GIC_R(0) ? R(0.0) : (t39 > GIC_R(0) ? t40 : t34)));
         const gic_real t42 = R(0.5) / GIC_SQRT(GIC_MAX(t30, t36));
         const gic_real t43 = t41 * t42;
         const gic_real t44 = e[0] * t43;
-        const gic_real t45 = m[38] + m[40];
+        const gic_real t45 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY];
         const gic_real t46 = (t39 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t47 = (t37 > GIC_R(0) ? t30 : (t38 > GIC_R(0) ? t45 : t46)) * t42;
         const gic_real t48 = (t37 > GIC_R(0) ? t45 : (t38 > GIC_R(0) ? t31 : t46)) * t42;
@@ -2280,11 +2973,17 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t53 = e[2] * t47 - e[3] * t48 + (e[1] * t43 + e[0] * t50);
         const gic_real t54 = e[3] * t50 - e[1] * t47 + (e[2] * t43 + e[0] * t48);
         const gic_real t55 = e[1] * t48 - e[2] * t50 + (e[3] * t43 + e[0] * t47);
-        const gic_real t56 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t57 = R(-0.307086) + (m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367));
-        const gic_real t58 = R(1.0) + (m[71] - (R(1.0) + m[67]));
-        const gic_real t59 = R(1.0) + (m[67] - (R(1.0) + m[71]));
-        const gic_real t60 = m[67] + m[71];
+        /* pose of lca_f_r */
+        const gic_real t56 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.24689200985615367);
+        const gic_real t57 = R(-0.307086) + (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] *
+            R(3.0379110359107786e-06) + m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.24689200985615367));
+        const gic_real t58 = R(1.0) + (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY]));
+        const gic_real t59 = R(1.0) + (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ]));
+        const gic_real t60 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ];
         const gic_real t61 = R(1.0) + (R(1.0) - t60);
         const gic_real t62 = R(1.0) + (R(1.0) + t60);
         const gic_real t63 = GIC_MAX(t61, t62);
@@ -2292,12 +2991,14 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t65 = t58 - t64;
         const gic_real t66 = t59 - t63;
         const gic_real t67 = t61 - t62;
-        const gic_real t68 = m[70] - m[68];
+        const gic_real t68 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ];
         const gic_real t69 = (t65 > GIC_R(0) ? R(0.0) : (t66 > GIC_R(0) ? R(0.0) : (t67 > GIC_R(0) ? t68 : t62)));
         const gic_real t70 = R(0.5) / GIC_SQRT(GIC_MAX(t58, t64));
         const gic_real t71 = t69 * t70;
         const gic_real t72 = e[0] * t71;
-        const gic_real t73 = m[68] + m[70];
+        const gic_real t73 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY];
         const gic_real t74 = (t67 > GIC_R(0) ? R(0.0) : R(0.0));
         const gic_real t75 = (t65 > GIC_R(0) ? t58 : (t66 > GIC_R(0) ? t73 : t74)) * t70;
         const gic_real t76 = (t65 > GIC_R(0) ? t73 : (t66 > GIC_R(0) ? t59 : t74)) * t70;
@@ -2308,34 +3009,54 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t81 = e[2] * t75 - e[3] * t76 + (e[1] * t71 + e[0] * t78);
         const gic_real t82 = e[3] * t78 - e[1] * t75 + (e[2] * t71 + e[0] * t76);
         const gic_real t83 = e[1] * t76 - e[2] * t78 + (e[3] * t71 + e[0] * t75);
-        const gic_real t84 = m[152] + (m[161] * R(0.09182100000000004) + (m[160] * R(0.08910630000000008) + m[159] * R(-0.004825999999999997)));
-        const gic_real t85 = m[151] + (m[158] * R(0.09182100000000004) + (m[157] * R(0.08910630000000008) + m[156] * R(-0.004825999999999997)));
-        const gic_real t86 = R(1.653405) + (m[155] * R(0.09182100000000004) + (m[154] * R(0.08910630000000008) + m[153] * R(-0.004825999999999997)));
-        const gic_real t87 = y[0] + (t5 * t84 + (t9 * t85 + t12 * t86));
-        const gic_real t88 = y[1] + (t16 * t84 + (t18 * t85 + t19 * t86));
-        const gic_real t89 = y[2] + (t21 * t84 + (t22 * t85 + t23 * t86));
-        const gic_real t90 = R(1.0) + (m[161] - (m[153] + m[157]));
-        const gic_real t91 = R(1.0) + (m[157] - (m[153] + m[161]));
-        const gic_real t92 = m[157] + m[161];
-        const gic_real t93 = R(1.0) + (m[153] - t92);
-        const gic_real t94 = R(1.0) + (m[153] + t92);
+        /* pose of wheel_f_l */
+        const gic_real t84 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t85 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997)));
+        const gic_real t86 = R(1.653405) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] *
+            R(0.09182100000000004) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997)));
+        const gic_real t87 = y[TRAILING_ARM_STATE_R_X] + (t5 * t84 + (t9 * t85 + t12 * t86));
+        const gic_real t88 = y[TRAILING_ARM_STATE_R_Y] + (t16 * t84 + (t18 * t85 + t19 * t86));
+        const gic_real t89 = y[TRAILING_ARM_STATE_R_Z] + (t21 * t84 + (t22 * t85 + t23 * t86));
+        const gic_real t90 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] -
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY]));
+        const gic_real t91 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] -
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ]));
+        const gic_real t92 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ];
+        const gic_real t93 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] - t92);
+        const gic_real t94 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] + t92);
         const gic_real t95 = GIC_MAX(t93, t94);
         const gic_real t96 = GIC_MAX(t91, t95);
         const gic_real t97 = t90 - t96;
-        const gic_real t98 = m[156] - m[154];
+        const gic_real t98 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY];
         const gic_real t99 = t91 - t95;
-        const gic_real t100 = m[155] - m[159];
+        const gic_real t100 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX];
         const gic_real t101 = t93 - t94;
-        const gic_real t102 = m[160] - m[158];
+        const gic_real t102 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ];
         const gic_real t103 = (t97 > GIC_R(0) ? t98 : (t99 > GIC_R(0) ? t100 : (t101 > GIC_R(0) ? t102 : t94)));
         const gic_real t104 = R(0.5) / GIC_SQRT(GIC_MAX(t90, t96));
         const gic_real t105 = t103 * t104;
         const gic_real t106 = e[0] * t105;
-        const gic_real t107 = m[158] + m[160];
-        const gic_real t108 = m[155] + m[159];
+        const gic_real t107 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY];
+        const gic_real t108 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX];
         const gic_real t109 = (t97 > GIC_R(0) ? t90 : (t99 > GIC_R(0) ? t107 : (t101 > GIC_R(0) ? t108 : t98)));
         const gic_real t110 = t109 * t104;
-        const gic_real t111 = m[154] + m[156];
+        const gic_real t111 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX];
         const gic_real t112 = (t97 > GIC_R(0) ? t107 : (t99 > GIC_R(0) ? t91 : (t101 > GIC_R(0) ? t111 : t100)));
         const gic_real t113 = t112 * t104;
         const gic_real t114 = (t97 > GIC_R(0) ? t108 : (t99 > GIC_R(0) ? t111 : (t101 > GIC_R(0) ? t93 : t102)));
@@ -2345,34 +3066,54 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t118 = e[2] * t110 - e[3] * t113 + (e[1] * t105 + e[0] * t115);
         const gic_real t119 = e[3] * t115 - e[1] * t110 + (e[2] * t105 + e[0] * t113);
         const gic_real t120 = e[1] * t113 - e[2] * t115 + (e[3] * t105 + e[0] * t110);
-        const gic_real t121 = m[188] + (m[197] * R(0.09182100000000004) + (m[196] * R(-0.08910630000000008) + m[195] * R(-0.004825999999999997)));
-        const gic_real t122 = m[187] + (m[194] * R(0.09182100000000004) + (m[193] * R(-0.08910630000000008) + m[192] * R(-0.004825999999999997)));
-        const gic_real t123 = R(1.653405) + (m[191] * R(0.09182100000000004) + (m[190] * R(-0.08910630000000008) + m[189] * R(-0.004825999999999997)));
-        const gic_real t124 = y[0] + (t5 * t121 + (t9 * t122 + t12 * t123));
-        const gic_real t125 = y[1] + (t16 * t121 + (t18 * t122 + t19 * t123));
-        const gic_real t126 = y[2] + (t21 * t121 + (t22 * t122 + t23 * t123));
-        const gic_real t127 = R(1.0) + (m[197] - (m[189] + m[193]));
-        const gic_real t128 = R(1.0) + (m[193] - (m[189] + m[197]));
-        const gic_real t129 = m[193] + m[197];
-        const gic_real t130 = R(1.0) + (m[189] - t129);
-        const gic_real t131 = R(1.0) + (m[189] + t129);
+        /* pose of wheel_f_r */
+        const gic_real t121 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997)));
+        const gic_real t122 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997)));
+        const gic_real t123 = R(1.653405) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] *
+            R(0.09182100000000004) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.08910630000000008) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997)));
+        const gic_real t124 = y[TRAILING_ARM_STATE_R_X] + (t5 * t121 + (t9 * t122 + t12 * t123));
+        const gic_real t125 = y[TRAILING_ARM_STATE_R_Y] + (t16 * t121 + (t18 * t122 + t19 * t123));
+        const gic_real t126 = y[TRAILING_ARM_STATE_R_Z] + (t21 * t121 + (t22 * t122 + t23 * t123));
+        const gic_real t127 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] -
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY]));
+        const gic_real t128 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] -
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ]));
+        const gic_real t129 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ];
+        const gic_real t130 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] - t129);
+        const gic_real t131 = R(1.0) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] + t129);
         const gic_real t132 = GIC_MAX(t130, t131);
         const gic_real t133 = GIC_MAX(t128, t132);
         const gic_real t134 = t127 - t133;
-        const gic_real t135 = m[192] - m[190];
+        const gic_real t135 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY];
         const gic_real t136 = t128 - t132;
-        const gic_real t137 = m[191] - m[195];
+        const gic_real t137 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX];
         const gic_real t138 = t130 - t131;
-        const gic_real t139 = m[196] - m[194];
+        const gic_real t139 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ];
         const gic_real t140 = (t134 > GIC_R(0) ? t135 : (t136 > GIC_R(0) ? t137 : (t138 > GIC_R(0) ? t139 : t131)));
         const gic_real t141 = R(0.5) / GIC_SQRT(GIC_MAX(t127, t133));
         const gic_real t142 = t140 * t141;
         const gic_real t143 = e[0] * t142;
-        const gic_real t144 = m[194] + m[196];
-        const gic_real t145 = m[191] + m[195];
+        const gic_real t144 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY];
+        const gic_real t145 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX];
         const gic_real t146 = (t134 > GIC_R(0) ? t127 : (t136 > GIC_R(0) ? t144 : (t138 > GIC_R(0) ? t145 : t135)));
         const gic_real t147 = t146 * t141;
-        const gic_real t148 = m[190] + m[192];
+        const gic_real t148 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX];
         const gic_real t149 = (t134 > GIC_R(0) ? t144 : (t136 > GIC_R(0) ? t128 : (t138 > GIC_R(0) ? t148 : t137)));
         const gic_real t150 = t149 * t141;
         const gic_real t151 = (t134 > GIC_R(0) ? t145 : (t136 > GIC_R(0) ? t148 : (t138 > GIC_R(0) ? t130 : t139)));
@@ -2382,27 +3123,34 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t155 = e[2] * t147 - e[3] * t150 + (e[1] * t142 + e[0] * t152);
         const gic_real t156 = e[3] * t152 - e[1] * t147 + (e[2] * t142 + e[0] * t150);
         const gic_real t157 = e[1] * t150 - e[2] * t152 + (e[3] * t142 + e[0] * t147);
-        const gic_real t158 = R(0.026000000000000023) + (m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016));
-        const gic_real t159 = R(-1.15) + (m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016));
-        const gic_real t160 = y[0] + (t5 * t158 + (t9 * R(0.843847) + t12 * t159));
-        const gic_real t161 = y[1] + (t16 * t158 + (t18 * R(0.843847) + t19 * t159));
-        const gic_real t162 = y[2] + (t21 * t158 + (t22 * R(0.843847) + t23 * t159));
-        const gic_real t163 = R(1.0) + (m[101] - (R(1.0) + m[93]));
-        const gic_real t164 = R(1.0) + (R(1.0) - (m[93] + m[101]));
-        const gic_real t165 = R(1.0) + m[101];
-        const gic_real t166 = R(1.0) + (m[93] - t165);
-        const gic_real t167 = R(1.0) + (m[93] + t165);
+        /* pose of arm_r_l */
+        const gic_real t158 = R(0.026000000000000023) + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            R(-0.04753299999999999) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.45756300000000016));
+        const gic_real t159 = R(-1.15) + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.45756300000000016));
+        const gic_real t160 = y[TRAILING_ARM_STATE_R_X] + (t5 * t158 + (t9 * R(0.843847) + t12 * t159));
+        const gic_real t161 = y[TRAILING_ARM_STATE_R_Y] + (t16 * t158 + (t18 * R(0.843847) + t19 * t159));
+        const gic_real t162 = y[TRAILING_ARM_STATE_R_Z] + (t21 * t158 + (t22 * R(0.843847) + t23 * t159));
+        const gic_real t163 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX]));
+        const gic_real t164 = R(1.0) + (R(1.0) - (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ]));
+        const gic_real t165 = R(1.0) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ];
+        const gic_real t166 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] - t165);
+        const gic_real t167 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] + t165);
         const gic_real t168 = GIC_MAX(t166, t167);
         const gic_real t169 = GIC_MAX(t164, t168);
         const gic_real t170 = t163 - t169;
         const gic_real t171 = t164 - t168;
-        const gic_real t172 = m[95] - m[99];
+        const gic_real t172 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX];
         const gic_real t173 = t166 - t167;
         const gic_real t174 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? t172 : (t173 > GIC_R(0) ? R(0.0) : t167)));
         const gic_real t175 = R(0.5) / GIC_SQRT(GIC_MAX(t163, t169));
         const gic_real t176 = t174 * t175;
         const gic_real t177 = e[0] * t176;
-        const gic_real t178 = m[95] + m[99];
+        const gic_real t178 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX];
         const gic_real t179 = (t170 > GIC_R(0) ? t163 : (t171 > GIC_R(0) ? R(0.0) : (t173 > GIC_R(0) ? t178 : R(0.0))));
         const gic_real t180 = t179 * t175;
         const gic_real t181 = (t170 > GIC_R(0) ? R(0.0) : (t171 > GIC_R(0) ? t164 : (t173 > GIC_R(0) ? R(0.0) : t172)));
@@ -2414,27 +3162,34 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t187 = e[2] * t180 - e[3] * t182 + (e[1] * t176 + e[0] * t184);
         const gic_real t188 = e[3] * t184 - e[1] * t180 + (e[2] * t176 + e[0] * t182);
         const gic_real t189 = e[1] * t182 - e[2] * t184 + (e[3] * t176 + e[0] * t180);
-        const gic_real t190 = R(0.026000000000000023) + (m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016));
-        const gic_real t191 = R(-1.15) + (m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016));
-        const gic_real t192 = y[0] + (t5 * t190 + (t9 * R(-0.843847) + t12 * t191));
-        const gic_real t193 = y[1] + (t16 * t190 + (t18 * R(-0.843847) + t19 * t191));
-        const gic_real t194 = y[2] + (t21 * t190 + (t22 * R(-0.843847) + t23 * t191));
-        const gic_real t195 = R(1.0) + (m[131] - (R(1.0) + m[123]));
-        const gic_real t196 = R(1.0) + (R(1.0) - (m[123] + m[131]));
-        const gic_real t197 = R(1.0) + m[131];
-        const gic_real t198 = R(1.0) + (m[123] - t197);
-        const gic_real t199 = R(1.0) + (m[123] + t197);
+        /* pose of arm_r_r */
+        const gic_real t190 = R(0.026000000000000023) + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            R(-0.04753299999999999) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.45756300000000016));
+        const gic_real t191 = R(-1.15) + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.45756300000000016));
+        const gic_real t192 = y[TRAILING_ARM_STATE_R_X] + (t5 * t190 + (t9 * R(-0.843847) + t12 * t191));
+        const gic_real t193 = y[TRAILING_ARM_STATE_R_Y] + (t16 * t190 + (t18 * R(-0.843847) + t19 * t191));
+        const gic_real t194 = y[TRAILING_ARM_STATE_R_Z] + (t21 * t190 + (t22 * R(-0.843847) + t23 * t191));
+        const gic_real t195 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] - (R(1.0) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX]));
+        const gic_real t196 = R(1.0) + (R(1.0) - (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ]));
+        const gic_real t197 = R(1.0) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ];
+        const gic_real t198 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] - t197);
+        const gic_real t199 = R(1.0) + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] + t197);
         const gic_real t200 = GIC_MAX(t198, t199);
         const gic_real t201 = GIC_MAX(t196, t200);
         const gic_real t202 = t195 - t201;
         const gic_real t203 = t196 - t200;
-        const gic_real t204 = m[125] - m[129];
+        const gic_real t204 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX];
         const gic_real t205 = t198 - t199;
         const gic_real t206 = (t202 > GIC_R(0) ? R(0.0) : (t203 > GIC_R(0) ? t204 : (t205 > GIC_R(0) ? R(0.0) : t199)));
         const gic_real t207 = R(0.5) / GIC_SQRT(GIC_MAX(t195, t201));
         const gic_real t208 = t206 * t207;
         const gic_real t209 = e[0] * t208;
-        const gic_real t210 = m[125] + m[129];
+        const gic_real t210 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX];
         const gic_real t211 = (t202 > GIC_R(0) ? t195 : (t203 > GIC_R(0) ? R(0.0) : (t205 > GIC_R(0) ? t210 : R(0.0))));
         const gic_real t212 = t211 * t207;
         const gic_real t213 = (t202 > GIC_R(0) ? R(0.0) : (t203 > GIC_R(0) ? t196 : (t205 > GIC_R(0) ? R(0.0) : t204)));
@@ -2446,9 +3201,9 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t219 = e[2] * t212 - e[3] * t214 + (e[1] * t208 + e[0] * t216);
         const gic_real t220 = e[3] * t216 - e[1] * t212 + (e[2] * t208 + e[0] * t214);
         const gic_real t221 = e[1] * t214 - e[2] * t216 + (e[3] * t208 + e[0] * t212);
-        const gic_real t222 = y[0];
-        const gic_real t223 = y[1];
-        const gic_real t224 = y[2];
+        const gic_real t222 = y[TRAILING_ARM_STATE_R_X];
+        const gic_real t223 = y[TRAILING_ARM_STATE_R_Y];
+        const gic_real t224 = y[TRAILING_ARM_STATE_R_Z];
         const gic_real t225 = e[0];
         const gic_real t226 = e[1];
         const gic_real t227 = e[2];
@@ -2487,69 +3242,69 @@ static void trailing_arm_place(const trailing_arm *self, const gic_real *y, cons
         const gic_real t260 = (t218 > GIC_R(0) ? t219 : -t219);
         const gic_real t261 = (t218 > GIC_R(0) ? t220 : -t220);
         const gic_real t262 = (t218 > GIC_R(0) ? t221 : -t221);
-        pose[0] = t222;
-        pose[1] = t223;
-        pose[2] = t224;
-        pose[3] = t225;
-        pose[4] = t226;
-        pose[5] = t227;
-        pose[6] = t228;
-        pose[7] = t13;
-        pose[8] = t20;
-        pose[9] = t24;
-        pose[10] = t229;
-        pose[11] = t230;
-        pose[12] = t231;
-        pose[13] = t232;
-        pose[14] = t233;
-        pose[15] = t234;
-        pose[16] = t235;
-        pose[17] = t236;
-        pose[18] = t237;
-        pose[19] = t238;
-        pose[20] = t239;
-        pose[21] = t240;
-        pose[22] = t241;
-        pose[23] = t242;
-        pose[24] = t243;
-        pose[25] = t244;
-        pose[26] = t245;
-        pose[27] = t246;
-        pose[28] = t87;
-        pose[29] = t88;
-        pose[30] = t89;
-        pose[31] = t247;
-        pose[32] = t248;
-        pose[33] = t249;
-        pose[34] = t250;
-        pose[35] = t124;
-        pose[36] = t125;
-        pose[37] = t126;
-        pose[38] = t251;
-        pose[39] = t252;
-        pose[40] = t253;
-        pose[41] = t254;
-        pose[42] = t160;
-        pose[43] = t161;
-        pose[44] = t162;
-        pose[45] = t255;
-        pose[46] = t256;
-        pose[47] = t257;
-        pose[48] = t258;
-        pose[49] = t192;
-        pose[50] = t193;
-        pose[51] = t194;
-        pose[52] = t259;
-        pose[53] = t260;
-        pose[54] = t261;
-        pose[55] = t262;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_X] = t222;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_Y] = t223;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_Z] = t224;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_P0] = t225;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_P1] = t226;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_P2] = t227;
+        pose[TRAILING_ARM_POSE_CHASSIS + TRAILING_ARM_Q_P3] = t228;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_X] = t13;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_Y] = t20;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_Z] = t24;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_P0] = t229;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_P1] = t230;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_P2] = t231;
+        pose[TRAILING_ARM_POSE_RACK + TRAILING_ARM_Q_P3] = t232;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_X] = t233;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_Y] = t234;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_Z] = t235;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_P0] = t236;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_P1] = t237;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_P2] = t238;
+        pose[TRAILING_ARM_POSE_LCA_F_L + TRAILING_ARM_Q_P3] = t239;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_X] = t240;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_Y] = t241;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_Z] = t242;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_P0] = t243;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_P1] = t244;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_P2] = t245;
+        pose[TRAILING_ARM_POSE_LCA_F_R + TRAILING_ARM_Q_P3] = t246;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_X] = t87;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_Y] = t88;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_Z] = t89;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_P0] = t247;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_P1] = t248;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_P2] = t249;
+        pose[TRAILING_ARM_POSE_WHEEL_F_L + TRAILING_ARM_Q_P3] = t250;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_X] = t124;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_Y] = t125;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_Z] = t126;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_P0] = t251;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_P1] = t252;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_P2] = t253;
+        pose[TRAILING_ARM_POSE_WHEEL_F_R + TRAILING_ARM_Q_P3] = t254;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_X] = t160;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_Y] = t161;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_Z] = t162;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_P0] = t255;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_P1] = t256;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_P2] = t257;
+        pose[TRAILING_ARM_POSE_ARM_R_L + TRAILING_ARM_Q_P3] = t258;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_X] = t192;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_Y] = t193;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_Z] = t194;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_P0] = t259;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_P1] = t260;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_P2] = t261;
+        pose[TRAILING_ARM_POSE_ARM_R_R + TRAILING_ARM_Q_P3] = t262;
     }
 }
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a subset
- * whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
+ * subset whose are beyond what is promised, -1: there is none. */
 static GIC_COLD GIC_APART int trailing_arm_residual(const trailing_arm *self, gic_real largest[2])
 {
     trailing_arm_links links;
@@ -2558,83 +3313,89 @@ static GIC_COLD GIC_APART int trailing_arm_residual(const trailing_arm *self, gi
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + 0, one);
+    links.x[0] = self->x[TRAILING_ARM_X_RACK];
+    links.rate[0] = self->xd[TRAILING_ARM_X_RACK];
+    trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + TRAILING_ARM_MOTION_RACK, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.4396697025168654)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 1;
+        bad = TRAILING_ARM_SUBSET_RACK;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[0];
-    links.rate[0] = self->xd[0];
-    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[0], &links, self->motion + 30, one);
+    links.x[0] = self->x[TRAILING_ARM_X_BAR_F_L];
+    links.rate[0] = self->xd[TRAILING_ARM_X_BAR_F_L];
+    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[0], &links, self->motion + TRAILING_ARM_MOTION_LCA_F_L, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7166550563875669)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 2;
+        bad = TRAILING_ARM_SUBSET_LCA_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[1];
-    links.rate[0] = self->xd[1];
-    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[1], &links, self->motion + 60, one);
+    links.x[0] = self->x[TRAILING_ARM_X_BAR_F_R];
+    links.rate[0] = self->xd[TRAILING_ARM_X_BAR_F_R];
+    trailing_arm_residual_lca_f_l(trailing_arm_k_lca_f_l[1], &links, self->motion + TRAILING_ARM_MOTION_LCA_F_R, one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.7166550563875669)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 3;
+        bad = TRAILING_ARM_SUBSET_LCA_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[2];
-    links.rate[0] = self->xd[2];
-    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[0], &links, self->motion + 90, one);
+    links.x[0] = self->x[TRAILING_ARM_X_BAR_R_L];
+    links.rate[0] = self->xd[TRAILING_ARM_X_BAR_R_L];
+    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[0], &links, self->motion + TRAILING_ARM_MOTION_ARM_R_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.3212403263600456)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 4;
+        bad = TRAILING_ARM_SUBSET_ARM_R_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.x[0] = self->x[3];
-    links.rate[0] = self->xd[3];
-    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[1], &links, self->motion + 120, one);
+    links.x[0] = self->x[TRAILING_ARM_X_BAR_R_R];
+    links.rate[0] = self->xd[TRAILING_ARM_X_BAR_R_R];
+    trailing_arm_residual_lca_f_l_2(trailing_arm_k_lca_f_l_2[1], &links, self->motion + TRAILING_ARM_MOTION_ARM_R_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(1.3212403263600456)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 5;
+        bad = TRAILING_ARM_SUBSET_ARM_R_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 30;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[0];
-    links.rate[1] = self->xd[0];
-    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[0], &links, self->motion + 150, one);
+    links.known[0] = self->motion + TRAILING_ARM_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + TRAILING_ARM_MOTION_LCA_F_L; /* lca_f_l */
+    links.x[0] = self->x[TRAILING_ARM_X_RACK];
+    links.rate[0] = self->xd[TRAILING_ARM_X_RACK];
+    links.x[1] = self->x[TRAILING_ARM_X_BAR_F_L];
+    links.rate[1] = self->xd[TRAILING_ARM_X_BAR_F_L];
+    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[0], &links, self->motion + TRAILING_ARM_MOTION_WHEEL_F_L,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 6;
+        bad = TRAILING_ARM_SUBSET_WHEEL_F_L;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
-    links.known[0] = self->motion + 0;
-    links.known[1] = self->motion + 60;
-    links.x[0] = self->x[4];
-    links.rate[0] = self->xd[4];
-    links.x[1] = self->x[1];
-    links.rate[1] = self->xd[1];
-    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[1], &links, self->motion + 186, one);
+    links.known[0] = self->motion + TRAILING_ARM_MOTION_RACK; /* rack */
+    links.known[1] = self->motion + TRAILING_ARM_MOTION_LCA_F_R; /* lca_f_r */
+    links.x[0] = self->x[TRAILING_ARM_X_RACK];
+    links.rate[0] = self->xd[TRAILING_ARM_X_RACK];
+    links.x[1] = self->x[TRAILING_ARM_X_BAR_F_R];
+    links.rate[1] = self->xd[TRAILING_ARM_X_BAR_F_R];
+    trailing_arm_residual_wheel_f_l(trailing_arm_k_wheel_f_l[1], &links, self->motion + TRAILING_ARM_MOTION_WHEEL_F_R,
+        one);
     if (bad < 0 && !(one[0] <= GIC_POSE_RESIDUAL(R(5.372278876638515)) && one[1] <= GIC_MOTION_RESIDUAL))
-        bad = 7;
+        bad = TRAILING_ARM_SUBSET_WHEEL_F_R;
     largest[0] = GIC_MAX(largest[0], one[0]);
     largest[1] = GIC_MAX(largest[1], one[1]);
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than trailing_arm_dynamics. size: magnitudes of
- * the terms that it is the sum of. */
-static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate, gic_real *tau, gic_real *size)
+/* tau: residual of the equations of motion at `rate`, body by body: another way than trailing_arm_dynamics. size:
+ * magnitudes of the terms that it is the sum of. */
+static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau, (void)size;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)tau,
+        (void)size;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
+        /* inertia of chassis */
+        const gic_real t1 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(2955.66);
         const gic_real t3 = e[2] + e[2];
         const gic_real t4 = e[3] * t3;
         const gic_real t5 = e[1] + e[1];
         const gic_real t6 = e[0] * t5;
         const gic_real t7 = t4 + t6;
-        const gic_real t8 = rate[14] - R(-9.81);
+        const gic_real t8 = rate[TRAILING_ARM_STATE_V_Z] - R(-9.81);
         const gic_real t9 = e[1] * t5;
         const gic_real t10 = e[3] + e[3];
         const gic_real t11 = e[3] * t10;
@@ -2642,344 +3403,573 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t13 = e[2] * t5;
         const gic_real t14 = e[0] * t10;
         const gic_real t15 = t13 - t14;
-        const gic_real t16 = t7 * t8 + (t12 * rate[13] + t15 * rate[12]);
-        const gic_real t17 = y[16] * R(0.056);
-        const gic_real t18 = y[16] * R(0.21300000000000008);
-        const gic_real t19 = y[15] * t17 + y[17] * t18 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
+        const gic_real t16 = t7 * t8 + (t12 * rate[TRAILING_ARM_STATE_V_Y] + t15 * rate[TRAILING_ARM_STATE_V_X]);
+        const gic_real t17 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t18 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t19 = y[TRAILING_ARM_STATE_OMEGA_X] * t17 + y[TRAILING_ARM_STATE_OMEGA_Z] * t18 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - rate[TRAILING_ARM_STATE_OMEGA_X] * R(0.21300000000000008));
         const gic_real t20 = t16 + t19;
-        const gic_real t21 = y[16] * t1 - y[17] * t2 + rate[15] * R(1078.52) - t20 * R(444.4287600000002);
+        const gic_real t21 = y[TRAILING_ARM_STATE_OMEGA_Y] * t1 - y[TRAILING_ARM_STATE_OMEGA_Z] * t2 +
+            rate[TRAILING_ARM_STATE_OMEGA_X] * R(1078.52) - t20 * R(444.4287600000002);
         const gic_real t22 = e[2] * t3;
         const gic_real t23 = R(1.0) - (t9 + t22);
         const gic_real t24 = t4 - t6;
         const gic_real t25 = e[1] * t10;
         const gic_real t26 = e[0] * t3;
         const gic_real t27 = t25 + t26;
-        const gic_real t28 = t23 * t8 + (t24 * rate[13] + t27 * rate[12]);
-        const gic_real t29 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t30 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t31 = y[15] * t29 - y[16] * t30 + (m[1] * rate[15] - R(1.438648) * rate[16]);
+        const gic_real t28 = t23 * t8 + (t24 * rate[TRAILING_ARM_STATE_V_Y] + t27 * rate[TRAILING_ARM_STATE_V_X]);
+        /* inertia of rack */
+        const gic_real t29 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] + (R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_X]));
+        const gic_real t30 = R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t31 = y[TRAILING_ARM_STATE_OMEGA_X] * t29 - y[TRAILING_ARM_STATE_OMEGA_Y] * t30 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * rate[TRAILING_ARM_STATE_OMEGA_X] - R(1.438648) *
+            rate[TRAILING_ARM_STATE_OMEGA_Y]);
         const gic_real t32 = t28 + t31;
         const gic_real t33 = t32 * R(9.072);
-        const gic_real t34 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t35 = y[17] * t30 - y[15] * t34 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t36 = rate[22] + (t16 + t35);
-        const gic_real t37 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t38 = m[38] * R(0.8938);
-        const gic_real t39 = m[37] * R(0.4469);
-        const gic_real t40 = m[41] * t38 + m[40] * t39;
-        const gic_real t41 = y[17] * t37 + y[16] * t40;
-        const gic_real t42 = m[38] * t38 + m[37] * t39;
-        const gic_real t43 = y[17] * t40 + y[16] * t42;
-        const gic_real t44 = y[16] * t41 - y[17] * t43 + R(0.4469) * (rate[15] + rate[18]);
-        const gic_real t45 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t46 = R(1.688965) * y[17];
-        const gic_real t47 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t48 = m[42] * t47;
-        const gic_real t49 = t46 - y[15] * t47 - t48 - t48;
+        const gic_real t34 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_X] -
+            R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t35 = y[TRAILING_ARM_STATE_OMEGA_Z] * t30 - y[TRAILING_ARM_STATE_OMEGA_X] * t34 + (R(1.438648) *
+            rate[TRAILING_ARM_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t36 = rate[TRAILING_ARM_STATE_RACK_RATE] + (t16 + t35);
+        /* inertia of lca_f_l */
+        const gic_real t37 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] *
+            R(0.4469));
+        const gic_real t38 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t39 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t40 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * t38 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * t39;
+        const gic_real t41 = y[TRAILING_ARM_STATE_OMEGA_Z] * t37 + y[TRAILING_ARM_STATE_OMEGA_Y] * t40;
+        const gic_real t42 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * t38 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * t39;
+        const gic_real t43 = y[TRAILING_ARM_STATE_OMEGA_Z] * t40 + y[TRAILING_ARM_STATE_OMEGA_Y] * t42;
+        const gic_real t44 = y[TRAILING_ARM_STATE_OMEGA_Y] * t41 - y[TRAILING_ARM_STATE_OMEGA_Z] * t43 + R(0.4469) *
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + rate[TRAILING_ARM_STATE_BAR_F_L_RATE]);
+        const gic_real t45 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.24689200985615367);
+        const gic_real t46 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t47 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.24689200985615367);
+        const gic_real t48 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t47;
+        const gic_real t49 = t46 - y[TRAILING_ARM_STATE_OMEGA_X] * t47 - t48 - t48;
         const gic_real t50 = R(0.307086) + t45;
-        const gic_real t51 = y[16] * t47 - y[17] * t50;
-        const gic_real t52 = R(1.688965) * rate[16];
-        const gic_real t53 = y[15] * t49 - y[16] * t51 + (rate[15] * t50 - t52);
-        const gic_real t54 = m[42] * t48;
-        const gic_real t55 = t28 + t53 - t54 + rate[18] * t45;
+        const gic_real t51 = y[TRAILING_ARM_STATE_OMEGA_Y] * t47 - y[TRAILING_ARM_STATE_OMEGA_Z] * t50;
+        const gic_real t52 = R(1.688965) * rate[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t53 = y[TRAILING_ARM_STATE_OMEGA_X] * t49 - y[TRAILING_ARM_STATE_OMEGA_Y] * t51 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t50 - t52);
+        const gic_real t54 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t48;
+        const gic_real t55 = t28 + t53 - t54 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] * t45;
         const gic_real t56 = t55 * R(23.965);
-        const gic_real t57 = m[42] * t45;
-        const gic_real t58 = R(1.688965) * y[16];
-        const gic_real t59 = t57 + (t57 + (y[15] * t50 - t58));
-        const gic_real t60 = R(1.688965) * rate[17];
-        const gic_real t61 = y[17] * t51 - y[15] * t59 + (t60 - rate[15] * t47);
-        const gic_real t62 = m[42] * t57;
-        const gic_real t63 = t16 + t61 - t62 - rate[18] * t47;
+        const gic_real t57 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t45;
+        const gic_real t58 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t59 = t57 + (t57 + (y[TRAILING_ARM_STATE_OMEGA_X] * t50 - t58));
+        const gic_real t60 = R(1.688965) * rate[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t61 = y[TRAILING_ARM_STATE_OMEGA_Z] * t51 - y[TRAILING_ARM_STATE_OMEGA_X] * t59 + (t60 -
+            rate[TRAILING_ARM_STATE_OMEGA_X] * t47);
+        const gic_real t62 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t57;
+        const gic_real t63 = t16 + t61 - t62 - rate[TRAILING_ARM_STATE_BAR_F_L_RATE] * t47;
         const gic_real t64 = t63 * R(23.965);
         const gic_real t65 = t44 + (t45 * t56 - t47 * t64);
-        const gic_real t66 = t21 + (rate[15] + (m[1] * t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
-        const gic_real t67 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t68 = m[68] * R(0.8938);
-        const gic_real t69 = m[67] * R(0.4469);
-        const gic_real t70 = m[71] * t68 + m[70] * t69;
-        const gic_real t71 = y[17] * t67 + y[16] * t70;
-        const gic_real t72 = m[68] * t68 + m[67] * t69;
-        const gic_real t73 = y[17] * t70 + y[16] * t72;
-        const gic_real t74 = y[16] * t71 - y[17] * t73 + R(0.4469) * (rate[15] - rate[19]);
-        const gic_real t75 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t76 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t77 = m[72] * t76;
-        const gic_real t78 = t46 - y[15] * t76 - t77 - t77;
+        const gic_real t66 = t21 + (rate[TRAILING_ARM_STATE_OMEGA_X] + (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] *
+            t33 - t36 * R(0.4919654879999997))) + (t65 + t55 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t67 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] *
+            R(0.4469));
+        const gic_real t68 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t69 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t70 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * t68 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * t69;
+        const gic_real t71 = y[TRAILING_ARM_STATE_OMEGA_Z] * t67 + y[TRAILING_ARM_STATE_OMEGA_Y] * t70;
+        const gic_real t72 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * t68 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * t69;
+        const gic_real t73 = y[TRAILING_ARM_STATE_OMEGA_Z] * t70 + y[TRAILING_ARM_STATE_OMEGA_Y] * t72;
+        const gic_real t74 = y[TRAILING_ARM_STATE_OMEGA_Y] * t71 - y[TRAILING_ARM_STATE_OMEGA_Z] * t73 + R(0.4469) *
+            (rate[TRAILING_ARM_STATE_OMEGA_X] - rate[TRAILING_ARM_STATE_BAR_F_R_RATE]);
+        const gic_real t75 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.24689200985615367);
+        const gic_real t76 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.24689200985615367);
+        const gic_real t77 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t76;
+        const gic_real t78 = t46 - y[TRAILING_ARM_STATE_OMEGA_X] * t76 - t77 - t77;
         const gic_real t79 = R(-0.307086) + t75;
-        const gic_real t80 = y[16] * t76 - y[17] * t79;
-        const gic_real t81 = y[15] * t78 - y[16] * t80 + (rate[15] * t79 - t52);
-        const gic_real t82 = m[72] * t77;
-        const gic_real t83 = t28 + t81 - t82 - rate[19] * t75;
+        const gic_real t80 = y[TRAILING_ARM_STATE_OMEGA_Y] * t76 - y[TRAILING_ARM_STATE_OMEGA_Z] * t79;
+        const gic_real t81 = y[TRAILING_ARM_STATE_OMEGA_X] * t78 - y[TRAILING_ARM_STATE_OMEGA_Y] * t80 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t79 - t52);
+        const gic_real t82 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t77;
+        const gic_real t83 = t28 + t81 - t82 - rate[TRAILING_ARM_STATE_BAR_F_R_RATE] * t75;
         const gic_real t84 = R(23.965) * t83;
-        const gic_real t85 = m[72] * t75;
-        const gic_real t86 = t85 + (t85 + (y[15] * t79 - t58));
-        const gic_real t87 = y[17] * t80 - y[15] * t86 + (t60 - rate[15] * t76);
-        const gic_real t88 = m[72] * t85;
-        const gic_real t89 = t16 + t87 - t88 + rate[19] * t76;
+        const gic_real t85 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t75;
+        const gic_real t86 = t85 + (t85 + (y[TRAILING_ARM_STATE_OMEGA_X] * t79 - t58));
+        const gic_real t87 = y[TRAILING_ARM_STATE_OMEGA_Z] * t80 - y[TRAILING_ARM_STATE_OMEGA_X] * t86 + (t60 -
+            rate[TRAILING_ARM_STATE_OMEGA_X] * t76);
+        const gic_real t88 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t85;
+        const gic_real t89 = t16 + t87 - t88 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] * t76;
         const gic_real t90 = R(23.965) * t89;
         const gic_real t91 = t74 + (t75 * t84 - t76 * t90);
-        const gic_real t92 = m[163] + y[16];
-        const gic_real t93 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t94 = m[164] + y[17];
-        const gic_real t95 = m[158] * R(4.7728205);
-        const gic_real t96 = m[157] * R(7.58122);
-        const gic_real t97 = m[156] * R(4.8947505);
-        const gic_real t98 = m[161] * t95 + (m[160] * t96 + m[159] * t97);
-        const gic_real t99 = m[155] * R(4.7728205);
-        const gic_real t100 = m[154] * R(7.58122);
-        const gic_real t101 = m[153] * R(4.8947505);
-        const gic_real t102 = m[161] * t99 + (m[160] * t100 + m[159] * t101);
-        const gic_real t103 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t92 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t93 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t94 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t95 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t96 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t97 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t98 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t95 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t96 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t97);
+        const gic_real t99 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t100 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t101 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t102 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t99 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t100 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t101);
+        const gic_real t103 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t104 = t93 * t94 + (t98 * t92 + t102 * t103);
-        const gic_real t105 = m[158] * t95 + (m[157] * t96 + m[156] * t97);
-        const gic_real t106 = m[158] * t99 + (m[157] * t100 + m[156] * t101);
+        const gic_real t105 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t95 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t96 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t97);
+        const gic_real t106 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t99 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t100 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t101);
         const gic_real t107 = t98 * t94 + (t105 * t92 + t106 * t103);
-        const gic_real t108 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t109 = t108 + m[182] * rate[18];
-        const gic_real t110 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t111 = t110 + m[181] * rate[18];
-        const gic_real t112 = m[155] * t99 + (m[154] * t100 + m[153] * t101);
-        const gic_real t113 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t114 = t113 + m[180] * rate[18];
+        const gic_real t108 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t109 = t108 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t110 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t111 = t110 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t112 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * t99 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * t100 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * t101);
+        const gic_real t113 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t114 = t113 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
         const gic_real t115 = t92 * t104 - t94 * t107 + (t102 * t109 + (t106 * t111 + t112 * t114));
-        const gic_real t116 = m[158] * R(0.09182100000000004);
-        const gic_real t117 = m[156] * R(-0.004825999999999997);
-        const gic_real t118 = t116 + (t117 + m[157] * R(0.08910630000000008));
-        const gic_real t119 = m[155] * R(0.09182100000000004);
-        const gic_real t120 = m[153] * R(-0.004825999999999997);
-        const gic_real t121 = t119 + (t120 + m[154] * R(0.08910630000000008));
-        const gic_real t122 = m[161] * R(0.09182100000000004);
-        const gic_real t123 = m[159] * R(-0.004825999999999997);
-        const gic_real t124 = t122 + (t123 + m[160] * R(0.08910630000000008));
-        const gic_real t125 = m[164] * t121 - m[162] * t124;
-        const gic_real t126 = m[163] * t124 - m[164] * t118;
-        const gic_real t127 = m[162] * t125 - m[163] * t126 + (m[168] * t118 - m[169] * t121);
-        const gic_real t128 = m[173] + t127;
-        const gic_real t129 = m[166] + t125;
+        /* wheel tire_f_l */
+        const gic_real t116 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t117 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t118 = t116 + (t117 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t119 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t120 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t121 = t119 + (t120 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t122 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t123 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t124 = t122 + (t123 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t125 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t121 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t124;
+        const gic_real t126 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t124 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t118;
+        const gic_real t127 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t125 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t126 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t118 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t121);
+        const gic_real t128 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Z] + t127;
+        const gic_real t129 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] + t125;
         const gic_real t130 = R(1.653405) + t121;
-        const gic_real t131 = m[152] + t124;
-        const gic_real t132 = t129 + (t129 + (y[17] * t130 - y[15] * t131));
-        const gic_real t133 = m[151] + t118;
-        const gic_real t134 = t126 + (t126 + (y[16] * t131 - y[17] * t133));
-        const gic_real t135 = y[15] * t132 - y[16] * t134 + (rate[15] * t133 - rate[16] * t130);
-        const gic_real t136 = t128 + (t28 + t135) + rate[22] * (m[174] * t118 - m[175] * t121);
-        const gic_real t137 = t136 + rate[18] * (m[185] + (m[180] * t118 - m[181] * t121));
+        const gic_real t131 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t124;
+        const gic_real t132 = t129 + (t129 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t130 - y[TRAILING_ARM_STATE_OMEGA_X] *
+            t131));
+        const gic_real t133 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t118;
+        const gic_real t134 = t126 + (t126 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t131 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t133));
+        const gic_real t135 = y[TRAILING_ARM_STATE_OMEGA_X] * t132 - y[TRAILING_ARM_STATE_OMEGA_Y] * t134 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t133 - rate[TRAILING_ARM_STATE_OMEGA_Y] * t130);
+        const gic_real t136 = t128 + (t28 + t135) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t118 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t121);
+        const gic_real t137 = t136 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t118 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t121));
         const gic_real t138 = t137 * R(90.555);
-        const gic_real t139 = m[162] * t118 - m[163] * t121;
-        const gic_real t140 = m[164] * t126 - m[162] * t139 + (m[170] * t121 - m[168] * t124);
-        const gic_real t141 = m[172] + t140;
-        const gic_real t142 = m[167] + t139;
-        const gic_real t143 = t142 + (t142 + (y[15] * t133 - y[16] * t130));
-        const gic_real t144 = y[17] * t134 - y[15] * t143 + (rate[17] * t130 - rate[15] * t131);
-        const gic_real t145 = t141 + (t16 + t144) + rate[22] * (m[176] * t121 - m[174] * t124);
-        const gic_real t146 = t145 + rate[18] * (m[184] + (m[182] * t121 - m[180] * t124));
+        const gic_real t139 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t118 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t121;
+        const gic_real t140 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t126 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t139 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t121 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t124);
+        const gic_real t141 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Y] + t140;
+        const gic_real t142 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] + t139;
+        const gic_real t143 = t142 + (t142 + (y[TRAILING_ARM_STATE_OMEGA_X] * t133 - y[TRAILING_ARM_STATE_OMEGA_Y] *
+            t130));
+        const gic_real t144 = y[TRAILING_ARM_STATE_OMEGA_Z] * t134 - y[TRAILING_ARM_STATE_OMEGA_X] * t143 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t130 - rate[TRAILING_ARM_STATE_OMEGA_X] * t131);
+        const gic_real t145 = t141 + (t16 + t144) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t121 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t124);
+        const gic_real t146 = t145 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t121 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t124));
         const gic_real t147 = t146 * R(90.555);
         const gic_real t148 = t115 + (t118 * t138 - t124 * t147);
-        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 + (m[151] * t138 - m[152] * t147));
-        const gic_real t150 = m[199] + y[16];
-        const gic_real t151 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t152 = m[200] + y[17];
-        const gic_real t153 = m[194] * R(4.7728205);
-        const gic_real t154 = m[193] * R(7.58122);
-        const gic_real t155 = m[192] * R(4.8947505);
-        const gic_real t156 = m[197] * t153 + (m[196] * t154 + m[195] * t155);
-        const gic_real t157 = m[191] * R(4.7728205);
-        const gic_real t158 = m[190] * R(7.58122);
-        const gic_real t159 = m[189] * R(4.8947505);
-        const gic_real t160 = m[197] * t157 + (m[196] * t158 + m[195] * t159);
-        const gic_real t161 = m[198] + y[15];
+        const gic_real t149 = t66 + (t91 + t83 * R(-7.359315990000001)) + (t148 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t138 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t147));
+        /* inertia of wheel_f_r */
+        const gic_real t150 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t151 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t152 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t153 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t154 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t155 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t156 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t153 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t154 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t155);
+        const gic_real t157 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t158 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t159 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t160 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t157 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t158 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t159);
+        const gic_real t161 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t162 = t151 * t152 + (t156 * t150 + t160 * t161);
-        const gic_real t163 = m[194] * t153 + (m[193] * t154 + m[192] * t155);
-        const gic_real t164 = m[194] * t157 + (m[193] * t158 + m[192] * t159);
+        const gic_real t163 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t153 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t154 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t155);
+        const gic_real t164 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t157 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t158 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t159);
         const gic_real t165 = t156 * t152 + (t163 * t150 + t164 * t161);
-        const gic_real t166 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t167 = t166 + m[218] * rate[19];
-        const gic_real t168 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t169 = t168 + m[217] * rate[19];
-        const gic_real t170 = m[191] * t157 + (m[190] * t158 + m[189] * t159);
-        const gic_real t171 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t172 = t171 + m[216] * rate[19];
+        const gic_real t166 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t167 = t166 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t168 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t169 = t168 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t170 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * t157 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * t158 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * t159);
+        const gic_real t171 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t172 = t171 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
         const gic_real t173 = t150 * t162 - t152 * t165 + (t160 * t167 + (t164 * t169 + t170 * t172));
-        const gic_real t174 = m[194] * R(0.09182100000000004);
-        const gic_real t175 = m[192] * R(-0.004825999999999997);
-        const gic_real t176 = t174 + (t175 + m[193] * R(-0.08910630000000008));
-        const gic_real t177 = m[191] * R(0.09182100000000004);
-        const gic_real t178 = m[189] * R(-0.004825999999999997);
-        const gic_real t179 = t177 + (t178 + m[190] * R(-0.08910630000000008));
-        const gic_real t180 = m[197] * R(0.09182100000000004);
-        const gic_real t181 = m[195] * R(-0.004825999999999997);
-        const gic_real t182 = t180 + (t181 + m[196] * R(-0.08910630000000008));
-        const gic_real t183 = m[200] * t179 - m[198] * t182;
-        const gic_real t184 = m[199] * t182 - m[200] * t176;
-        const gic_real t185 = m[198] * t183 - m[199] * t184 + (m[204] * t176 - m[205] * t179);
-        const gic_real t186 = m[209] + t185;
-        const gic_real t187 = m[202] + t183;
+        /* wheel tire_f_r */
+        const gic_real t174 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t175 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t176 = t174 + (t175 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t177 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t178 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t179 = t177 + (t178 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t180 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t181 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t182 = t180 + (t181 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t183 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t179 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t182;
+        const gic_real t184 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t182 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t176;
+        const gic_real t185 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t183 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t184 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t176 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t179);
+        const gic_real t186 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Z] + t185;
+        const gic_real t187 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] + t183;
         const gic_real t188 = R(1.653405) + t179;
-        const gic_real t189 = m[188] + t182;
-        const gic_real t190 = t187 + (t187 + (y[17] * t188 - y[15] * t189));
-        const gic_real t191 = m[187] + t176;
-        const gic_real t192 = t184 + (t184 + (y[16] * t189 - y[17] * t191));
-        const gic_real t193 = y[15] * t190 - y[16] * t192 + (rate[15] * t191 - rate[16] * t188);
-        const gic_real t194 = t186 + (t28 + t193) + rate[22] * (m[210] * t176 - m[211] * t179);
-        const gic_real t195 = t194 + rate[19] * (m[221] + (m[216] * t176 - m[217] * t179));
+        const gic_real t189 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t182;
+        const gic_real t190 = t187 + (t187 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t188 - y[TRAILING_ARM_STATE_OMEGA_X] *
+            t189));
+        const gic_real t191 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t176;
+        const gic_real t192 = t184 + (t184 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t189 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t191));
+        const gic_real t193 = y[TRAILING_ARM_STATE_OMEGA_X] * t190 - y[TRAILING_ARM_STATE_OMEGA_Y] * t192 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t191 - rate[TRAILING_ARM_STATE_OMEGA_Y] * t188);
+        const gic_real t194 = t186 + (t28 + t193) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t176 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t179);
+        const gic_real t195 = t194 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t176 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t179));
         const gic_real t196 = R(90.555) * t195;
-        const gic_real t197 = m[198] * t176 - m[199] * t179;
-        const gic_real t198 = m[200] * t184 - m[198] * t197 + (m[206] * t179 - m[204] * t182);
-        const gic_real t199 = m[208] + t198;
-        const gic_real t200 = m[203] + t197;
-        const gic_real t201 = t200 + (t200 + (y[15] * t191 - y[16] * t188));
-        const gic_real t202 = y[17] * t192 - y[15] * t201 + (rate[17] * t188 - rate[15] * t189);
-        const gic_real t203 = t199 + (t16 + t202) + rate[22] * (m[212] * t179 - m[210] * t182);
-        const gic_real t204 = t203 + rate[19] * (m[220] + (m[218] * t179 - m[216] * t182));
+        const gic_real t197 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t176 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t179;
+        const gic_real t198 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t184 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t197 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t179 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t182);
+        const gic_real t199 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Y] + t198;
+        const gic_real t200 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] + t197;
+        const gic_real t201 = t200 + (t200 + (y[TRAILING_ARM_STATE_OMEGA_X] * t191 - y[TRAILING_ARM_STATE_OMEGA_Y] *
+            t188));
+        const gic_real t202 = y[TRAILING_ARM_STATE_OMEGA_Z] * t192 - y[TRAILING_ARM_STATE_OMEGA_X] * t201 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t188 - rate[TRAILING_ARM_STATE_OMEGA_X] * t189);
+        const gic_real t203 = t199 + (t16 + t202) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t179 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t182);
+        const gic_real t204 = t203 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t179 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t182));
         const gic_real t205 = R(90.555) * t204;
         const gic_real t206 = t173 + (t176 * t196 - t182 * t205);
-        const gic_real t207 = m[103] + y[16];
-        const gic_real t208 = m[101] * (m[101] * R(6.78001) + m[99] * R(-0.109132)) + m[99] * (m[101] * R(-0.109132) + m[99] * R(5.46131));
-        const gic_real t209 = m[101] * R(0.075632) + m[99] * R(0.729032);
-        const gic_real t210 = m[95] * R(6.78001) + m[93] * R(-0.109132);
-        const gic_real t211 = m[95] * R(-0.109132) + m[93] * R(5.46131);
-        const gic_real t212 = m[101] * t210 + m[99] * t211;
-        const gic_real t213 = y[17] * t208 + (t209 * t207 + y[15] * t212);
-        const gic_real t214 = m[95] * R(0.075632) + m[93] * R(0.729032);
-        const gic_real t215 = y[17] * t209 + (R(9.09449) * t207 + y[15] * t214);
-        const gic_real t216 = rate[17] + m[103] * y[15];
-        const gic_real t217 = rate[16] + rate[20];
-        const gic_real t218 = m[95] * t210 + m[93] * t211;
-        const gic_real t219 = rate[15] - m[103] * y[17];
-        const gic_real t220 = t207 * t213 - y[17] * t215 + (t212 * t216 + (t214 * t217 + t218 * t219));
-        const gic_real t221 = m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016);
+        /* inertia of arm_r_l */
+        const gic_real t207 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t208 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t209 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(0.729032);
+        const gic_real t210 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t211 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t212 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * t210 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t211;
+        const gic_real t213 = y[TRAILING_ARM_STATE_OMEGA_Z] * t208 + (t209 * t207 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t212);
+        const gic_real t214 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(0.729032);
+        const gic_real t215 = y[TRAILING_ARM_STATE_OMEGA_Z] * t209 + (R(9.09449) * t207 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t214);
+        const gic_real t216 = rate[TRAILING_ARM_STATE_OMEGA_Z] + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t217 = rate[TRAILING_ARM_STATE_OMEGA_Y] + rate[TRAILING_ARM_STATE_BAR_R_L_RATE];
+        const gic_real t218 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * t210 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t211;
+        const gic_real t219 = rate[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t220 = t207 * t213 - y[TRAILING_ARM_STATE_OMEGA_Z] * t215 + (t212 * t216 + (t214 * t217 + t218 *
+            t219));
+        const gic_real t221 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t222 = R(-1.15) + t221;
-        const gic_real t223 = m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016);
+        const gic_real t223 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t224 = R(0.026000000000000023) + t223;
-        const gic_real t225 = y[17] * t222 - y[15] * t224;
-        const gic_real t226 = m[103] * t223;
-        const gic_real t227 = t226 + (t226 + (y[16] * t224 - y[17] * R(0.843847)));
-        const gic_real t228 = y[15] * t225 - y[16] * t227 + (rate[15] * R(0.843847) - rate[16] * t222);
-        const gic_real t229 = m[103] * t226;
-        const gic_real t230 = t28 + t228 - t229 - rate[20] * t221;
-        const gic_real t231 = m[103] * t221;
-        const gic_real t232 = y[15] * R(0.843847) - y[16] * t222 - t231 - t231;
-        const gic_real t233 = y[17] * t227 - y[15] * t232 + (rate[17] * t222 - rate[15] * t224);
+        const gic_real t225 = y[TRAILING_ARM_STATE_OMEGA_Z] * t222 - y[TRAILING_ARM_STATE_OMEGA_X] * t224;
+        const gic_real t226 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t223;
+        const gic_real t227 = t226 + (t226 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t224 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(0.843847)));
+        const gic_real t228 = y[TRAILING_ARM_STATE_OMEGA_X] * t225 - y[TRAILING_ARM_STATE_OMEGA_Y] * t227 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - rate[TRAILING_ARM_STATE_OMEGA_Y] * t222);
+        const gic_real t229 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t226;
+        const gic_real t230 = t28 + t228 - t229 - rate[TRAILING_ARM_STATE_BAR_R_L_RATE] * t221;
+        const gic_real t231 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t221;
+        const gic_real t232 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t222 -
+            t231 - t231;
+        const gic_real t233 = y[TRAILING_ARM_STATE_OMEGA_Z] * t227 - y[TRAILING_ARM_STATE_OMEGA_X] * t232 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t222 - rate[TRAILING_ARM_STATE_OMEGA_X] * t224);
         const gic_real t234 = t16 + t233;
         const gic_real t235 = t234 * R(110.555);
-        const gic_real t236 = t220 + (t230 * R(21.430755085) - t223 * t235) + (t230 * R(71.86075000000001) - t234 * R(2.874430000000003));
-        const gic_real t237 = t149 + (t206 + (m[187] * t196 - m[188] * t205)) + t236;
-        const gic_real t238 = m[133] + y[16];
-        const gic_real t239 = m[131] * (m[131] * R(6.78001) + m[129] * R(-0.109132)) + m[129] * (m[131] * R(-0.109132) + m[129] * R(5.46131));
-        const gic_real t240 = m[131] * R(-0.075632) + m[129] * R(-0.729032);
-        const gic_real t241 = m[125] * R(6.78001) + m[123] * R(-0.109132);
-        const gic_real t242 = m[125] * R(-0.109132) + m[123] * R(5.46131);
-        const gic_real t243 = m[131] * t241 + m[129] * t242;
-        const gic_real t244 = y[17] * t239 + (t240 * t238 + y[15] * t243);
-        const gic_real t245 = m[125] * R(-0.075632) + m[123] * R(-0.729032);
-        const gic_real t246 = y[17] * t240 + (R(9.09449) * t238 + y[15] * t245);
-        const gic_real t247 = rate[17] + m[133] * y[15];
-        const gic_real t248 = rate[16] + rate[21];
-        const gic_real t249 = m[125] * t241 + m[123] * t242;
-        const gic_real t250 = rate[15] - m[133] * y[17];
-        const gic_real t251 = t238 * t244 - y[17] * t246 + (t243 * t247 + (t245 * t248 + t249 * t250));
-        const gic_real t252 = m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016);
+        const gic_real t236 = t220 + (t230 * R(21.430755085) - t223 * t235) + (t230 * R(71.86075000000001) - t234 *
+            R(2.874430000000003));
+        const gic_real t237 = t149 + (t206 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t196 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t205)) + t236;
+        /* inertia of arm_r_r */
+        const gic_real t238 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t239 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t240 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.729032);
+        const gic_real t241 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t242 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t243 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * t241 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t242;
+        const gic_real t244 = y[TRAILING_ARM_STATE_OMEGA_Z] * t239 + (t240 * t238 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t243);
+        const gic_real t245 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.729032);
+        const gic_real t246 = y[TRAILING_ARM_STATE_OMEGA_Z] * t240 + (R(9.09449) * t238 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t245);
+        const gic_real t247 = rate[TRAILING_ARM_STATE_OMEGA_Z] + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t248 = rate[TRAILING_ARM_STATE_OMEGA_Y] + rate[TRAILING_ARM_STATE_BAR_R_R_RATE];
+        const gic_real t249 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * t241 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t242;
+        const gic_real t250 = rate[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t251 = t238 * t244 - y[TRAILING_ARM_STATE_OMEGA_Z] * t246 + (t243 * t247 + (t245 * t248 + t249 *
+            t250));
+        const gic_real t252 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t253 = R(-1.15) + t252;
-        const gic_real t254 = m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016);
+        const gic_real t254 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t255 = R(0.026000000000000023) + t254;
-        const gic_real t256 = y[17] * t253 - y[15] * t255;
-        const gic_real t257 = m[133] * t254;
-        const gic_real t258 = t257 + (t257 + (y[16] * t255 - y[17] * R(-0.843847)));
-        const gic_real t259 = y[15] * t256 - y[16] * t258 + (rate[15] * R(-0.843847) - rate[16] * t253);
-        const gic_real t260 = m[133] * t257;
-        const gic_real t261 = t28 + t259 - t260 - rate[21] * t252;
-        const gic_real t262 = m[133] * t252;
-        const gic_real t263 = y[15] * R(-0.843847) - y[16] * t253 - t262 - t262;
-        const gic_real t264 = y[17] * t258 - y[15] * t263 + (rate[17] * t253 - rate[15] * t255);
+        const gic_real t256 = y[TRAILING_ARM_STATE_OMEGA_Z] * t253 - y[TRAILING_ARM_STATE_OMEGA_X] * t255;
+        const gic_real t257 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t254;
+        const gic_real t258 = t257 + (t257 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t255 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(-0.843847)));
+        const gic_real t259 = y[TRAILING_ARM_STATE_OMEGA_X] * t256 - y[TRAILING_ARM_STATE_OMEGA_Y] * t258 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - rate[TRAILING_ARM_STATE_OMEGA_Y] * t253);
+        const gic_real t260 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t257;
+        const gic_real t261 = t28 + t259 - t260 - rate[TRAILING_ARM_STATE_BAR_R_R_RATE] * t252;
+        const gic_real t262 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t252;
+        const gic_real t263 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t253 -
+            t262 - t262;
+        const gic_real t264 = y[TRAILING_ARM_STATE_OMEGA_Z] * t258 - y[TRAILING_ARM_STATE_OMEGA_X] * t263 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t253 - rate[TRAILING_ARM_STATE_OMEGA_X] * t255);
         const gic_real t265 = t16 + t264;
         const gic_real t266 = R(110.555) * t265;
-        const gic_real t267 = t251 + (t261 * R(-21.430755085) - t254 * t266) + (t261 * R(-71.86075000000001) - R(2.874430000000003) * t265);
-        const gic_real t268 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        const gic_real t267 = t251 + (t261 * R(-21.430755085) - t254 * t266) + (t261 * R(-71.86075000000001) -
+            R(2.874430000000003) * t265);
+        /* force shock_r_r */
+        const gic_real t268 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t269 = R(0.026000000000000023) + t268 - R(0.376);
-        const gic_real t270 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
+        const gic_real t270 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t271 = R(-1.15) + t270 - R(-1.6);
         const gic_real t272 = R(1.0) / GIC_SQRT(t269 * t269 + (R(0.0025000000000000044) + t271 * t271));
-        const gic_real t273 = t272 * (m[133] * t268 * t271 - m[133] * t270 * t269);
-        const gic_real t274 = R(9500.0) * t273;
-        const gic_real t275 = t272 * t274;
+        const gic_real t273 = t272 * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t268 * t271 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t270 * t269);
+        const gic_real force_shock_r_r = R(9500.0) * t273;
+        const gic_real t275 = t272 * force_shock_r_r;
         const gic_real t276 = R(-0.050000000000000044) * t275;
-        const gic_real t277 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        /* wheel tire_r_r */
+        const gic_real t277 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t278 = R(-1.15) + t277;
-        const gic_real t279 = y[15] * R(-0.909701) - y[16] * t278 - m[133] * t277;
-        const gic_real t280 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real t279 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t278 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t277;
+        const gic_real t280 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t281 = R(0.026000000000000023) + t280;
-        const gic_real t282 = y[17] * t278 - y[15] * t281;
+        const gic_real t282 = y[TRAILING_ARM_STATE_OMEGA_Z] * t278 - y[TRAILING_ARM_STATE_OMEGA_X] * t281;
         const gic_real t283 = t13 + t14;
-        const gic_real t284 = m[133] * t280 + (y[16] * t281 - y[17] * R(-0.909701));
-        const gic_real t285 = y[13] + (t24 * t279 + (t12 * t282 + t283 * t284));
+        const gic_real t284 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t280 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t281 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t285 = y[TRAILING_ARM_STATE_V_Y] + (t24 * t279 + (t12 * t282 + t283 * t284));
         const gic_real t286 = R(1.0) - (t22 + t11);
-        const gic_real t287 = y[0] + (t27 * t281 + (t15 * R(-0.909701) + t286 * t278));
-        const gic_real t288 = y[1] + (t24 * t281 + (t12 * R(-0.909701) + t283 * t278));
+        const gic_real t287 = y[TRAILING_ARM_STATE_R_X] + (t27 * t281 + (t15 * R(-0.909701) + t286 * t278));
+        const gic_real t288 = y[TRAILING_ARM_STATE_R_Y] + (t24 * t281 + (t12 * R(-0.909701) + t283 * t278));
         gic_real road289[3];
         if (!trailing_arm_road_height(self, time, t287, t288, road289))
             return GIC_ERROR_ROAD;
-        const gic_real t290 = y[12] + (t27 * t279 + (t15 * t282 + t286 * t284));
+        const gic_real t290 = y[TRAILING_ARM_STATE_V_X] + (t27 * t279 + (t15 * t282 + t286 * t284));
         const gic_real t291 = t25 - t26;
-        const gic_real t292 = y[14] + (t23 * t279 + (t7 * t282 + t291 * t284));
+        const gic_real t292 = y[TRAILING_ARM_STATE_V_Z] + (t23 * t279 + (t7 * t282 + t291 * t284));
         const gic_real t293 = t285 * road289[2] + t290 * road289[1] - t292;
-        const gic_real t294 = y[2] + (t23 * t281 + (t7 * R(-0.909701) + t291 * t278));
+        const gic_real t294 = y[TRAILING_ARM_STATE_R_Z] + (t23 * t281 + (t7 * R(-0.909701) + t291 * t278));
         const gic_real t295 = R(0.4699) + road289[0] - t294;
         const gic_real t296 = GIC_MIN(GIC_MAX(R(100.0) * t295, R(0.0)), R(1.0));
         const gic_real t297 = t293 * (R(500.0) * ((R(3.0) - (t296 + t296)) * (t296 * t296)));
         const gic_real t298 = GIC_MAX(t297 + R(283000.0) * t295, R(0.0));
         const gic_real t299 = t23 * t298;
         const gic_real t300 = t7 * t298;
-        const gic_real t301 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        /* force shock_r_l */
+        const gic_real t301 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t302 = R(0.026000000000000023) + t301 - R(0.376);
-        const gic_real t303 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
+        const gic_real t303 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t304 = R(-1.15) + t303 - R(-1.6);
         const gic_real t305 = R(1.0) / GIC_SQRT(t302 * t302 + (R(0.0025000000000000044) + t304 * t304));
-        const gic_real t306 = t305 * (m[103] * t301 * t304 - m[103] * t303 * t302);
-        const gic_real t307 = t306 * R(9500.0);
-        const gic_real t308 = t305 * t307;
+        const gic_real t306 = t305 * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t301 * t304 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t303 * t302);
+        const gic_real force_shock_r_l = t306 * R(9500.0);
+        const gic_real t308 = t305 * force_shock_r_l;
         const gic_real t309 = R(0.050000000000000044) * t308;
-        const gic_real t310 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        /* wheel tire_r_l */
+        const gic_real t310 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t311 = R(-1.15) + t310;
-        const gic_real t312 = y[15] * R(0.909701) - y[16] * t311 - m[103] * t310;
-        const gic_real t313 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real t312 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t311 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t310;
+        const gic_real t313 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t314 = R(0.026000000000000023) + t313;
-        const gic_real t315 = y[17] * t311 - y[15] * t314;
-        const gic_real t316 = m[103] * t313 + (y[16] * t314 - y[17] * R(0.909701));
-        const gic_real t317 = y[13] + (t24 * t312 + (t12 * t315 + t283 * t316));
-        const gic_real t318 = y[0] + (t27 * t314 + (t15 * R(0.909701) + t286 * t311));
-        const gic_real t319 = y[1] + (t24 * t314 + (t12 * R(0.909701) + t283 * t311));
+        const gic_real t315 = y[TRAILING_ARM_STATE_OMEGA_Z] * t311 - y[TRAILING_ARM_STATE_OMEGA_X] * t314;
+        const gic_real t316 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t313 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t314 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t317 = y[TRAILING_ARM_STATE_V_Y] + (t24 * t312 + (t12 * t315 + t283 * t316));
+        const gic_real t318 = y[TRAILING_ARM_STATE_R_X] + (t27 * t314 + (t15 * R(0.909701) + t286 * t311));
+        const gic_real t319 = y[TRAILING_ARM_STATE_R_Y] + (t24 * t314 + (t12 * R(0.909701) + t283 * t311));
         gic_real road320[3];
         if (!trailing_arm_road_height(self, time, t318, t319, road320))
             return GIC_ERROR_ROAD;
-        const gic_real t321 = y[12] + (t27 * t312 + (t15 * t315 + t286 * t316));
-        const gic_real t322 = y[14] + (t23 * t312 + (t7 * t315 + t291 * t316));
+        const gic_real t321 = y[TRAILING_ARM_STATE_V_X] + (t27 * t312 + (t15 * t315 + t286 * t316));
+        const gic_real t322 = y[TRAILING_ARM_STATE_V_Z] + (t23 * t312 + (t7 * t315 + t291 * t316));
         const gic_real t323 = t317 * road320[2] + t321 * road320[1] - t322;
-        const gic_real t324 = y[2] + (t23 * t314 + (t7 * R(0.909701) + t291 * t311));
+        const gic_real t324 = y[TRAILING_ARM_STATE_R_Z] + (t23 * t314 + (t7 * R(0.909701) + t291 * t311));
         const gic_real t325 = R(0.4699) + road320[0] - t324;
         const gic_real t326 = GIC_MIN(GIC_MAX(R(100.0) * t325, R(0.0)), R(1.0));
         const gic_real t327 = t323 * (R(500.0) * ((R(3.0) - (t326 + t326)) * (t326 * t326)));
         const gic_real t328 = GIC_MAX(t327 + R(283000.0) * t325, R(0.0));
         const gic_real t329 = t23 * t328;
         const gic_real t330 = t7 * t328;
-        const gic_real t331 = t174 + (m[193] * R(-0.12319000000000002) + t175);
-        const gic_real t332 = t177 + (m[190] * R(-0.12319000000000002) + t178);
-        const gic_real t333 = m[187] + t331;
+        const gic_real t331 = t174 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            t175);
+        const gic_real t332 = t177 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            t178);
+        const gic_real t333 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t331;
         const gic_real t334 = R(1.653405) + t332;
-        const gic_real t335 = m[203] + (m[198] * t331 - m[199] * t332) + (y[15] * t333 - y[16] * t334);
-        const gic_real t336 = t180 + (m[196] * R(-0.12319000000000002) + t181);
-        const gic_real t337 = m[188] + t336;
-        const gic_real t338 = m[202] + (m[200] * t332 - m[198] * t336) + (y[17] * t334 - y[15] * t337);
-        const gic_real t339 = m[199] * t336 - m[200] * t331 + (y[16] * t337 - y[17] * t333);
-        const gic_real t340 = y[13] + (t24 * t335 + (t12 * t338 + t283 * t339));
-        const gic_real t341 = y[0] + (t27 * t337 + (t15 * t333 + t286 * t334));
-        const gic_real t342 = y[1] + (t24 * t337 + (t12 * t333 + t283 * t334));
+        const gic_real t335 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t331 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t332) + (y[TRAILING_ARM_STATE_OMEGA_X] * t333 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t334);
+        const gic_real t336 = t180 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            t181);
+        const gic_real t337 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t336;
+        const gic_real t338 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t332 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t336) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t334 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t337);
+        const gic_real t339 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t336 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t331 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t337 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t333);
+        const gic_real t340 = y[TRAILING_ARM_STATE_V_Y] + (t24 * t335 + (t12 * t338 + t283 * t339));
+        const gic_real t341 = y[TRAILING_ARM_STATE_R_X] + (t27 * t337 + (t15 * t333 + t286 * t334));
+        const gic_real t342 = y[TRAILING_ARM_STATE_R_Y] + (t24 * t337 + (t12 * t333 + t283 * t334));
         gic_real road343[3];
         if (!trailing_arm_road_height(self, time, t341, t342, road343))
             return GIC_ERROR_ROAD;
-        const gic_real t344 = y[12] + (t27 * t335 + (t15 * t338 + t286 * t339));
-        const gic_real t345 = y[14] + (t23 * t335 + (t7 * t338 + t291 * t339));
+        const gic_real t344 = y[TRAILING_ARM_STATE_V_X] + (t27 * t335 + (t15 * t338 + t286 * t339));
+        const gic_real t345 = y[TRAILING_ARM_STATE_V_Z] + (t23 * t335 + (t7 * t338 + t291 * t339));
         const gic_real t346 = t340 * road343[2] + t344 * road343[1] - t345;
-        const gic_real t347 = y[2] + (t23 * t337 + (t7 * t333 + t291 * t334));
+        const gic_real t347 = y[TRAILING_ARM_STATE_R_Z] + (t23 * t337 + (t7 * t333 + t291 * t334));
         const gic_real t348 = R(0.4699) + road343[0] - t347;
         const gic_real t349 = GIC_MIN(GIC_MAX(R(100.0) * t348, R(0.0)), R(1.0));
         const gic_real t350 = t346 * (R(500.0) * ((R(3.0) - (t349 + t349)) * (t349 * t349)));
@@ -2987,25 +3977,36 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t352 = t23 * t351;
         const gic_real t353 = t7 * t351;
         const gic_real t354 = t331 * t352 - t336 * t353;
-        const gic_real t355 = t116 + (m[157] * R(0.12319000000000002) + t117);
-        const gic_real t356 = t119 + (m[154] * R(0.12319000000000002) + t120);
-        const gic_real t357 = m[151] + t355;
+        const gic_real t355 = t116 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            t117);
+        const gic_real t356 = t119 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            t120);
+        const gic_real t357 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t355;
         const gic_real t358 = R(1.653405) + t356;
-        const gic_real t359 = m[167] + (m[162] * t355 - m[163] * t356) + (y[15] * t357 - y[16] * t358);
-        const gic_real t360 = t122 + (m[160] * R(0.12319000000000002) + t123);
-        const gic_real t361 = m[152] + t360;
-        const gic_real t362 = m[166] + (m[164] * t356 - m[162] * t360) + (y[17] * t358 - y[15] * t361);
-        const gic_real t363 = m[163] * t360 - m[164] * t355 + (y[16] * t361 - y[17] * t357);
-        const gic_real t364 = y[13] + (t24 * t359 + (t12 * t362 + t283 * t363));
-        const gic_real t365 = y[0] + (t27 * t361 + (t15 * t357 + t286 * t358));
-        const gic_real t366 = y[1] + (t24 * t361 + (t12 * t357 + t283 * t358));
+        const gic_real t359 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t355 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t356) + (y[TRAILING_ARM_STATE_OMEGA_X] * t357 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t358);
+        const gic_real t360 = t122 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            t123);
+        const gic_real t361 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t360;
+        const gic_real t362 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t356 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t360) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t358 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t361);
+        const gic_real t363 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t360 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t355 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t361 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t357);
+        const gic_real t364 = y[TRAILING_ARM_STATE_V_Y] + (t24 * t359 + (t12 * t362 + t283 * t363));
+        const gic_real t365 = y[TRAILING_ARM_STATE_R_X] + (t27 * t361 + (t15 * t357 + t286 * t358));
+        const gic_real t366 = y[TRAILING_ARM_STATE_R_Y] + (t24 * t361 + (t12 * t357 + t283 * t358));
         gic_real road367[3];
         if (!trailing_arm_road_height(self, time, t365, t366, road367))
             return GIC_ERROR_ROAD;
-        const gic_real t368 = y[12] + (t27 * t359 + (t15 * t362 + t286 * t363));
-        const gic_real t369 = y[14] + (t23 * t359 + (t7 * t362 + t291 * t363));
+        const gic_real t368 = y[TRAILING_ARM_STATE_V_X] + (t27 * t359 + (t15 * t362 + t286 * t363));
+        const gic_real t369 = y[TRAILING_ARM_STATE_V_Z] + (t23 * t359 + (t7 * t362 + t291 * t363));
         const gic_real t370 = t364 * road367[2] + t368 * road367[1] - t369;
-        const gic_real t371 = y[2] + (t23 * t361 + (t7 * t357 + t291 * t358));
+        const gic_real t371 = y[TRAILING_ARM_STATE_R_Z] + (t23 * t361 + (t7 * t357 + t291 * t358));
         const gic_real t372 = road367[0] + R(0.4699) - t371;
         const gic_real t373 = GIC_MIN(GIC_MAX(t372 * R(100.0), R(0.0)), R(1.0));
         const gic_real t374 = t370 * ((R(3.0) - (t373 + t373)) * (t373 * t373) * R(500.0));
@@ -3013,81 +4014,106 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t376 = t23 * t375;
         const gic_real t377 = t7 * t375;
         const gic_real t378 = t355 * t376 - t360 * t377;
-        const gic_real t379 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
-        const gic_real t380 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t379 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.2403881036540444);
+        const gic_real t380 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.2403881036540444);
         const gic_real t381 = R(-0.307086) + t380 - R(-0.4977892);
         const gic_real t382 = t379 - R(0.32313880000000006);
         const gic_real t383 = R(1.0) / GIC_SQRT(t382 * t382 + (R(4.633797183999867e-05) + t381 * t381));
-        const gic_real t384 = t383 * (m[72] * t380 * t382 - m[72] * t379 * t381);
-        const gic_real t385 = R(17490.8) * t384;
-        const gic_real t386 = t383 * t385;
+        const gic_real t384 = t383 * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t380 * t382 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t379 * t381);
+        const gic_real force_shock_f_r = R(17490.8) * t384;
+        const gic_real t386 = t383 * force_shock_f_r;
         const gic_real t387 = t381 * t386;
         const gic_real t388 = t379 * t387;
         const gic_real t389 = t382 * t386;
         const gic_real t390 = t380 * t389;
-        const gic_real t391 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
-        const gic_real t392 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t391 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.2403881036540444);
+        const gic_real t392 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.2403881036540444);
         const gic_real t393 = R(0.307086) + t392 - R(0.4977892);
         const gic_real t394 = t391 - R(0.32313880000000006);
         const gic_real t395 = R(1.0) / GIC_SQRT(t394 * t394 + (t393 * t393 + R(4.633797183999867e-05)));
-        const gic_real t396 = t395 * (m[42] * t392 * t394 - m[42] * t391 * t393);
-        const gic_real t397 = t396 * R(17490.8);
-        const gic_real t398 = t395 * t397;
+        const gic_real t396 = t395 * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t392 * t394 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t391 * t393);
+        const gic_real force_shock_f_l = t396 * R(17490.8);
+        const gic_real t398 = t395 * force_shock_f_l;
         const gic_real t399 = t393 * t398;
         const gic_real t400 = t394 * t398;
         const gic_real t401 = t391 * t399 - t392 * t400;
-        const gic_real t402 = R(0.4977892) * t400 - R(0.32313880000000006) * t399 + (R(-0.4977892) * t389 - R(0.32313880000000006) * t387);
+        const gic_real t402 = R(0.4977892) * t400 - R(0.32313880000000006) * t399 + (R(-0.4977892) * t389 -
+            R(0.32313880000000006) * t387);
         const gic_real t403 = t302 * t308;
         const gic_real t404 = t269 * t275;
-        const gic_real t405 = t402 + (R(0.6) * t403 - t308 * R(0.018800000000000018)) + (R(-0.6) * t404 - t275 * R(-0.018800000000000018));
+        const gic_real t405 = t402 + (R(0.6) * t403 - t308 * R(0.018800000000000018)) + (R(-0.6) * t404 - t275 *
+            R(-0.018800000000000018));
+        /* applied forces: moment and force on the base, and along each coordinate */
         const gic_real t406 = t388 - t390 + (t401 + (t405 - R(0.307086) * t400) - R(-0.307086) * t389);
-        const gic_real t407 = t378 + (t406 + (m[151] * t376 - m[152] * t377)) + (m[187] * t352 - m[188] * t353);
+        const gic_real t407 = t378 + (t406 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t376 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t377)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t352 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t353);
         const gic_real t408 = t329 - t403;
         const gic_real t409 = t330 - t309;
-        const gic_real t410 = t301 * t309 + (R(0.25970099999999996) * t329 - t313 * t330) + (t354 + t407 + (R(0.65) * t408 - R(0.026000000000000023) * t409));
+        const gic_real t410 = t301 * t309 + (R(0.25970099999999996) * t329 - t313 * t330) + (t354 + t407 + (R(0.65) *
+            t408 - R(0.026000000000000023) * t409));
         const gic_real t411 = t299 - t404;
         const gic_real t412 = t300 - t276;
-        const gic_real t413 = t268 * t276 + (R(-0.25970099999999996) * t299 - t280 * t300) + (t410 + (R(-0.65) * t411 - R(0.026000000000000023) * t412));
-        const gic_real t414 = GIC_FABS(t397);
-        const gic_real t415 = GIC_FABS(t385);
-        const gic_real t416 = GIC_FABS(t307);
-        const gic_real t417 = GIC_FABS(t274);
+        const gic_real t413 = t268 * t276 + (R(-0.25970099999999996) * t299 - t280 * t300) + (t410 + (R(-0.65) * t411 -
+            R(0.026000000000000023) * t412));
+        const gic_real t414 = GIC_FABS(force_shock_f_l);
+        const gic_real t415 = GIC_FABS(force_shock_f_r);
+        const gic_real t416 = GIC_FABS(force_shock_r_l);
+        const gic_real t417 = GIC_FABS(force_shock_r_r);
         const gic_real t418 = t414 * R(2.613906) + R(2.613906) * t415 + t416 * R(2.576) + R(2.576) * t417;
         const gic_real t419 = GIC_FABS(R(-9.81) * t23) + GIC_FABS(R(-9.81) * t7) + GIC_FABS(R(-9.81) * t291);
-        const gic_real t420 = t291 * t8 + (t283 * rate[13] + t286 * rate[12]);
+        const gic_real t420 = t291 * t8 + (t283 * rate[TRAILING_ARM_STATE_V_Y] + t286 * rate[TRAILING_ARM_STATE_V_X]);
         const gic_real t421 = t419 + (GIC_FABS(t28) + GIC_FABS(t16) + GIC_FABS(t420));
-        const gic_real t422 = GIC_FABS(y[17]) + GIC_FABS(y[16]) + GIC_FABS(y[15]);
-        const gic_real t423 = GIC_FABS(rate[17]) + GIC_FABS(rate[16]) + GIC_FABS(rate[15]);
+        const gic_real t422 = GIC_FABS(y[TRAILING_ARM_STATE_OMEGA_Z]) + GIC_FABS(y[TRAILING_ARM_STATE_OMEGA_Y]) +
+            GIC_FABS(y[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t423 = GIC_FABS(rate[TRAILING_ARM_STATE_OMEGA_Z]) + GIC_FABS(rate[TRAILING_ARM_STATE_OMEGA_Y]) +
+            GIC_FABS(rate[TRAILING_ARM_STATE_OMEGA_X]);
         const gic_real t424 = t422 * t422 + t423;
         const gic_real t425 = t421 + t424 * R(0.2690000000000001);
         const gic_real t426 = t418 + (t425 * R(561.2738800000002) + t424 * R(7604.379999999999));
         const gic_real t427 = t414 + t415 + t416 + t417 + R(2086.52) * t425;
-        const gic_real t428 = R(1.438648) + (R(0.05422899999999997) + GIC_FABS(m[1]));
-        const gic_real t429 = GIC_FABS(rate[22]);
-        const gic_real t430 = t421 + t424 * t428 + t422 * GIC_FABS(m[16]) + t429;
+        const gic_real t428 = R(1.438648) + (R(0.05422899999999997) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y]));
+        const gic_real t429 = GIC_FABS(rate[TRAILING_ARM_STATE_RACK_RATE]);
+        const gic_real t430 = t421 + t424 * t428 + t422 *
+            GIC_FABS(m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y]) + t429;
         const gic_real t431 = R(9.072) * t430 + t424 * R(0.0005216895628628198);
-        const gic_real t432 = t426 + t427 * R(0.00019090646218458937) + (R(3.0) * t424 + t430 * R(0.0005216895628628198) + t428 * t431);
+        const gic_real t432 = t426 + t427 * R(0.00019090646218458937) + (R(3.0) * t424 + t430 *
+            R(0.0005216895628628198) + t428 * t431);
         const gic_real t433 = GIC_FABS(t47);
         const gic_real t434 = t433 + GIC_FABS(t45);
-        const gic_real t435 = t422 + GIC_FABS(m[42]);
+        const gic_real t435 = t422 + GIC_FABS(m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X]);
         const gic_real t436 = t423 + t435 * t435;
-        const gic_real t437 = t421 + t436 * (R(1.688965) + (t433 + GIC_FABS(t50))) + t422 * (GIC_FABS(t57) + GIC_FABS(-t48));
+        const gic_real t437 = t421 + t436 * (R(1.688965) + (t433 + GIC_FABS(t50))) + t422 * (GIC_FABS(t57) +
+            GIC_FABS(-t48));
         const gic_real t438 = t437 + (GIC_FABS(-t54) + GIC_FABS(-t62));
-        const gic_real t439 = GIC_FABS(rate[18]);
+        const gic_real t439 = GIC_FABS(rate[TRAILING_ARM_STATE_BAR_F_L_RATE]);
         const gic_real t440 = R(23.965) * (t438 + t439 * t434);
-        const gic_real t441 = t414 * (R(0.09720579999999998) + (GIC_FABS(t391) + GIC_FABS(t392))) + (t434 * t440 + (t436 + t439) * R(1.7876));
+        const gic_real t441 = t414 * (R(0.09720579999999998) + (GIC_FABS(t391) + GIC_FABS(t392))) + (t434 * t440 +
+            (t436 + t439) * R(1.7876));
         const gic_real t442 = t414 + t440;
         const gic_real t443 = t441 + t442 * R(2.731155680272593e-05);
         const gic_real t444 = t442 + t441 * R(0.00036614536740732094);
         const gic_real t445 = GIC_FABS(t76);
         const gic_real t446 = t445 + GIC_FABS(t75);
-        const gic_real t447 = t422 + GIC_FABS(m[72]);
+        const gic_real t447 = t422 + GIC_FABS(m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X]);
         const gic_real t448 = t423 + t447 * t447;
-        const gic_real t449 = t421 + t448 * (R(1.688965) + (t445 + GIC_FABS(t79))) + t422 * (GIC_FABS(t85) + GIC_FABS(-t77));
+        const gic_real t449 = t421 + t448 * (R(1.688965) + (t445 + GIC_FABS(t79))) + t422 * (GIC_FABS(t85) +
+            GIC_FABS(-t77));
         const gic_real t450 = t449 + (GIC_FABS(-t82) + GIC_FABS(-t88));
-        const gic_real t451 = GIC_FABS(rate[19]);
+        const gic_real t451 = GIC_FABS(rate[TRAILING_ARM_STATE_BAR_F_R_RATE]);
         const gic_real t452 = R(23.965) * (t450 + t451 * t446);
-        const gic_real t453 = t415 * (R(0.09720579999999998) + (GIC_FABS(t379) + GIC_FABS(t380))) + (t446 * t452 + R(1.7876) * (t448 + t451));
+        const gic_real t453 = t415 * (R(0.09720579999999998) + (GIC_FABS(t379) + GIC_FABS(t380))) + (t446 * t452 +
+            R(1.7876) * (t448 + t451));
         const gic_real t454 = t415 + t452;
         const gic_real t455 = t453 + R(2.731155680272593e-05) * t454;
         const gic_real t456 = t454 + R(0.00036614536740732094) * t453;
@@ -3096,59 +4122,88 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t459 = GIC_FABS(t374) + GIC_FABS(t458);
         const gic_real t460 = t459 * (GIC_FABS(t360) + GIC_FABS(t355) + GIC_FABS(t356));
         const gic_real t461 = GIC_FABS(t124) + GIC_FABS(t118) + GIC_FABS(t121);
-        const gic_real t462 = t422 + (GIC_FABS(m[164]) + GIC_FABS(m[163]) + GIC_FABS(m[162]));
+        const gic_real t462 = t422 + (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X]));
         const gic_real t463 = t423 + t462 * t462;
         const gic_real t464 = t463 * (GIC_FABS(t131) + GIC_FABS(t133) + GIC_FABS(t130));
         const gic_real t465 = t422 * (GIC_FABS(t142) + GIC_FABS(t129) + GIC_FABS(t126));
-        const gic_real t466 = m[163] * t139 - m[164] * t125 + (m[169] * t124 - m[170] * t118);
+        const gic_real t466 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t139 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t125 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t124 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t118);
         const gic_real t467 = t421 + t464 + t465 + (GIC_FABS(t128) + GIC_FABS(t141) + GIC_FABS(t466));
-        const gic_real t468 = GIC_FABS(m[176]) + GIC_FABS(m[175]) + GIC_FABS(m[174]);
+        const gic_real t468 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0]);
         const gic_real t469 = t429 * t468;
-        const gic_real t470 = GIC_FABS(m[182]) + GIC_FABS(m[181]) + GIC_FABS(m[180]);
+        const gic_real t470 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6]);
         const gic_real t471 = t439 * t470;
-        const gic_real t472 = GIC_FABS(m[185]) + GIC_FABS(m[184]);
+        const gic_real t472 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10]);
         const gic_real t473 = t467 + t469 * t461 + t461 * t471 + t439 * t472;
         const gic_real t474 = R(90.555) * t473;
-        const gic_real t475 = t463 + (GIC_FABS(m[170]) + GIC_FABS(m[169]) + GIC_FABS(m[168]));
+        const gic_real t475 = t463 + (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X]));
         const gic_real t476 = t460 + (t461 * t474 + (t475 + t469 + t471) * R(17.248790999999997));
         const gic_real t477 = t459 + t474;
         const gic_real t478 = t476 + t477 * R(4.364385583403788e-05);
         const gic_real t479 = t477 + t476 * R(0.00022912732637616755);
-        const gic_real t480 = t478 + t479 * (R(1.653405) + (GIC_FABS(m[152]) + GIC_FABS(m[151])));
+        const gic_real t480 = t478 + t479 * (R(1.653405) +
+            (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y])));
         const gic_real t481 = R(283000.0) * (R(0.4699) + (GIC_FABS(t347) + GIC_FABS(road343[0])));
         const gic_real t482 = GIC_FABS(t350) + GIC_FABS(t481);
         const gic_real t483 = t482 * (GIC_FABS(t336) + GIC_FABS(t331) + GIC_FABS(t332));
         const gic_real t484 = GIC_FABS(t182) + GIC_FABS(t176) + GIC_FABS(t179);
-        const gic_real t485 = t422 + (GIC_FABS(m[200]) + GIC_FABS(m[199]) + GIC_FABS(m[198]));
+        const gic_real t485 = t422 + (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X]));
         const gic_real t486 = t423 + t485 * t485;
         const gic_real t487 = t486 * (GIC_FABS(t189) + GIC_FABS(t191) + GIC_FABS(t188));
         const gic_real t488 = t422 * (GIC_FABS(t200) + GIC_FABS(t187) + GIC_FABS(t184));
-        const gic_real t489 = m[199] * t197 - m[200] * t183 + (m[205] * t182 - m[206] * t176);
+        const gic_real t489 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t197 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t183 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t182 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t176);
         const gic_real t490 = t421 + t487 + t488 + (GIC_FABS(t186) + GIC_FABS(t199) + GIC_FABS(t489));
-        const gic_real t491 = GIC_FABS(m[212]) + GIC_FABS(m[211]) + GIC_FABS(m[210]);
+        const gic_real t491 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0]);
         const gic_real t492 = t429 * t491;
-        const gic_real t493 = GIC_FABS(m[218]) + GIC_FABS(m[217]) + GIC_FABS(m[216]);
+        const gic_real t493 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6]);
         const gic_real t494 = t451 * t493;
-        const gic_real t495 = GIC_FABS(m[221]) + GIC_FABS(m[220]);
+        const gic_real t495 = GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10]);
         const gic_real t496 = t490 + t492 * t484 + t484 * t494 + t451 * t495;
         const gic_real t497 = R(90.555) * t496;
-        const gic_real t498 = t486 + (GIC_FABS(m[206]) + GIC_FABS(m[205]) + GIC_FABS(m[204]));
+        const gic_real t498 = t486 + (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X]));
         const gic_real t499 = t483 + (t484 * t497 + R(17.248790999999997) * (t498 + t492 + t494));
         const gic_real t500 = t482 + t497;
         const gic_real t501 = t499 + R(4.364385583403788e-05) * t500;
         const gic_real t502 = t500 + R(0.00022912732637616755) * t499;
-        const gic_real t503 = t501 + t502 * (R(1.653405) + (GIC_FABS(m[188]) + GIC_FABS(m[187])));
+        const gic_real t503 = t501 + t502 * (R(1.653405) +
+            (GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z]) +
+            GIC_FABS(m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y])));
         const gic_real t504 = R(283000.0) * (R(0.4699) + (GIC_FABS(t324) + GIC_FABS(road320[0])));
         const gic_real t505 = GIC_FABS(t327) + GIC_FABS(t504);
-        const gic_real t506 = t416 * (GIC_FABS(t301) + GIC_FABS(t303)) + t505 * (R(0.25970099999999996) + GIC_FABS(t313) + GIC_FABS(t310));
+        const gic_real t506 = t416 * (GIC_FABS(t301) + GIC_FABS(t303)) + t505 * (R(0.25970099999999996) +
+            GIC_FABS(t313) + GIC_FABS(t310));
         const gic_real t507 = R(0.193847) + GIC_FABS(t223) + GIC_FABS(t221);
-        const gic_real t508 = t422 + GIC_FABS(m[103]);
+        const gic_real t508 = t422 + GIC_FABS(m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y]);
         const gic_real t509 = t423 + t508 * t508;
         const gic_real t510 = t421 + t509 * (R(0.843847) + GIC_FABS(t224) + GIC_FABS(t222));
         const gic_real t511 = t510 + t422 * (GIC_FABS(-t231) + GIC_FABS(t226));
-        const gic_real t512 = m[103] * t231;
+        const gic_real t512 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t231;
         const gic_real t513 = t511 + (GIC_FABS(-t229) + GIC_FABS(-t512));
-        const gic_real t514 = GIC_FABS(rate[20]);
+        const gic_real t514 = GIC_FABS(rate[TRAILING_ARM_STATE_BAR_R_L_RATE]);
         const gic_real t515 = R(110.555) * (t513 + t514 * t507);
         const gic_real t516 = t506 + (t507 * t515 + (t509 + t514) * R(21.335810000000002));
         const gic_real t517 = t416 + t505 + t515;
@@ -3156,44 +4211,63 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t519 = t517 + t516 * R(0.0002276326880346343);
         const gic_real t520 = R(283000.0) * (R(0.4699) + (GIC_FABS(t294) + GIC_FABS(road289[0])));
         const gic_real t521 = GIC_FABS(t297) + GIC_FABS(t520);
-        const gic_real t522 = t417 * (GIC_FABS(t268) + GIC_FABS(t270)) + t521 * (R(0.25970099999999996) + GIC_FABS(t280) + GIC_FABS(t277));
+        const gic_real t522 = t417 * (GIC_FABS(t268) + GIC_FABS(t270)) + t521 * (R(0.25970099999999996) +
+            GIC_FABS(t280) + GIC_FABS(t277));
         const gic_real t523 = R(0.193847) + GIC_FABS(t254) + GIC_FABS(t252);
-        const gic_real t524 = t422 + GIC_FABS(m[133]);
+        const gic_real t524 = t422 + GIC_FABS(m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y]);
         const gic_real t525 = t423 + t524 * t524;
         const gic_real t526 = t421 + t525 * (R(0.843847) + GIC_FABS(t255) + GIC_FABS(t253));
         const gic_real t527 = t526 + t422 * (GIC_FABS(-t262) + GIC_FABS(t257));
-        const gic_real t528 = m[133] * t262;
+        const gic_real t528 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t262;
         const gic_real t529 = t527 + (GIC_FABS(-t260) + GIC_FABS(-t528));
-        const gic_real t530 = GIC_FABS(rate[21]);
+        const gic_real t530 = GIC_FABS(rate[TRAILING_ARM_STATE_BAR_R_R_RATE]);
         const gic_real t531 = R(110.555) * (t529 + t530 * t523);
         const gic_real t532 = t522 + (t523 * t531 + R(21.335810000000002) * (t525 + t530));
         const gic_real t533 = t417 + t521 + t531;
         const gic_real t534 = t532 + R(4.3930421796356856e-05) * t533;
         const gic_real t535 = t533 + R(0.0002276326880346343) * t532;
         const gic_real t536 = t457 + t480 + t503 + (t518 + t519 * R(1.826)) + (t534 + R(1.826) * t535);
-        const gic_real t537 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t538 = t420 + (rate[16] * R(0.21300000000000008) - (y[17] * t537 + y[16] * t17));
-        const gic_real t539 = y[16] * t34 - y[17] * t29 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
+        const gic_real t537 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t538 = t420 + (rate[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[TRAILING_ARM_STATE_OMEGA_Z] * t537 + y[TRAILING_ARM_STATE_OMEGA_Y] * t17));
+        const gic_real t539 = y[TRAILING_ARM_STATE_OMEGA_Y] * t34 - y[TRAILING_ARM_STATE_OMEGA_Z] * t29 +
+            (R(0.05422899999999997) * rate[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * rate[TRAILING_ARM_STATE_OMEGA_Z]);
         const gic_real t540 = t420 + t539;
         const gic_real t541 = t540 * R(9.072);
-        const gic_real t542 = y[16] * t59 - y[17] * t49 + (rate[16] * t47 - rate[17] * t50);
+        const gic_real t542 = y[TRAILING_ARM_STATE_OMEGA_Y] * t59 - y[TRAILING_ARM_STATE_OMEGA_Z] * t49 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t47 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t50);
         const gic_real t543 = t420 + t542;
         const gic_real t544 = t543 * R(23.965);
-        const gic_real t545 = y[16] * t86 - y[17] * t78 + (rate[16] * t76 - rate[17] * t79);
+        const gic_real t545 = y[TRAILING_ARM_STATE_OMEGA_Y] * t86 - y[TRAILING_ARM_STATE_OMEGA_Z] * t78 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t76 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t79);
         const gic_real t546 = t420 + t545;
         const gic_real t547 = R(23.965) * t546;
-        const gic_real t548 = y[16] * t143 - y[17] * t132 + (rate[16] * t131 - rate[17] * t133);
-        const gic_real t549 = t466 + (t420 + t548) + rate[22] * (m[175] * t124 - m[176] * t118);
-        const gic_real t550 = (t549 + rate[18] * (m[181] * t124 - m[182] * t118)) * R(90.555);
-        const gic_real t551 = y[16] * t201 - y[17] * t190 + (rate[16] * t189 - rate[17] * t191);
-        const gic_real t552 = t489 + (t420 + t551) + rate[22] * (m[211] * t182 - m[212] * t176);
-        const gic_real t553 = R(90.555) * (t552 + rate[19] * (m[217] * t182 - m[218] * t176));
+        const gic_real t548 = y[TRAILING_ARM_STATE_OMEGA_Y] * t143 - y[TRAILING_ARM_STATE_OMEGA_Z] * t132 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t131 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t133);
+        const gic_real t549 = t466 + (t420 + t548) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t124 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t118);
+        const gic_real t550 = (t549 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t124 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t118)) * R(90.555);
+        const gic_real t551 = y[TRAILING_ARM_STATE_OMEGA_Y] * t201 - y[TRAILING_ARM_STATE_OMEGA_Z] * t190 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t189 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t191);
+        const gic_real t552 = t489 + (t420 + t551) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t182 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t176);
+        const gic_real t553 = R(90.555) * (t552 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t182 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t176));
         const gic_real t554 = t538 * R(2086.52) + t541 + t544 + t547 + t550 + t553;
-        const gic_real t555 = y[16] * t232 - y[17] * t225 + (rate[16] * t224 - rate[17] * R(0.843847));
-        const gic_real t556 = t420 + t555 - t512 + rate[20] * t223;
+        const gic_real t555 = y[TRAILING_ARM_STATE_OMEGA_Y] * t232 - y[TRAILING_ARM_STATE_OMEGA_Z] * t225 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t224 - rate[TRAILING_ARM_STATE_OMEGA_Z] * R(0.843847));
+        const gic_real t556 = t420 + t555 - t512 + rate[TRAILING_ARM_STATE_BAR_R_L_RATE] * t223;
         const gic_real t557 = t556 * R(110.555);
-        const gic_real t558 = y[16] * t263 - y[17] * t256 + (rate[16] * t255 - rate[17] * R(-0.843847));
-        const gic_real t559 = t420 + t558 - t528 + rate[21] * t254;
+        const gic_real t558 = y[TRAILING_ARM_STATE_OMEGA_Y] * t263 - y[TRAILING_ARM_STATE_OMEGA_Z] * t256 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t255 - rate[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.843847));
+        const gic_real t559 = t420 + t558 - t528 + rate[TRAILING_ARM_STATE_BAR_R_R_RATE] * t254;
         const gic_real t560 = R(110.555) * t559;
         const gic_real t561 = t291 * t298;
         const gic_real t562 = t271 * t275;
@@ -3206,133 +4280,193 @@ static GIC_COLD GIC_APART int trailing_arm_balance(const trailing_arm *self, gic
         const gic_real t569 = R(-0.006807199999999902) * t398;
         const gic_real t570 = R(-0.006807199999999902) * t386;
         const gic_real t571 = t568 + (t569 + t570 + t565 + t562 - t569 - t570);
-        const gic_real t572 = t554 + t557 + t560 - (t563 + (t566 + (t567 + t571)));
+        const gic_real residual_3 = t554 + t557 + t560 - (t563 + (t566 + (t567 + t571)));
         const gic_real t573 = t427 + t426 * R(5.2381673650894547e-05) + t431 + t444 + t456 + t479;
         const gic_real t574 = t573 + t502 + t519 + t535;
-        const gic_real t575 = y[15] * R(1078.52);
-        const gic_real t576 = t28 + (y[15] * t537 - y[16] * t18 - rate[16] * R(0.056));
-        const gic_real t577 = y[17] * t575 - y[15] * t1 + rate[16] * R(2955.66) + (t538 * R(444.4287600000002) - t576 * R(116.84512));
-        const gic_real t578 = m[42] + y[15];
+        const gic_real t575 = y[TRAILING_ARM_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t576 = t28 + (y[TRAILING_ARM_STATE_OMEGA_X] * t537 - y[TRAILING_ARM_STATE_OMEGA_Y] * t18 -
+            rate[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t577 = y[TRAILING_ARM_STATE_OMEGA_Z] * t575 - y[TRAILING_ARM_STATE_OMEGA_X] * t1 +
+            rate[TRAILING_ARM_STATE_OMEGA_Y] * R(2955.66) + (t538 * R(444.4287600000002) - t576 * R(116.84512));
+        const gic_real t578 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t579 = R(0.4469) * t578;
-        const gic_real t580 = rate[17] - m[42] * y[16];
-        const gic_real t581 = rate[16] + m[42] * y[17];
-        const gic_real t582 = y[17] * t579 - t578 * t41 + (t40 * t580 + t42 * t581);
-        const gic_real t583 = t577 + (rate[16] + (t540 * R(0.4919654879999997) - t32 * R(13.051414655999999))) + (t582 + t47 * t544 - t55 * R(40.476046225));
-        const gic_real t584 = m[72] + y[15];
+        const gic_real t580 = rate[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t581 = rate[TRAILING_ARM_STATE_OMEGA_Y] + m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t582 = y[TRAILING_ARM_STATE_OMEGA_Z] * t579 - t578 * t41 + (t40 * t580 + t42 * t581);
+        const gic_real t583 = t577 + (rate[TRAILING_ARM_STATE_OMEGA_Y] + (t540 * R(0.4919654879999997) - t32 *
+            R(13.051414655999999))) + (t582 + t47 * t544 - t55 * R(40.476046225));
+        const gic_real t584 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t585 = R(0.4469) * t584;
-        const gic_real t586 = rate[17] - m[72] * y[16];
-        const gic_real t587 = rate[16] + m[72] * y[17];
-        const gic_real t588 = y[17] * t585 - t584 * t71 + (t70 * t586 + t72 * t587);
+        const gic_real t586 = rate[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t587 = rate[TRAILING_ARM_STATE_OMEGA_Y] + m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t588 = y[TRAILING_ARM_STATE_OMEGA_Z] * t585 - t584 * t71 + (t70 * t586 + t72 * t587);
         const gic_real t589 = t102 * t94 + (t106 * t92 + t112 * t103);
         const gic_real t590 = t94 * t589 - t103 * t104 + (t98 * t109 + (t105 * t111 + t106 * t114));
         const gic_real t591 = t590 + (t124 * t550 - t121 * t138);
-        const gic_real t592 = t583 + (t588 + t76 * t547 - R(40.476046225) * t83) + (t591 + (m[152] * t550 - t137 * R(149.724089775)));
+        const gic_real t592 = t583 + (t588 + t76 * t547 - R(40.476046225) * t83) + (t591 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t550 - t137 * R(149.724089775)));
         const gic_real t593 = t160 * t152 + (t164 * t150 + t170 * t161);
         const gic_real t594 = t152 * t593 - t161 * t162 + (t156 * t167 + (t163 * t169 + t164 * t172));
         const gic_real t595 = t594 + (t182 * t553 - t179 * t196);
-        const gic_real t596 = y[17] * t212 + (t214 * t207 + y[15] * t218);
-        const gic_real t597 = y[17] * t596 - y[15] * t213 + (t209 * t216 + (R(9.09449) * t217 + t214 * t219));
+        const gic_real t596 = y[TRAILING_ARM_STATE_OMEGA_Z] * t212 + (t214 * t207 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t218);
+        const gic_real t597 = y[TRAILING_ARM_STATE_OMEGA_Z] * t596 - y[TRAILING_ARM_STATE_OMEGA_X] * t213 + (t209 *
+            t216 + (R(9.09449) * t217 + t214 * t219));
         const gic_real t598 = t230 * R(110.555);
         const gic_real t599 = t597 + (t223 * t557 - t221 * t598);
-        const gic_real t600 = t592 + (t595 + (m[188] * t553 - R(149.724089775) * t195)) + (t599 + (t556 * R(2.874430000000003) - t230 * R(-127.13825)));
-        const gic_real t601 = y[17] * t243 + (t245 * t238 + y[15] * t249);
-        const gic_real t602 = y[17] * t601 - y[15] * t244 + (t240 * t247 + (R(9.09449) * t248 + t245 * t250));
+        const gic_real t600 = t592 + (t595 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t553 -
+            R(149.724089775) * t195)) + (t599 + (t556 * R(2.874430000000003) - t230 * R(-127.13825)));
+        const gic_real t601 = y[TRAILING_ARM_STATE_OMEGA_Z] * t243 + (t245 * t238 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t249);
+        const gic_real t602 = y[TRAILING_ARM_STATE_OMEGA_Z] * t601 - y[TRAILING_ARM_STATE_OMEGA_X] * t244 + (t240 *
+            t247 + (R(9.09449) * t248 + t245 * t250));
         const gic_real t603 = R(110.555) * t261;
         const gic_real t604 = t602 + (t254 * t560 - t252 * t603);
         const gic_real t605 = t270 * t404 - t268 * t562 + (t280 * t561 - t277 * t299);
         const gic_real t606 = t303 * t403 - t301 * t565 + (t313 * t564 - t310 * t329);
         const gic_real t607 = t336 * t567 - t332 * t352;
         const gic_real t608 = t360 * t568 - t356 * t376;
-        const gic_real t609 = t398 * R(-0.002199670439359969) - R(1.792978) * t400 + (R(-0.002199670439359969) * t386 - R(1.792978) * t389);
+        const gic_real t609 = t398 * R(-0.002199670439359969) - R(1.792978) * t400 + (R(-0.002199670439359969) * t386 -
+            R(1.792978) * t389);
         const gic_real t610 = t609 + (R(0.376) * t565 - R(-1.6) * t403) + (R(0.376) * t562 - R(-1.6) * t404);
         const gic_real t611 = R(0.09720579999999998) * t400 - t391 * t569 + (t610 + R(1.688965) * t400);
         const gic_real t612 = R(0.09720579999999998) * t389 - t379 * t570 + (t611 + R(1.688965) * t389);
-        const gic_real t613 = t608 + (t612 + (m[152] * t568 - R(1.653405) * t376)) + (m[188] * t567 - R(1.653405) * t352);
+        const gic_real t613 = t608 + (t612 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t568 - R(1.653405) *
+            t376)) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t567 - R(1.653405) * t352);
         const gic_real t614 = t606 + (t607 + t613 + (R(0.026000000000000023) * t566 - R(-1.15) * t408));
-        const gic_real t615 = t600 + (t604 + (R(2.874430000000003) * t559 - R(-127.13825) * t261)) - (t605 + (t614 + (R(0.026000000000000023) * t563 - R(-1.15) * t411)));
+        const gic_real residual_1 = t600 + (t604 + (R(2.874430000000003) * t559 - R(-127.13825) * t261)) - (t605 +
+            (t614 + (R(0.026000000000000023) * t563 - R(-1.15) * t411)));
         const gic_real t616 = t36 * R(9.072);
         const gic_real t617 = t20 * R(2086.52) + t616 + t64 + t90 + t147 + t205;
         const gic_real t618 = t377 + (t399 + t387 + t309 + t276 - t399 - t387);
-        const gic_real t619 = t617 + t235 + t266 - (t412 + (t409 + (t353 + t618)));
-        const gic_real t620 = y[15] * t2 - y[16] * t575 + rate[17] * R(3570.2) + t20 * R(116.84512);
-        const gic_real t621 = t578 * t43 - y[16] * t579 + (t37 * t580 + t40 * t581);
+        const gic_real residual_4 = t617 + t235 + t266 - (t412 + (t409 + (t353 + t618)));
+        const gic_real t620 = y[TRAILING_ARM_STATE_OMEGA_X] * t2 - y[TRAILING_ARM_STATE_OMEGA_Y] * t575 +
+            rate[TRAILING_ARM_STATE_OMEGA_Z] * R(3570.2) + t20 * R(116.84512);
+        const gic_real t621 = t578 * t43 - y[TRAILING_ARM_STATE_OMEGA_Y] * t579 + (t37 * t580 + t40 * t581);
         const gic_real t622 = t621 - t45 * t544 + (t63 * R(40.476046225) - t543 * R(7.359315990000001));
-        const gic_real t623 = t620 + (rate[17] + (t36 * R(13.051414655999999) - m[1] * t541)) + t622;
-        const gic_real t624 = t584 * t73 - y[16] * t585 + (t67 * t586 + t70 * t587);
+        const gic_real t623 = t620 + (rate[TRAILING_ARM_STATE_OMEGA_Z] + (t36 * R(13.051414655999999) -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t541)) + t622;
+        const gic_real t624 = t584 * t73 - y[TRAILING_ARM_STATE_OMEGA_Y] * t585 + (t67 * t586 + t70 * t587);
         const gic_real t625 = t624 - t75 * t547 + (R(40.476046225) * t89 - t546 * R(-7.359315990000001));
         const gic_real t626 = t103 * t107 - t92 * t589 + (t93 * t109 + (t98 * t111 + t102 * t114));
         const gic_real t627 = t626 + (t121 * t147 - t118 * t550);
-        const gic_real t628 = t623 + t625 + (t627 + (t146 * R(149.724089775) - m[151] * t550));
+        const gic_real t628 = t623 + t625 + (t627 + (t146 * R(149.724089775) -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t550));
         const gic_real t629 = t161 * t165 - t150 * t593 + (t151 * t167 + (t156 * t169 + t160 * t172));
         const gic_real t630 = t629 + (t179 * t205 - t176 * t553);
-        const gic_real t631 = y[15] * t215 - t207 * t596 + (t208 * t216 + (t209 * t217 + t212 * t219));
-        const gic_real t632 = t631 + (t221 * t235 - t556 * R(21.430755085)) + (t234 * R(-127.13825) - t556 * R(71.86075000000001));
-        const gic_real t633 = t628 + (t630 + (R(149.724089775) * t204 - m[187] * t553)) + t632;
-        const gic_real t634 = y[15] * t246 - t238 * t601 + (t239 * t247 + (t240 * t248 + t243 * t250));
-        const gic_real t635 = t634 + (t252 * t266 - t559 * R(-21.430755085)) + (R(-127.13825) * t265 - t559 * R(-71.86075000000001));
+        const gic_real t631 = y[TRAILING_ARM_STATE_OMEGA_X] * t215 - t207 * t596 + (t208 * t216 + (t209 * t217 + t212 *
+            t219));
+        const gic_real t632 = t631 + (t221 * t235 - t556 * R(21.430755085)) + (t234 * R(-127.13825) - t556 *
+            R(71.86075000000001));
+        const gic_real t633 = t628 + (t630 + (R(149.724089775) * t204 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t553)) + t632;
+        const gic_real t634 = y[TRAILING_ARM_STATE_OMEGA_X] * t246 - t238 * t601 + (t239 * t247 + (t240 * t248 + t243 *
+            t250));
+        const gic_real t635 = t634 + (t252 * t266 - t559 * R(-21.430755085)) + (R(-127.13825) * t265 - t559 *
+            R(-71.86075000000001));
         const gic_real t636 = t332 * t353 - t331 * t567;
         const gic_real t637 = t356 * t377 - t355 * t568;
-        const gic_real t638 = R(1.792978) * t399 - t398 * R(-0.003388550642239951) + (R(1.792978) * t387 - t386 * R(0.003388550642239951));
-        const gic_real t639 = t638 + (t308 * R(-0.08000000000000007) - R(0.6) * t565) + (t275 * R(0.08000000000000007) - R(-0.6) * t562);
-        const gic_real t640 = t392 * t569 - R(0.09720579999999998) * t399 + (t639 + (t398 * R(-0.00209039581919997) - R(1.688965) * t399));
-        const gic_real t641 = t380 * t570 - R(0.09720579999999998) * t387 + (t640 + (t386 * R(0.00209039581919997) - R(1.688965) * t387));
-        const gic_real t642 = t637 + (t641 + (R(1.653405) * t377 - m[151] * t568)) + (R(1.653405) * t353 - m[187] * t567);
-        const gic_real t643 = t310 * t330 - R(0.25970099999999996) * t564 - t303 * t309 + (t636 + t642 + (R(-1.15) * t409 - R(0.65) * t566));
-        const gic_real t644 = t277 * t300 - R(-0.25970099999999996) * t561 - t270 * t276 + (t643 + (R(-1.15) * t412 - R(-0.65) * t563));
+        const gic_real t638 = R(1.792978) * t399 - t398 * R(-0.003388550642239951) + (R(1.792978) * t387 - t386 *
+            R(0.003388550642239951));
+        const gic_real t639 = t638 + (t308 * R(-0.08000000000000007) - R(0.6) * t565) + (t275 * R(0.08000000000000007) -
+            R(-0.6) * t562);
+        const gic_real t640 = t392 * t569 - R(0.09720579999999998) * t399 + (t639 + (t398 * R(-0.00209039581919997) -
+            R(1.688965) * t399));
+        const gic_real t641 = t380 * t570 - R(0.09720579999999998) * t387 + (t640 + (t386 * R(0.00209039581919997) -
+            R(1.688965) * t387));
+        const gic_real t642 = t637 + (t641 + (R(1.653405) * t377 - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] *
+            t568)) + (R(1.653405) * t353 - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t567);
+        const gic_real t643 = t310 * t330 - R(0.25970099999999996) * t564 - t303 * t309 + (t636 + t642 + (R(-1.15) *
+            t409 - R(0.65) * t566));
+        const gic_real t644 = t277 * t300 - R(-0.25970099999999996) * t561 - t270 * t276 + (t643 + (R(-1.15) * t412 -
+            R(-0.65) * t563));
         const gic_real t645 = t576 * R(2086.52) + t33 + t56 + t84 + t138 + t196;
         const gic_real t646 = t376 + (t400 + t389 + t403 + t404 - t400 - t389);
-        const gic_real t647 = t645 + t598 + t603 - (t411 + (t408 + (t352 + t646)));
-        const gic_real t648 = m[185] * t138 + m[184] * t147 + (m[182] * t627 + (m[181] * t591 + m[180] * t148));
-        const gic_real t649 = (x[0] - R(-0.29722)) * R(9310.0);
-        const gic_real t650 = m[185] * t376 + m[184] * t377 + (m[182] * t637 + (m[181] * t608 + m[180] * t378));
-        const gic_real t651 = GIC_FABS(t649) + R(9310.0) * (R(0.29722) + GIC_FABS(x[0])) + t443;
-        const gic_real t652 = m[221] * t196 + m[220] * t205 + (m[218] * t630 + (m[217] * t595 + m[216] * t206));
-        const gic_real t653 = R(9310.0) * (x[1] - R(-0.29722));
-        const gic_real t654 = m[221] * t352 + m[220] * t353 + (m[218] * t636 + (m[217] * t607 + m[216] * t354));
-        const gic_real t655 = GIC_FABS(t653) + R(9310.0) * (R(0.29722) + GIC_FABS(x[1])) + t455;
-        const gic_real t656 = (x[2] - R(-0.11142)) * R(22680.0);
-        const gic_real t657 = GIC_FABS(t656) + R(22680.0) * (R(0.11142) + GIC_FABS(x[2])) + t518;
-        const gic_real t658 = R(22680.0) * (x[3] - R(-0.11142));
-        const gic_real t659 = GIC_FABS(t658) + R(22680.0) * (R(0.11142) + GIC_FABS(x[3])) + t534;
-        const gic_real t660 = t616 + (m[176] * t627 + (m[175] * t591 + m[174] * t148));
-        const gic_real t661 = t660 + (m[212] * t630 + (m[211] * t595 + m[210] * t206));
-        const gic_real t662 = x[4] * R(100000.0);
-        const gic_real t663 = xd[4] * R(12000.0);
-        const gic_real t664 = m[176] * t637 + (m[175] * t608 + m[174] * t378) - (t662 + t663);
-        const gic_real t665 = t664 + (m[212] * t636 + (m[211] * t607 + m[210] * t354));
-        const gic_real t666 = GIC_FABS(t663) + GIC_FABS(t662) + R(100000.0) * GIC_FABS(x[4]);
-        const gic_real t667 = t237 + t267 - t413;
-        const gic_real t668 = t633 + t635 - t644;
-        const gic_real t669 = t65 + t648 - (t401 - t649 + t650);
+        const gic_real residual_5 = t645 + t598 + t603 - (t411 + (t408 + (t352 + t646)));
+        const gic_real t648 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] * t138 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] * t147 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t627 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t591 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t148));
+        /* force bar_f_l */
+        const gic_real t649 = (x[TRAILING_ARM_X_BAR_F_L] - R(-0.29722)) * R(9310.0);
+        const gic_real t650 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] * t376 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] * t377 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t637 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t608 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t378));
+        const gic_real t651 = GIC_FABS(t649) + R(9310.0) * (R(0.29722) + GIC_FABS(x[TRAILING_ARM_X_BAR_F_L])) + t443;
+        const gic_real t652 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] * t196 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] * t205 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t630 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t595 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t206));
+        /* force bar_f_r */
+        const gic_real t653 = R(9310.0) * (x[TRAILING_ARM_X_BAR_F_R] - R(-0.29722));
+        const gic_real t654 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] * t352 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] * t353 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t636 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t607 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t354));
+        const gic_real t655 = GIC_FABS(t653) + R(9310.0) * (R(0.29722) + GIC_FABS(x[TRAILING_ARM_X_BAR_F_R])) + t455;
+        /* force bar_r_l */
+        const gic_real t656 = (x[TRAILING_ARM_X_BAR_R_L] - R(-0.11142)) * R(22680.0);
+        const gic_real t657 = GIC_FABS(t656) + R(22680.0) * (R(0.11142) + GIC_FABS(x[TRAILING_ARM_X_BAR_R_L])) + t518;
+        /* force bar_r_r */
+        const gic_real t658 = R(22680.0) * (x[TRAILING_ARM_X_BAR_R_R] - R(-0.11142));
+        const gic_real t659 = GIC_FABS(t658) + R(22680.0) * (R(0.11142) + GIC_FABS(x[TRAILING_ARM_X_BAR_R_R])) + t534;
+        const gic_real t660 = t616 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t627 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t591 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t148));
+        const gic_real t661 = t660 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t630 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t595 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t206));
+        /* force rack */
+        const gic_real t662 = x[TRAILING_ARM_X_RACK] * R(100000.0);
+        const gic_real t663 = xd[TRAILING_ARM_X_RACK] * R(12000.0);
+        const gic_real t664 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t637 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t608 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t378) - (t662 + t663);
+        const gic_real t665 = t664 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t636 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t607 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t354));
+        const gic_real t666 = GIC_FABS(t663) + GIC_FABS(t662) + R(100000.0) * GIC_FABS(x[TRAILING_ARM_X_RACK]);
+        const gic_real residual_0 = t237 + t267 - t413;
+        const gic_real residual_2 = t633 + t635 - t644;
+        const gic_real residual_6 = t65 + t648 - (t401 - t649 + t650);
         const gic_real t670 = t651 + t470 * t478 + t472 * t479;
-        const gic_real t671 = t652 - t91 - (t390 - t388 - t653 + t654);
+        const gic_real residual_7 = t652 - t91 - (t390 - t388 - t653 + t654);
         const gic_real t672 = t655 + t493 * t501 + t495 * t502;
-        const gic_real t673 = t599 - (t606 - t656);
-        const gic_real t674 = t604 - (t605 - t658);
-        const gic_real t675 = t661 - t665;
+        const gic_real residual_8 = t599 - (t606 - t656);
+        const gic_real residual_9 = t604 - (t605 - t658);
+        const gic_real residual_10 = t661 - t665;
         const gic_real t676 = t666 + t431 + t468 * t478 + t491 * t501;
-        tau[0] = t667;
-        size[0] = t536;
-        tau[3] = t572;
-        size[3] = t574;
-        tau[1] = t615;
-        size[1] = t536;
-        tau[4] = t619;
-        size[4] = t574;
-        tau[2] = t668;
-        size[2] = t536;
-        tau[5] = t647;
-        size[5] = t574;
-        tau[6] = t669;
-        size[6] = t670;
-        tau[7] = t671;
-        size[7] = t672;
-        tau[8] = t673;
-        size[8] = t657;
-        tau[9] = t674;
-        size[9] = t659;
-        tau[10] = t675;
-        size[10] = t676;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_X] = residual_0;
+        size[TRAILING_ARM_UNKNOWN_ALPHA_X] = t536;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_X] = residual_3;
+        size[TRAILING_ARM_UNKNOWN_ACCELERATION_X] = t574;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_Y] = residual_1;
+        size[TRAILING_ARM_UNKNOWN_ALPHA_Y] = t536;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] = residual_4;
+        size[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] = t574;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_Z] = residual_2;
+        size[TRAILING_ARM_UNKNOWN_ALPHA_Z] = t536;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] = residual_5;
+        size[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] = t574;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] = residual_6;
+        size[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] = t670;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] = residual_7;
+        size[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] = t672;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] = residual_8;
+        size[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] = t657;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] = residual_9;
+        size[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] = t659;
+        tau[TRAILING_ARM_UNKNOWN_OF_RACK] = residual_10;
+        size[TRAILING_ARM_UNKNOWN_OF_RACK] = t676;
     }
     return GIC_OK;
 }
@@ -3351,8 +4485,8 @@ static GIC_COLD int trailing_arm_check_constraints(trailing_arm *self)
 }
 
 /* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
-static GIC_COLD GIC_APART int trailing_arm_check(trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
-    const gic_real *rate)
+static GIC_COLD GIC_APART int trailing_arm_check(trailing_arm *self, gic_real time, const gic_real *y,
+    const gic_real *e, const gic_real *rate)
 {
     gic_real tau[TRAILING_ARM_UNKNOWN_ROOM], size[TRAILING_ARM_UNKNOWN_ROOM];
     int i, status = trailing_arm_check_constraints(self);
@@ -3369,7 +4503,7 @@ static GIC_COLD GIC_APART int trailing_arm_check(trailing_arm *self, gic_real ti
     return status;
 }
 
-/* ---- the functions of trailing_arm.h ------------------------------------------------------------------------------------ */
+/* ---- the functions of trailing_arm.h ----------------------------------------------------------------------------- */
 
 /* The state is recovered: motion of all bodies; e: Euler parameters with the dependent one recovered. */
 static int trailing_arm_locate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4])
@@ -3389,7 +4523,8 @@ static int trailing_arm_locate(trailing_arm *self, gic_real time, const gic_real
 }
 
 /* The same, and the state's rate, which is none where the status is not GIC_OK. */
-static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4], gic_real rate[TRAILING_ARM_STATE_ROOM])
+static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_real *y, gic_real e[4],
+    gic_real rate[TRAILING_ARM_STATE_ROOM])
 {
     const int32_t flip = self->head.flip;
     int status = trailing_arm_locate(self, time, y, e);
@@ -3397,7 +4532,8 @@ static int trailing_arm_evaluate(trailing_arm *self, gic_real time, const gic_re
     if (status == GIC_OK)
         status = trailing_arm_dynamics(self, time, y, e, rate);
     /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
-    if (status == GIC_OK && !GIC_FINITE(rate + TRAILING_ARM_TWIST, TRAILING_ARM_STATES - TRAILING_ARM_TWIST))
+    if (status == GIC_OK && TRAILING_ARM_STATES > TRAILING_ARM_TWIST && !GIC_FINITE(rate + TRAILING_ARM_TWIST,
+        TRAILING_ARM_STATES - TRAILING_ARM_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = trailing_arm_check(self, time, y, e, rate);
@@ -3417,8 +4553,9 @@ int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, g
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its place
- * at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
+/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
+ * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
+ * good. */
 static int trailing_arm_march(trailing_arm *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -3429,7 +4566,7 @@ static int trailing_arm_march(trailing_arm *self, gic_real time)
         return status;
     memcpy(before, state, TRAILING_ARM_STATES * sizeof *state);
     for (i = 0; i < TRAILING_ARM_STATES; ++i)
-        state[i] += weight * (R(23.0) * rate[i] - R(16.0) * past[i] + R(5.0) * older[i]);
+        state[i] = GIC_ADAMS_BASHFORTH(state[i], weight, rate[i], past[i], older[i]);
     status = trailing_arm_settle(self, state);
     if (status != GIC_OK) {
         memcpy(state, before, TRAILING_ARM_STATES * sizeof *state);
@@ -3693,7 +4830,8 @@ static const char *const trailing_arm_condition_text[1] = {
     NULL
 };
 
-/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a start. */
+/* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
+ * start. */
 static const struct {
     int place;
     gic_real q[7];
@@ -3807,7 +4945,8 @@ const char *trailing_arm_status_state(const trailing_arm *self)
 const char *trailing_arm_status_condition(const trailing_arm *self)
 {
     const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY ? self->head.condition : -1;
-    return condition >= 0 && condition < trailing_arm_model.condition_count ? trailing_arm_model.condition_text[condition] : NULL;
+    return condition >= 0 && condition < trailing_arm_model.condition_count ?
+        trailing_arm_model.condition_text[condition] : NULL;
 }
 
 void trailing_arm_snapshot(const trailing_arm *self, trailing_arm *copy)
@@ -3820,9 +4959,10 @@ void trailing_arm_restore(trailing_arm *self, const trailing_arm *copy)
     *self = *copy;
 }
 
-/* ---- self-test ------------------------------------------------------------------------------------------------------ */
+/* ---- self-test --------------------------------------------------------------------------------------------------- */
 
-/* tau = residual of the equations of motion at accelerations acc, body by body: another way than trailing_arm_dynamics. */
+/* tau = residual of the equations of motion at accelerations acc, body by body: another way than
+ * trailing_arm_dynamics. */
 static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *acc, gic_real *tau)
 {
@@ -3830,248 +4970,463 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
     const gic_real *const p = self->parameter, *const port = self->port;
     (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)acc, (void)tau;
     {
-        const gic_real t1 = y[17] * R(3570.2);
-        const gic_real t2 = y[16] * R(2955.66);
-        const gic_real t3 = y[16] * R(0.056);
-        const gic_real t4 = y[16] * R(0.21300000000000008);
-        const gic_real t5 = y[15] * t3 + y[17] * t4 + (acc[2] * R(0.056) - acc[0] * R(0.21300000000000008));
-        const gic_real t6 = acc[4] + t5;
-        const gic_real t7 = y[16] * t1 - y[17] * t2 + acc[0] * R(1078.52) - t6 * R(444.4287600000002);
-        const gic_real t8 = m[16] + (m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]));
-        const gic_real t9 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t10 = y[15] * t8 - y[16] * t9 + (m[1] * acc[0] - R(1.438648) * acc[1]);
-        const gic_real t11 = acc[5] + t10;
+        /* inertia of chassis */
+        const gic_real t1 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(3570.2);
+        const gic_real t2 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(2955.66);
+        const gic_real t3 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056);
+        const gic_real t4 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t5 = y[TRAILING_ARM_STATE_OMEGA_X] * t3 + y[TRAILING_ARM_STATE_OMEGA_Z] * t4 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * R(0.056) - acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * R(0.21300000000000008));
+        const gic_real t6 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t5;
+        const gic_real t7 = y[TRAILING_ARM_STATE_OMEGA_Y] * t1 - y[TRAILING_ARM_STATE_OMEGA_Z] * t2 +
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * R(1078.52) - t6 * R(444.4287600000002);
+        /* inertia of rack */
+        const gic_real t8 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] + (R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Z] -
+            R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_X]));
+        const gic_real t9 = R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t10 = y[TRAILING_ARM_STATE_OMEGA_X] * t8 - y[TRAILING_ARM_STATE_OMEGA_Y] * t9 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * acc[TRAILING_ARM_UNKNOWN_ALPHA_X] - R(1.438648) *
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_Y]);
+        const gic_real t11 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t10;
         const gic_real t12 = t11 * R(9.072);
-        const gic_real t13 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t14 = y[17] * t9 - y[15] * t13 + (R(1.438648) * acc[2] - R(0.05422899999999997) * acc[0]);
-        const gic_real t15 = acc[10] + (acc[4] + t14);
-        const gic_real t16 = m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469));
-        const gic_real t17 = m[38] * R(0.8938);
-        const gic_real t18 = m[37] * R(0.4469);
-        const gic_real t19 = m[41] * t17 + m[40] * t18;
-        const gic_real t20 = y[17] * t16 + y[16] * t19;
-        const gic_real t21 = m[38] * t17 + m[37] * t18;
-        const gic_real t22 = y[17] * t19 + y[16] * t21;
-        const gic_real t23 = y[16] * t20 - y[17] * t22 + R(0.4469) * (acc[0] + acc[6]);
-        const gic_real t24 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
-        const gic_real t25 = R(1.688965) * y[17];
-        const gic_real t26 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t27 = m[42] * t26;
-        const gic_real t28 = t25 - y[15] * t26 - t27 - t27;
+        const gic_real t13 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_X] -
+            R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t14 = y[TRAILING_ARM_STATE_OMEGA_Z] * t9 - y[TRAILING_ARM_STATE_OMEGA_X] * t13 + (R(1.438648) *
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] - R(0.05422899999999997) * acc[TRAILING_ARM_UNKNOWN_ALPHA_X]);
+        const gic_real t15 = acc[TRAILING_ARM_UNKNOWN_OF_RACK] + (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t14);
+        /* inertia of lca_f_l */
+        const gic_real t16 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] *
+            R(0.4469));
+        const gic_real t17 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t18 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t19 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * t17 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * t18;
+        const gic_real t20 = y[TRAILING_ARM_STATE_OMEGA_Z] * t16 + y[TRAILING_ARM_STATE_OMEGA_Y] * t19;
+        const gic_real t21 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * t17 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * t18;
+        const gic_real t22 = y[TRAILING_ARM_STATE_OMEGA_Z] * t19 + y[TRAILING_ARM_STATE_OMEGA_Y] * t21;
+        const gic_real t23 = y[TRAILING_ARM_STATE_OMEGA_Y] * t20 - y[TRAILING_ARM_STATE_OMEGA_Z] * t22 + R(0.4469) *
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L]);
+        const gic_real t24 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.24689200985615367);
+        const gic_real t25 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t26 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.24689200985615367);
+        const gic_real t27 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t26;
+        const gic_real t28 = t25 - y[TRAILING_ARM_STATE_OMEGA_X] * t26 - t27 - t27;
         const gic_real t29 = R(0.307086) + t24;
-        const gic_real t30 = y[16] * t26 - y[17] * t29;
-        const gic_real t31 = R(1.688965) * acc[1];
-        const gic_real t32 = y[15] * t28 - y[16] * t30 + (acc[0] * t29 - t31);
-        const gic_real t33 = acc[5] + t32 - m[42] * t27 + acc[6] * t24;
+        const gic_real t30 = y[TRAILING_ARM_STATE_OMEGA_Y] * t26 - y[TRAILING_ARM_STATE_OMEGA_Z] * t29;
+        const gic_real t31 = R(1.688965) * acc[TRAILING_ARM_UNKNOWN_ALPHA_Y];
+        const gic_real t32 = y[TRAILING_ARM_STATE_OMEGA_X] * t28 - y[TRAILING_ARM_STATE_OMEGA_Y] * t30 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t29 - t31);
+        const gic_real t33 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t32 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t27 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] * t24;
         const gic_real t34 = t33 * R(23.965);
-        const gic_real t35 = m[42] * t24;
-        const gic_real t36 = R(1.688965) * y[16];
-        const gic_real t37 = t35 + (t35 + (y[15] * t29 - t36));
-        const gic_real t38 = R(1.688965) * acc[2];
-        const gic_real t39 = y[17] * t30 - y[15] * t37 + (t38 - acc[0] * t26);
-        const gic_real t40 = acc[4] + t39 - m[42] * t35 - acc[6] * t26;
+        const gic_real t35 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t24;
+        const gic_real t36 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t37 = t35 + (t35 + (y[TRAILING_ARM_STATE_OMEGA_X] * t29 - t36));
+        const gic_real t38 = R(1.688965) * acc[TRAILING_ARM_UNKNOWN_ALPHA_Z];
+        const gic_real t39 = y[TRAILING_ARM_STATE_OMEGA_Z] * t30 - y[TRAILING_ARM_STATE_OMEGA_X] * t37 + (t38 -
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t26);
+        const gic_real t40 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t39 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t35 - acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] * t26;
         const gic_real t41 = t40 * R(23.965);
         const gic_real t42 = t23 + (t24 * t34 - t26 * t41);
-        const gic_real t43 = t7 + (acc[0] + (m[1] * t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
-        const gic_real t44 = m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469));
-        const gic_real t45 = m[68] * R(0.8938);
-        const gic_real t46 = m[67] * R(0.4469);
-        const gic_real t47 = m[71] * t45 + m[70] * t46;
-        const gic_real t48 = y[17] * t44 + y[16] * t47;
-        const gic_real t49 = m[68] * t45 + m[67] * t46;
-        const gic_real t50 = y[17] * t47 + y[16] * t49;
-        const gic_real t51 = y[16] * t48 - y[17] * t50 + R(0.4469) * (acc[0] - acc[7]);
-        const gic_real t52 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
-        const gic_real t53 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t54 = m[72] * t53;
-        const gic_real t55 = t25 - y[15] * t53 - t54 - t54;
+        const gic_real t43 = t7 + (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] + (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] *
+            t12 - t15 * R(0.4919654879999997))) + (t42 + t33 * R(7.359315990000001));
+        /* inertia of lca_f_r */
+        const gic_real t44 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] *
+            R(0.4469));
+        const gic_real t45 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t46 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t47 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * t45 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * t46;
+        const gic_real t48 = y[TRAILING_ARM_STATE_OMEGA_Z] * t44 + y[TRAILING_ARM_STATE_OMEGA_Y] * t47;
+        const gic_real t49 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * t45 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * t46;
+        const gic_real t50 = y[TRAILING_ARM_STATE_OMEGA_Z] * t47 + y[TRAILING_ARM_STATE_OMEGA_Y] * t49;
+        const gic_real t51 = y[TRAILING_ARM_STATE_OMEGA_Y] * t48 - y[TRAILING_ARM_STATE_OMEGA_Z] * t50 + R(0.4469) *
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] - acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R]);
+        const gic_real t52 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.24689200985615367);
+        const gic_real t53 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.24689200985615367);
+        const gic_real t54 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t53;
+        const gic_real t55 = t25 - y[TRAILING_ARM_STATE_OMEGA_X] * t53 - t54 - t54;
         const gic_real t56 = R(-0.307086) + t52;
-        const gic_real t57 = y[16] * t53 - y[17] * t56;
-        const gic_real t58 = y[15] * t55 - y[16] * t57 + (acc[0] * t56 - t31);
-        const gic_real t59 = acc[5] + t58 - m[72] * t54 - acc[7] * t52;
+        const gic_real t57 = y[TRAILING_ARM_STATE_OMEGA_Y] * t53 - y[TRAILING_ARM_STATE_OMEGA_Z] * t56;
+        const gic_real t58 = y[TRAILING_ARM_STATE_OMEGA_X] * t55 - y[TRAILING_ARM_STATE_OMEGA_Y] * t57 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t56 - t31);
+        const gic_real t59 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t58 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t54 - acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] * t52;
         const gic_real t60 = R(23.965) * t59;
-        const gic_real t61 = m[72] * t52;
-        const gic_real t62 = t61 + (t61 + (y[15] * t56 - t36));
-        const gic_real t63 = y[17] * t57 - y[15] * t62 + (t38 - acc[0] * t53);
-        const gic_real t64 = acc[4] + t63 - m[72] * t61 + acc[7] * t53;
+        const gic_real t61 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t52;
+        const gic_real t62 = t61 + (t61 + (y[TRAILING_ARM_STATE_OMEGA_X] * t56 - t36));
+        const gic_real t63 = y[TRAILING_ARM_STATE_OMEGA_Z] * t57 - y[TRAILING_ARM_STATE_OMEGA_X] * t62 + (t38 -
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t53);
+        const gic_real t64 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t63 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t61 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] * t53;
         const gic_real t65 = R(23.965) * t64;
         const gic_real t66 = t51 + (t52 * t60 - t53 * t65);
-        const gic_real t67 = m[163] + y[16];
-        const gic_real t68 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t69 = m[164] + y[17];
-        const gic_real t70 = m[158] * R(4.7728205);
-        const gic_real t71 = m[157] * R(7.58122);
-        const gic_real t72 = m[156] * R(4.8947505);
-        const gic_real t73 = m[161] * t70 + (m[160] * t71 + m[159] * t72);
-        const gic_real t74 = m[155] * R(4.7728205);
-        const gic_real t75 = m[154] * R(7.58122);
-        const gic_real t76 = m[153] * R(4.8947505);
-        const gic_real t77 = m[161] * t74 + (m[160] * t75 + m[159] * t76);
-        const gic_real t78 = m[162] + y[15];
+        /* inertia of wheel_f_l */
+        const gic_real t67 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t68 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t69 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t70 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t71 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t72 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t73 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t70 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t71 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t72);
+        const gic_real t74 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t75 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t76 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t77 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t74 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t75 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t76);
+        const gic_real t78 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t79 = t68 * t69 + (t73 * t67 + t77 * t78);
-        const gic_real t80 = m[158] * t70 + (m[157] * t71 + m[156] * t72);
-        const gic_real t81 = m[158] * t74 + (m[157] * t75 + m[156] * t76);
+        const gic_real t80 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t70 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t71 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t72);
+        const gic_real t81 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t74 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t75 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t76);
         const gic_real t82 = t73 * t69 + (t80 * t67 + t81 * t78);
-        const gic_real t83 = m[170] + (acc[2] + (m[163] * y[15] - m[162] * y[16])) + m[176] * acc[10];
-        const gic_real t84 = t83 + m[182] * acc[6];
-        const gic_real t85 = m[169] + (acc[1] + (m[162] * y[17] - m[164] * y[15])) + m[175] * acc[10];
-        const gic_real t86 = t85 + m[181] * acc[6];
-        const gic_real t87 = m[155] * t74 + (m[154] * t75 + m[153] * t76);
-        const gic_real t88 = m[168] + (acc[0] + (m[164] * y[16] - m[163] * y[17])) + m[174] * acc[10];
-        const gic_real t89 = t88 + m[180] * acc[6];
+        const gic_real t83 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t84 = t83 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L];
+        const gic_real t85 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t86 = t85 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L];
+        const gic_real t87 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * t74 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * t75 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * t76);
+        const gic_real t88 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t89 = t88 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L];
         const gic_real t90 = t67 * t79 - t69 * t82 + (t77 * t84 + (t81 * t86 + t87 * t89));
-        const gic_real t91 = m[158] * R(0.09182100000000004);
-        const gic_real t92 = m[156] * R(-0.004825999999999997);
-        const gic_real t93 = t91 + (t92 + m[157] * R(0.08910630000000008));
-        const gic_real t94 = m[155] * R(0.09182100000000004);
-        const gic_real t95 = m[153] * R(-0.004825999999999997);
-        const gic_real t96 = t94 + (t95 + m[154] * R(0.08910630000000008));
-        const gic_real t97 = m[161] * R(0.09182100000000004);
-        const gic_real t98 = m[159] * R(-0.004825999999999997);
-        const gic_real t99 = t97 + (t98 + m[160] * R(0.08910630000000008));
-        const gic_real t100 = m[164] * t96 - m[162] * t99;
-        const gic_real t101 = m[163] * t99 - m[164] * t93;
-        const gic_real t102 = m[162] * t100 - m[163] * t101 + (m[168] * t93 - m[169] * t96);
-        const gic_real t103 = m[166] + t100;
+        /* wheel tire_f_l */
+        const gic_real t91 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t92 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t93 = t91 + (t92 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t94 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t95 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t96 = t94 + (t95 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t97 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t98 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t99 = t97 + (t98 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t100 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t96 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t99;
+        const gic_real t101 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t99 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t93;
+        const gic_real t102 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t100 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t101 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t93 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t96);
+        const gic_real t103 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] + t100;
         const gic_real t104 = R(1.653405) + t96;
-        const gic_real t105 = m[152] + t99;
-        const gic_real t106 = t103 + (t103 + (y[17] * t104 - y[15] * t105));
-        const gic_real t107 = m[151] + t93;
-        const gic_real t108 = t101 + (t101 + (y[16] * t105 - y[17] * t107));
-        const gic_real t109 = y[15] * t106 - y[16] * t108 + (acc[0] * t107 - acc[1] * t104);
-        const gic_real t110 = m[173] + t102 + (acc[5] + t109) + acc[10] * (m[174] * t93 - m[175] * t96);
-        const gic_real t111 = t110 + acc[6] * (m[185] + (m[180] * t93 - m[181] * t96));
+        const gic_real t105 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t99;
+        const gic_real t106 = t103 + (t103 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t104 - y[TRAILING_ARM_STATE_OMEGA_X] *
+            t105));
+        const gic_real t107 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t93;
+        const gic_real t108 = t101 + (t101 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t105 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t107));
+        const gic_real t109 = y[TRAILING_ARM_STATE_OMEGA_X] * t106 - y[TRAILING_ARM_STATE_OMEGA_Y] * t108 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t107 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t104);
+        const gic_real t110 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Z] + t102 +
+            (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t109) + acc[TRAILING_ARM_UNKNOWN_OF_RACK] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t93 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t96);
+        const gic_real t111 = t110 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t93 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t96));
         const gic_real t112 = t111 * R(90.555);
-        const gic_real t113 = m[162] * t93 - m[163] * t96;
-        const gic_real t114 = m[164] * t101 - m[162] * t113 + (m[170] * t96 - m[168] * t99);
-        const gic_real t115 = m[167] + t113;
-        const gic_real t116 = t115 + (t115 + (y[15] * t107 - y[16] * t104));
-        const gic_real t117 = y[17] * t108 - y[15] * t116 + (acc[2] * t104 - acc[0] * t105);
-        const gic_real t118 = m[172] + t114 + (acc[4] + t117) + acc[10] * (m[176] * t96 - m[174] * t99);
-        const gic_real t119 = t118 + acc[6] * (m[184] + (m[182] * t96 - m[180] * t99));
+        const gic_real t113 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t93 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t96;
+        const gic_real t114 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t101 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t113 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t96 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t99);
+        const gic_real t115 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] + t113;
+        const gic_real t116 = t115 + (t115 + (y[TRAILING_ARM_STATE_OMEGA_X] * t107 - y[TRAILING_ARM_STATE_OMEGA_Y] *
+            t104));
+        const gic_real t117 = y[TRAILING_ARM_STATE_OMEGA_Z] * t108 - y[TRAILING_ARM_STATE_OMEGA_X] * t116 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t104 - acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t105);
+        const gic_real t118 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Y] + t114 +
+            (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t117) + acc[TRAILING_ARM_UNKNOWN_OF_RACK] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t96 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t99);
+        const gic_real t119 = t118 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t96 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t99));
         const gic_real t120 = t119 * R(90.555);
         const gic_real t121 = t90 + (t93 * t112 - t99 * t120);
-        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 + (m[151] * t112 - m[152] * t120));
-        const gic_real t123 = m[199] + y[16];
-        const gic_real t124 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t125 = m[200] + y[17];
-        const gic_real t126 = m[194] * R(4.7728205);
-        const gic_real t127 = m[193] * R(7.58122);
-        const gic_real t128 = m[192] * R(4.8947505);
-        const gic_real t129 = m[197] * t126 + (m[196] * t127 + m[195] * t128);
-        const gic_real t130 = m[191] * R(4.7728205);
-        const gic_real t131 = m[190] * R(7.58122);
-        const gic_real t132 = m[189] * R(4.8947505);
-        const gic_real t133 = m[197] * t130 + (m[196] * t131 + m[195] * t132);
-        const gic_real t134 = m[198] + y[15];
+        const gic_real t122 = t43 + (t66 + t59 * R(-7.359315990000001)) + (t121 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t112 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t120));
+        /* inertia of wheel_f_r */
+        const gic_real t123 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t124 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t125 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] + y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t126 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t127 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t128 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t129 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t126 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t127 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t128);
+        const gic_real t130 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t131 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t132 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t133 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t130 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t131 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t132);
+        const gic_real t134 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t135 = t124 * t125 + (t129 * t123 + t133 * t134);
-        const gic_real t136 = m[194] * t126 + (m[193] * t127 + m[192] * t128);
-        const gic_real t137 = m[194] * t130 + (m[193] * t131 + m[192] * t132);
+        const gic_real t136 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t126 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t127 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t128);
+        const gic_real t137 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t130 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t131 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t132);
         const gic_real t138 = t129 * t125 + (t136 * t123 + t137 * t134);
-        const gic_real t139 = m[206] + (acc[2] + (m[199] * y[15] - m[198] * y[16])) + m[212] * acc[10];
-        const gic_real t140 = t139 + m[218] * acc[7];
-        const gic_real t141 = m[205] + (acc[1] + (m[198] * y[17] - m[200] * y[15])) + m[211] * acc[10];
-        const gic_real t142 = t141 + m[217] * acc[7];
-        const gic_real t143 = m[191] * t130 + (m[190] * t131 + m[189] * t132);
-        const gic_real t144 = m[204] + (acc[0] + (m[200] * y[16] - m[199] * y[17])) + m[210] * acc[10];
-        const gic_real t145 = t144 + m[216] * acc[7];
+        const gic_real t139 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t140 = t139 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R];
+        const gic_real t141 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t142 = t141 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R];
+        const gic_real t143 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * t130 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * t131 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * t132);
+        const gic_real t144 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] *
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK];
+        const gic_real t145 = t144 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] *
+            acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R];
         const gic_real t146 = t123 * t135 - t125 * t138 + (t133 * t140 + (t137 * t142 + t143 * t145));
-        const gic_real t147 = m[194] * R(0.09182100000000004);
-        const gic_real t148 = m[192] * R(-0.004825999999999997);
-        const gic_real t149 = t147 + (t148 + m[193] * R(-0.08910630000000008));
-        const gic_real t150 = m[191] * R(0.09182100000000004);
-        const gic_real t151 = m[189] * R(-0.004825999999999997);
-        const gic_real t152 = t150 + (t151 + m[190] * R(-0.08910630000000008));
-        const gic_real t153 = m[197] * R(0.09182100000000004);
-        const gic_real t154 = m[195] * R(-0.004825999999999997);
-        const gic_real t155 = t153 + (t154 + m[196] * R(-0.08910630000000008));
-        const gic_real t156 = m[200] * t152 - m[198] * t155;
-        const gic_real t157 = m[199] * t155 - m[200] * t149;
-        const gic_real t158 = m[198] * t156 - m[199] * t157 + (m[204] * t149 - m[205] * t152);
-        const gic_real t159 = m[202] + t156;
+        /* wheel tire_f_r */
+        const gic_real t147 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t148 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t149 = t147 + (t148 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t150 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t151 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t152 = t150 + (t151 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t153 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t154 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t155 = t153 + (t154 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t156 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t152 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t155;
+        const gic_real t157 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t155 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t149;
+        const gic_real t158 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t156 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t157 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t149 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t152);
+        const gic_real t159 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] + t156;
         const gic_real t160 = R(1.653405) + t152;
-        const gic_real t161 = m[188] + t155;
-        const gic_real t162 = t159 + (t159 + (y[17] * t160 - y[15] * t161));
-        const gic_real t163 = m[187] + t149;
-        const gic_real t164 = t157 + (t157 + (y[16] * t161 - y[17] * t163));
-        const gic_real t165 = y[15] * t162 - y[16] * t164 + (acc[0] * t163 - acc[1] * t160);
-        const gic_real t166 = m[209] + t158 + (acc[5] + t165) + acc[10] * (m[210] * t149 - m[211] * t152);
-        const gic_real t167 = t166 + acc[7] * (m[221] + (m[216] * t149 - m[217] * t152));
+        const gic_real t161 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t155;
+        const gic_real t162 = t159 + (t159 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t160 - y[TRAILING_ARM_STATE_OMEGA_X] *
+            t161));
+        const gic_real t163 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t149;
+        const gic_real t164 = t157 + (t157 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t161 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            t163));
+        const gic_real t165 = y[TRAILING_ARM_STATE_OMEGA_X] * t162 - y[TRAILING_ARM_STATE_OMEGA_Y] * t164 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t163 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t160);
+        const gic_real t166 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Z] + t158 +
+            (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t165) + acc[TRAILING_ARM_UNKNOWN_OF_RACK] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t149 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t152);
+        const gic_real t167 = t166 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t149 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t152));
         const gic_real t168 = R(90.555) * t167;
-        const gic_real t169 = m[198] * t149 - m[199] * t152;
-        const gic_real t170 = m[200] * t157 - m[198] * t169 + (m[206] * t152 - m[204] * t155);
-        const gic_real t171 = m[203] + t169;
-        const gic_real t172 = t171 + (t171 + (y[15] * t163 - y[16] * t160));
-        const gic_real t173 = y[17] * t164 - y[15] * t172 + (acc[2] * t160 - acc[0] * t161);
-        const gic_real t174 = m[208] + t170 + (acc[4] + t173) + acc[10] * (m[212] * t152 - m[210] * t155);
-        const gic_real t175 = t174 + acc[7] * (m[220] + (m[218] * t152 - m[216] * t155));
+        const gic_real t169 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t149 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t152;
+        const gic_real t170 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t157 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t169 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t152 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t155);
+        const gic_real t171 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] + t169;
+        const gic_real t172 = t171 + (t171 + (y[TRAILING_ARM_STATE_OMEGA_X] * t163 - y[TRAILING_ARM_STATE_OMEGA_Y] *
+            t160));
+        const gic_real t173 = y[TRAILING_ARM_STATE_OMEGA_Z] * t164 - y[TRAILING_ARM_STATE_OMEGA_X] * t172 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t160 - acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t161);
+        const gic_real t174 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Y] + t170 +
+            (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t173) + acc[TRAILING_ARM_UNKNOWN_OF_RACK] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t152 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t155);
+        const gic_real t175 = t174 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t152 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t155));
         const gic_real t176 = R(90.555) * t175;
         const gic_real t177 = t146 + (t149 * t168 - t155 * t176);
-        const gic_real t178 = m[103] + y[16];
-        const gic_real t179 = m[101] * (m[101] * R(6.78001) + m[99] * R(-0.109132)) + m[99] * (m[101] * R(-0.109132) + m[99] * R(5.46131));
-        const gic_real t180 = m[101] * R(0.075632) + m[99] * R(0.729032);
-        const gic_real t181 = m[95] * R(6.78001) + m[93] * R(-0.109132);
-        const gic_real t182 = m[95] * R(-0.109132) + m[93] * R(5.46131);
-        const gic_real t183 = m[101] * t181 + m[99] * t182;
-        const gic_real t184 = y[17] * t179 + (t180 * t178 + y[15] * t183);
-        const gic_real t185 = m[95] * R(0.075632) + m[93] * R(0.729032);
-        const gic_real t186 = y[17] * t180 + (R(9.09449) * t178 + y[15] * t185);
-        const gic_real t187 = acc[2] + m[103] * y[15];
-        const gic_real t188 = acc[1] + acc[8];
-        const gic_real t189 = m[95] * t181 + m[93] * t182;
-        const gic_real t190 = acc[0] - m[103] * y[17];
-        const gic_real t191 = t178 * t184 - y[17] * t186 + (t183 * t187 + (t185 * t188 + t189 * t190));
-        const gic_real t192 = m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016);
+        /* inertia of arm_r_l */
+        const gic_real t178 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t179 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t180 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(0.729032);
+        const gic_real t181 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t182 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t183 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * t181 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t182;
+        const gic_real t184 = y[TRAILING_ARM_STATE_OMEGA_Z] * t179 + (t180 * t178 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t183);
+        const gic_real t185 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(0.729032);
+        const gic_real t186 = y[TRAILING_ARM_STATE_OMEGA_Z] * t180 + (R(9.09449) * t178 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t185);
+        const gic_real t187 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t188 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] + acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_L];
+        const gic_real t189 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * t181 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t182;
+        const gic_real t190 = acc[TRAILING_ARM_UNKNOWN_ALPHA_X] -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t191 = t178 * t184 - y[TRAILING_ARM_STATE_OMEGA_Z] * t186 + (t183 * t187 + (t185 * t188 + t189 *
+            t190));
+        const gic_real t192 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t193 = R(-1.15) + t192;
-        const gic_real t194 = m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016);
+        const gic_real t194 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t195 = R(0.026000000000000023) + t194;
-        const gic_real t196 = y[17] * t193 - y[15] * t195;
-        const gic_real t197 = m[103] * t194;
-        const gic_real t198 = t197 + (t197 + (y[16] * t195 - y[17] * R(0.843847)));
-        const gic_real t199 = y[15] * t196 - y[16] * t198 + (acc[0] * R(0.843847) - acc[1] * t193);
-        const gic_real t200 = acc[5] + t199 - m[103] * t197 - acc[8] * t192;
-        const gic_real t201 = m[103] * t192;
-        const gic_real t202 = y[15] * R(0.843847) - y[16] * t193 - t201 - t201;
-        const gic_real t203 = y[17] * t198 - y[15] * t202 + (acc[2] * t193 - acc[0] * t195);
-        const gic_real t204 = acc[4] + t203;
+        const gic_real t196 = y[TRAILING_ARM_STATE_OMEGA_Z] * t193 - y[TRAILING_ARM_STATE_OMEGA_X] * t195;
+        const gic_real t197 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t194;
+        const gic_real t198 = t197 + (t197 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t195 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(0.843847)));
+        const gic_real t199 = y[TRAILING_ARM_STATE_OMEGA_X] * t196 - y[TRAILING_ARM_STATE_OMEGA_Y] * t198 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * R(0.843847) - acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t193);
+        const gic_real t200 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t199 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t197 - acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] * t192;
+        const gic_real t201 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t192;
+        const gic_real t202 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t193 -
+            t201 - t201;
+        const gic_real t203 = y[TRAILING_ARM_STATE_OMEGA_Z] * t198 - y[TRAILING_ARM_STATE_OMEGA_X] * t202 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t193 - acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t195);
+        const gic_real t204 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t203;
         const gic_real t205 = t204 * R(110.555);
-        const gic_real t206 = t191 + (t200 * R(21.430755085) - t194 * t205) + (t200 * R(71.86075000000001) - t204 * R(2.874430000000003));
-        const gic_real t207 = t122 + (t177 + (m[187] * t168 - m[188] * t176)) + t206;
-        const gic_real t208 = m[133] + y[16];
-        const gic_real t209 = m[131] * (m[131] * R(6.78001) + m[129] * R(-0.109132)) + m[129] * (m[131] * R(-0.109132) + m[129] * R(5.46131));
-        const gic_real t210 = m[131] * R(-0.075632) + m[129] * R(-0.729032);
-        const gic_real t211 = m[125] * R(6.78001) + m[123] * R(-0.109132);
-        const gic_real t212 = m[125] * R(-0.109132) + m[123] * R(5.46131);
-        const gic_real t213 = m[131] * t211 + m[129] * t212;
-        const gic_real t214 = y[17] * t209 + (t210 * t208 + y[15] * t213);
-        const gic_real t215 = m[125] * R(-0.075632) + m[123] * R(-0.729032);
-        const gic_real t216 = y[17] * t210 + (R(9.09449) * t208 + y[15] * t215);
-        const gic_real t217 = acc[2] + m[133] * y[15];
-        const gic_real t218 = acc[1] + acc[9];
-        const gic_real t219 = m[125] * t211 + m[123] * t212;
-        const gic_real t220 = acc[0] - m[133] * y[17];
-        const gic_real t221 = t208 * t214 - y[17] * t216 + (t213 * t217 + (t215 * t218 + t219 * t220));
-        const gic_real t222 = m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016);
+        const gic_real t206 = t191 + (t200 * R(21.430755085) - t194 * t205) + (t200 * R(71.86075000000001) - t204 *
+            R(2.874430000000003));
+        const gic_real t207 = t122 + (t177 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t168 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t176)) + t206;
+        /* inertia of arm_r_r */
+        const gic_real t208 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t209 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t210 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.729032);
+        const gic_real t211 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t212 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t213 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * t211 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t212;
+        const gic_real t214 = y[TRAILING_ARM_STATE_OMEGA_Z] * t209 + (t210 * t208 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t213);
+        const gic_real t215 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.729032);
+        const gic_real t216 = y[TRAILING_ARM_STATE_OMEGA_Z] * t210 + (R(9.09449) * t208 +
+            y[TRAILING_ARM_STATE_OMEGA_X] * t215);
+        const gic_real t217 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t218 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] + acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_R];
+        const gic_real t219 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * t211 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t212;
+        const gic_real t220 = acc[TRAILING_ARM_UNKNOWN_ALPHA_X] -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t221 = t208 * t214 - y[TRAILING_ARM_STATE_OMEGA_Z] * t216 + (t213 * t217 + (t215 * t218 + t219 *
+            t220));
+        const gic_real t222 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t223 = R(-1.15) + t222;
-        const gic_real t224 = m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016);
+        const gic_real t224 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t225 = R(0.026000000000000023) + t224;
-        const gic_real t226 = y[17] * t223 - y[15] * t225;
-        const gic_real t227 = m[133] * t224;
-        const gic_real t228 = t227 + (t227 + (y[16] * t225 - y[17] * R(-0.843847)));
-        const gic_real t229 = y[15] * t226 - y[16] * t228 + (acc[0] * R(-0.843847) - acc[1] * t223);
-        const gic_real t230 = acc[5] + t229 - m[133] * t227 - acc[9] * t222;
-        const gic_real t231 = m[133] * t222;
-        const gic_real t232 = y[15] * R(-0.843847) - y[16] * t223 - t231 - t231;
-        const gic_real t233 = y[17] * t228 - y[15] * t232 + (acc[2] * t223 - acc[0] * t225);
-        const gic_real t234 = acc[4] + t233;
+        const gic_real t226 = y[TRAILING_ARM_STATE_OMEGA_Z] * t223 - y[TRAILING_ARM_STATE_OMEGA_X] * t225;
+        const gic_real t227 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t224;
+        const gic_real t228 = t227 + (t227 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t225 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(-0.843847)));
+        const gic_real t229 = y[TRAILING_ARM_STATE_OMEGA_X] * t226 - y[TRAILING_ARM_STATE_OMEGA_Y] * t228 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * R(-0.843847) - acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t223);
+        const gic_real t230 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + t229 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t227 - acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] * t222;
+        const gic_real t231 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t222;
+        const gic_real t232 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t223 -
+            t231 - t231;
+        const gic_real t233 = y[TRAILING_ARM_STATE_OMEGA_Z] * t228 - y[TRAILING_ARM_STATE_OMEGA_X] * t232 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t223 - acc[TRAILING_ARM_UNKNOWN_ALPHA_X] * t225);
+        const gic_real t234 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] + t233;
         const gic_real t235 = R(110.555) * t234;
-        const gic_real t236 = t221 + (t230 * R(-21.430755085) - t224 * t235) + (t230 * R(-71.86075000000001) - R(2.874430000000003) * t234);
-        const gic_real t237 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        const gic_real t236 = t221 + (t230 * R(-21.430755085) - t224 * t235) + (t230 * R(-71.86075000000001) -
+            R(2.874430000000003) * t234);
+        /* force shock_r_r */
+        const gic_real t237 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t238 = R(0.026000000000000023) + t237 - R(0.376);
-        const gic_real t239 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
+        const gic_real t239 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t240 = R(-1.15) + t239 - R(-1.6);
         const gic_real t241 = R(1.0) / GIC_SQRT(t238 * t238 + (R(0.0025000000000000044) + t240 * t240));
-        const gic_real t242 = t241 * (m[133] * t237 * t240 - m[133] * t239 * t238);
+        const gic_real t242 = t241 * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t237 * t240 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t239 * t238);
         const gic_real t243 = t241 * (R(9500.0) * t242);
         const gic_real t244 = R(-0.050000000000000044) * t243;
         const gic_real t245 = e[1] + e[1];
@@ -4082,92 +5437,117 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t250 = e[3] * t247;
         const gic_real t251 = e[0] * t245;
         const gic_real t252 = t250 - t251;
-        const gic_real t253 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        /* wheel tire_r_r */
+        const gic_real t253 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t254 = R(-1.15) + t253;
-        const gic_real t255 = y[15] * R(-0.909701) - y[16] * t254 - m[133] * t253;
+        const gic_real t255 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t254 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t253;
         const gic_real t256 = e[3] + e[3];
         const gic_real t257 = e[3] * t256;
         const gic_real t258 = R(1.0) - (t246 + t257);
-        const gic_real t259 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real t259 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t260 = R(0.026000000000000023) + t259;
-        const gic_real t261 = y[17] * t254 - y[15] * t260;
+        const gic_real t261 = y[TRAILING_ARM_STATE_OMEGA_Z] * t254 - y[TRAILING_ARM_STATE_OMEGA_X] * t260;
         const gic_real t262 = e[2] * t245;
         const gic_real t263 = e[0] * t256;
         const gic_real t264 = t262 + t263;
-        const gic_real t265 = m[133] * t259 + (y[16] * t260 - y[17] * R(-0.909701));
-        const gic_real t266 = y[13] + (t252 * t255 + (t258 * t261 + t264 * t265));
+        const gic_real t265 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t259 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t260 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t266 = y[TRAILING_ARM_STATE_V_Y] + (t252 * t255 + (t258 * t261 + t264 * t265));
         const gic_real t267 = e[1] * t256;
         const gic_real t268 = e[0] * t247;
         const gic_real t269 = t267 + t268;
         const gic_real t270 = t262 - t263;
         const gic_real t271 = R(1.0) - (t248 + t257);
-        const gic_real t272 = y[0] + (t269 * t260 + (t270 * R(-0.909701) + t271 * t254));
-        const gic_real t273 = y[1] + (t252 * t260 + (t258 * R(-0.909701) + t264 * t254));
+        const gic_real t272 = y[TRAILING_ARM_STATE_R_X] + (t269 * t260 + (t270 * R(-0.909701) + t271 * t254));
+        const gic_real t273 = y[TRAILING_ARM_STATE_R_Y] + (t252 * t260 + (t258 * R(-0.909701) + t264 * t254));
         gic_real road274[3];
         if (!trailing_arm_road_height(self, time, t272, t273, road274))
             return GIC_ERROR_ROAD;
-        const gic_real t275 = y[12] + (t269 * t255 + (t270 * t261 + t271 * t265));
+        const gic_real t275 = y[TRAILING_ARM_STATE_V_X] + (t269 * t255 + (t270 * t261 + t271 * t265));
         const gic_real t276 = t250 + t251;
         const gic_real t277 = t267 - t268;
-        const gic_real t278 = y[14] + (t249 * t255 + (t276 * t261 + t277 * t265));
+        const gic_real t278 = y[TRAILING_ARM_STATE_V_Z] + (t249 * t255 + (t276 * t261 + t277 * t265));
         const gic_real t279 = t266 * road274[2] + t275 * road274[1] - t278;
-        const gic_real t280 = y[2] + (t249 * t260 + (t276 * R(-0.909701) + t277 * t254));
+        const gic_real t280 = y[TRAILING_ARM_STATE_R_Z] + (t249 * t260 + (t276 * R(-0.909701) + t277 * t254));
         const gic_real t281 = R(0.4699) + road274[0] - t280;
         const gic_real t282 = GIC_MIN(GIC_MAX(R(100.0) * t281, R(0.0)), R(1.0));
         const gic_real t283 = t279 * (R(500.0) * ((R(3.0) - (t282 + t282)) * (t282 * t282)));
         const gic_real t284 = GIC_MAX(t283 + R(283000.0) * t281, R(0.0));
         const gic_real t285 = t249 * t284;
         const gic_real t286 = t276 * t284;
-        const gic_real t287 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        /* force shock_r_l */
+        const gic_real t287 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t288 = R(0.026000000000000023) + t287 - R(0.376);
-        const gic_real t289 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
+        const gic_real t289 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t290 = R(-1.15) + t289 - R(-1.6);
         const gic_real t291 = R(1.0) / GIC_SQRT(t288 * t288 + (R(0.0025000000000000044) + t290 * t290));
-        const gic_real t292 = t291 * (m[103] * t287 * t290 - m[103] * t289 * t288);
+        const gic_real t292 = t291 * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t287 * t290 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t289 * t288);
         const gic_real t293 = t291 * (t292 * R(9500.0));
         const gic_real t294 = R(0.050000000000000044) * t293;
-        const gic_real t295 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        /* wheel tire_r_l */
+        const gic_real t295 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t296 = R(-1.15) + t295;
-        const gic_real t297 = y[15] * R(0.909701) - y[16] * t296 - m[103] * t295;
-        const gic_real t298 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real t297 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t296 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t295;
+        const gic_real t298 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t299 = R(0.026000000000000023) + t298;
-        const gic_real t300 = y[17] * t296 - y[15] * t299;
-        const gic_real t301 = m[103] * t298 + (y[16] * t299 - y[17] * R(0.909701));
-        const gic_real t302 = y[13] + (t252 * t297 + (t258 * t300 + t264 * t301));
-        const gic_real t303 = y[0] + (t269 * t299 + (t270 * R(0.909701) + t271 * t296));
-        const gic_real t304 = y[1] + (t252 * t299 + (t258 * R(0.909701) + t264 * t296));
+        const gic_real t300 = y[TRAILING_ARM_STATE_OMEGA_Z] * t296 - y[TRAILING_ARM_STATE_OMEGA_X] * t299;
+        const gic_real t301 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t298 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t299 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t302 = y[TRAILING_ARM_STATE_V_Y] + (t252 * t297 + (t258 * t300 + t264 * t301));
+        const gic_real t303 = y[TRAILING_ARM_STATE_R_X] + (t269 * t299 + (t270 * R(0.909701) + t271 * t296));
+        const gic_real t304 = y[TRAILING_ARM_STATE_R_Y] + (t252 * t299 + (t258 * R(0.909701) + t264 * t296));
         gic_real road305[3];
         if (!trailing_arm_road_height(self, time, t303, t304, road305))
             return GIC_ERROR_ROAD;
-        const gic_real t306 = y[12] + (t269 * t297 + (t270 * t300 + t271 * t301));
-        const gic_real t307 = y[14] + (t249 * t297 + (t276 * t300 + t277 * t301));
+        const gic_real t306 = y[TRAILING_ARM_STATE_V_X] + (t269 * t297 + (t270 * t300 + t271 * t301));
+        const gic_real t307 = y[TRAILING_ARM_STATE_V_Z] + (t249 * t297 + (t276 * t300 + t277 * t301));
         const gic_real t308 = t302 * road305[2] + t306 * road305[1] - t307;
-        const gic_real t309 = y[2] + (t249 * t299 + (t276 * R(0.909701) + t277 * t296));
+        const gic_real t309 = y[TRAILING_ARM_STATE_R_Z] + (t249 * t299 + (t276 * R(0.909701) + t277 * t296));
         const gic_real t310 = R(0.4699) + road305[0] - t309;
         const gic_real t311 = GIC_MIN(GIC_MAX(R(100.0) * t310, R(0.0)), R(1.0));
         const gic_real t312 = t308 * (R(500.0) * ((R(3.0) - (t311 + t311)) * (t311 * t311)));
         const gic_real t313 = GIC_MAX(t312 + R(283000.0) * t310, R(0.0));
         const gic_real t314 = t249 * t313;
         const gic_real t315 = t276 * t313;
-        const gic_real t316 = t147 + (m[193] * R(-0.12319000000000002) + t148);
-        const gic_real t317 = t150 + (m[190] * R(-0.12319000000000002) + t151);
-        const gic_real t318 = m[187] + t316;
+        const gic_real t316 = t147 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            t148);
+        const gic_real t317 = t150 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            t151);
+        const gic_real t318 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t316;
         const gic_real t319 = R(1.653405) + t317;
-        const gic_real t320 = m[203] + (m[198] * t316 - m[199] * t317) + (y[15] * t318 - y[16] * t319);
-        const gic_real t321 = t153 + (m[196] * R(-0.12319000000000002) + t154);
-        const gic_real t322 = m[188] + t321;
-        const gic_real t323 = m[202] + (m[200] * t317 - m[198] * t321) + (y[17] * t319 - y[15] * t322);
-        const gic_real t324 = m[199] * t321 - m[200] * t316 + (y[16] * t322 - y[17] * t318);
-        const gic_real t325 = y[13] + (t252 * t320 + (t258 * t323 + t264 * t324));
-        const gic_real t326 = y[0] + (t269 * t322 + (t270 * t318 + t271 * t319));
-        const gic_real t327 = y[1] + (t252 * t322 + (t258 * t318 + t264 * t319));
+        const gic_real t320 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t316 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t317) + (y[TRAILING_ARM_STATE_OMEGA_X] * t318 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t319);
+        const gic_real t321 = t153 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            t154);
+        const gic_real t322 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t321;
+        const gic_real t323 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t317 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t321) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t319 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t322);
+        const gic_real t324 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t321 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t316 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t322 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t318);
+        const gic_real t325 = y[TRAILING_ARM_STATE_V_Y] + (t252 * t320 + (t258 * t323 + t264 * t324));
+        const gic_real t326 = y[TRAILING_ARM_STATE_R_X] + (t269 * t322 + (t270 * t318 + t271 * t319));
+        const gic_real t327 = y[TRAILING_ARM_STATE_R_Y] + (t252 * t322 + (t258 * t318 + t264 * t319));
         gic_real road328[3];
         if (!trailing_arm_road_height(self, time, t326, t327, road328))
             return GIC_ERROR_ROAD;
-        const gic_real t329 = y[12] + (t269 * t320 + (t270 * t323 + t271 * t324));
-        const gic_real t330 = y[14] + (t249 * t320 + (t276 * t323 + t277 * t324));
+        const gic_real t329 = y[TRAILING_ARM_STATE_V_X] + (t269 * t320 + (t270 * t323 + t271 * t324));
+        const gic_real t330 = y[TRAILING_ARM_STATE_V_Z] + (t249 * t320 + (t276 * t323 + t277 * t324));
         const gic_real t331 = t325 * road328[2] + t329 * road328[1] - t330;
-        const gic_real t332 = y[2] + (t249 * t322 + (t276 * t318 + t277 * t319));
+        const gic_real t332 = y[TRAILING_ARM_STATE_R_Z] + (t249 * t322 + (t276 * t318 + t277 * t319));
         const gic_real t333 = R(0.4699) + road328[0] - t332;
         const gic_real t334 = GIC_MIN(GIC_MAX(R(100.0) * t333, R(0.0)), R(1.0));
         const gic_real t335 = t331 * (R(500.0) * ((R(3.0) - (t334 + t334)) * (t334 * t334)));
@@ -4175,25 +5555,36 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t337 = t249 * t336;
         const gic_real t338 = t276 * t336;
         const gic_real t339 = t316 * t337 - t321 * t338;
-        const gic_real t340 = t91 + (m[157] * R(0.12319000000000002) + t92);
-        const gic_real t341 = t94 + (m[154] * R(0.12319000000000002) + t95);
-        const gic_real t342 = m[151] + t340;
+        const gic_real t340 = t91 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            t92);
+        const gic_real t341 = t94 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            t95);
+        const gic_real t342 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t340;
         const gic_real t343 = R(1.653405) + t341;
-        const gic_real t344 = m[167] + (m[162] * t340 - m[163] * t341) + (y[15] * t342 - y[16] * t343);
-        const gic_real t345 = t97 + (m[160] * R(0.12319000000000002) + t98);
-        const gic_real t346 = m[152] + t345;
-        const gic_real t347 = m[166] + (m[164] * t341 - m[162] * t345) + (y[17] * t343 - y[15] * t346);
-        const gic_real t348 = m[163] * t345 - m[164] * t340 + (y[16] * t346 - y[17] * t342);
-        const gic_real t349 = y[13] + (t252 * t344 + (t258 * t347 + t264 * t348));
-        const gic_real t350 = y[0] + (t269 * t346 + (t270 * t342 + t271 * t343));
-        const gic_real t351 = y[1] + (t252 * t346 + (t258 * t342 + t264 * t343));
+        const gic_real t344 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t340 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t341) + (y[TRAILING_ARM_STATE_OMEGA_X] * t342 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t343);
+        const gic_real t345 = t97 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            t98);
+        const gic_real t346 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t345;
+        const gic_real t347 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t341 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t345) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t343 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t346);
+        const gic_real t348 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t345 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t340 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t346 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t342);
+        const gic_real t349 = y[TRAILING_ARM_STATE_V_Y] + (t252 * t344 + (t258 * t347 + t264 * t348));
+        const gic_real t350 = y[TRAILING_ARM_STATE_R_X] + (t269 * t346 + (t270 * t342 + t271 * t343));
+        const gic_real t351 = y[TRAILING_ARM_STATE_R_Y] + (t252 * t346 + (t258 * t342 + t264 * t343));
         gic_real road352[3];
         if (!trailing_arm_road_height(self, time, t350, t351, road352))
             return GIC_ERROR_ROAD;
-        const gic_real t353 = y[12] + (t269 * t344 + (t270 * t347 + t271 * t348));
-        const gic_real t354 = y[14] + (t249 * t344 + (t276 * t347 + t277 * t348));
+        const gic_real t353 = y[TRAILING_ARM_STATE_V_X] + (t269 * t344 + (t270 * t347 + t271 * t348));
+        const gic_real t354 = y[TRAILING_ARM_STATE_V_Z] + (t249 * t344 + (t276 * t347 + t277 * t348));
         const gic_real t355 = t349 * road352[2] + t353 * road352[1] - t354;
-        const gic_real t356 = y[2] + (t249 * t346 + (t276 * t342 + t277 * t343));
+        const gic_real t356 = y[TRAILING_ARM_STATE_R_Z] + (t249 * t346 + (t276 * t342 + t277 * t343));
         const gic_real t357 = road352[0] + R(0.4699) - t356;
         const gic_real t358 = GIC_MIN(GIC_MAX(t357 * R(100.0), R(0.0)), R(1.0));
         const gic_real t359 = t355 * ((R(3.0) - (t358 + t358)) * (t358 * t358) * R(500.0));
@@ -4201,64 +5592,106 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t361 = t249 * t360;
         const gic_real t362 = t276 * t360;
         const gic_real t363 = t340 * t361 - t345 * t362;
-        const gic_real t364 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
-        const gic_real t365 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        /* force shock_f_r */
+        const gic_real t364 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.2403881036540444);
+        const gic_real t365 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.2403881036540444);
         const gic_real t366 = R(-0.307086) + t365 - R(-0.4977892);
         const gic_real t367 = t364 - R(0.32313880000000006);
         const gic_real t368 = R(1.0) / GIC_SQRT(t367 * t367 + (R(4.633797183999867e-05) + t366 * t366));
-        const gic_real t369 = t368 * (m[72] * t365 * t367 - m[72] * t364 * t366);
+        const gic_real t369 = t368 * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t365 * t367 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t364 * t366);
         const gic_real t370 = t368 * (R(17490.8) * t369);
         const gic_real t371 = t366 * t370;
         const gic_real t372 = t364 * t371;
         const gic_real t373 = t367 * t370;
         const gic_real t374 = t365 * t373;
-        const gic_real t375 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
-        const gic_real t376 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t375 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.2403881036540444);
+        const gic_real t376 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.2403881036540444);
         const gic_real t377 = R(0.307086) + t376 - R(0.4977892);
         const gic_real t378 = t375 - R(0.32313880000000006);
         const gic_real t379 = R(1.0) / GIC_SQRT(t378 * t378 + (t377 * t377 + R(4.633797183999867e-05)));
-        const gic_real t380 = t379 * (m[42] * t376 * t378 - m[42] * t375 * t377);
+        const gic_real t380 = t379 * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t376 * t378 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t375 * t377);
         const gic_real t381 = t379 * (t380 * R(17490.8));
         const gic_real t382 = t377 * t381;
         const gic_real t383 = t378 * t381;
         const gic_real t384 = t375 * t382 - t376 * t383;
-        const gic_real t385 = R(0.4977892) * t383 - R(0.32313880000000006) * t382 + (R(-0.4977892) * t373 - R(0.32313880000000006) * t371);
+        const gic_real t385 = R(0.4977892) * t383 - R(0.32313880000000006) * t382 + (R(-0.4977892) * t373 -
+            R(0.32313880000000006) * t371);
         const gic_real t386 = t288 * t293;
         const gic_real t387 = t238 * t243;
-        const gic_real t388 = t385 + (R(0.6) * t386 - t293 * R(0.018800000000000018)) + (R(-0.6) * t387 - t243 * R(-0.018800000000000018));
+        const gic_real t388 = t385 + (R(0.6) * t386 - t293 * R(0.018800000000000018)) + (R(-0.6) * t387 - t243 *
+            R(-0.018800000000000018));
+        /* applied forces: moment and force on the base, and along each coordinate */
         const gic_real t389 = t372 - t374 + (t384 + (t388 - R(0.307086) * t383) - R(-0.307086) * t373);
-        const gic_real t390 = t363 + (t389 + (m[151] * t361 - m[152] * t362)) + (m[187] * t337 - m[188] * t338);
+        const gic_real t390 = t363 + (t389 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t361 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t362)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t337 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t338);
         const gic_real t391 = t314 - t386;
         const gic_real t392 = t315 - t294;
-        const gic_real t393 = t287 * t294 + (R(0.25970099999999996) * t314 - t298 * t315) + (t339 + t390 + (R(0.65) * t391 - R(0.026000000000000023) * t392));
+        const gic_real t393 = t287 * t294 + (R(0.25970099999999996) * t314 - t298 * t315) + (t339 + t390 + (R(0.65) *
+            t391 - R(0.026000000000000023) * t392));
         const gic_real t394 = t285 - t387;
         const gic_real t395 = t286 - t244;
-        const gic_real t396 = t237 * t244 + (R(-0.25970099999999996) * t285 - t259 * t286) + (t393 + (R(-0.65) * t394 - R(0.026000000000000023) * t395));
-        const gic_real t397 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t398 = acc[3] + (acc[1] * R(0.21300000000000008) - (y[17] * t397 + y[16] * t3));
-        const gic_real t399 = y[16] * t13 - y[17] * t8 + (R(0.05422899999999997) * acc[1] - m[1] * acc[2]);
-        const gic_real t400 = acc[3] + t399;
+        const gic_real t396 = t237 * t244 + (R(-0.25970099999999996) * t285 - t259 * t286) + (t393 + (R(-0.65) * t394 -
+            R(0.026000000000000023) * t395));
+        const gic_real t397 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t398 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] *
+            R(0.21300000000000008) - (y[TRAILING_ARM_STATE_OMEGA_Z] * t397 + y[TRAILING_ARM_STATE_OMEGA_Y] * t3));
+        const gic_real t399 = y[TRAILING_ARM_STATE_OMEGA_Y] * t13 - y[TRAILING_ARM_STATE_OMEGA_Z] * t8 +
+            (R(0.05422899999999997) * acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * acc[TRAILING_ARM_UNKNOWN_ALPHA_Z]);
+        const gic_real t400 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t399;
         const gic_real t401 = t400 * R(9.072);
-        const gic_real t402 = y[16] * t37 - y[17] * t28 + (acc[1] * t26 - acc[2] * t29);
-        const gic_real t403 = acc[3] + t402;
+        const gic_real t402 = y[TRAILING_ARM_STATE_OMEGA_Y] * t37 - y[TRAILING_ARM_STATE_OMEGA_Z] * t28 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t26 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t29);
+        const gic_real t403 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t402;
         const gic_real t404 = t403 * R(23.965);
-        const gic_real t405 = y[16] * t62 - y[17] * t55 + (acc[1] * t53 - acc[2] * t56);
-        const gic_real t406 = acc[3] + t405;
+        const gic_real t405 = y[TRAILING_ARM_STATE_OMEGA_Y] * t62 - y[TRAILING_ARM_STATE_OMEGA_Z] * t55 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t53 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t56);
+        const gic_real t406 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t405;
         const gic_real t407 = R(23.965) * t406;
-        const gic_real t408 = m[163] * t113 - m[164] * t100 + (m[169] * t99 - m[170] * t93);
-        const gic_real t409 = y[16] * t116 - y[17] * t106 + (acc[1] * t105 - acc[2] * t107);
-        const gic_real t410 = t408 + (acc[3] + t409) + acc[10] * (m[175] * t99 - m[176] * t93);
-        const gic_real t411 = (t410 + acc[6] * (m[181] * t99 - m[182] * t93)) * R(90.555);
-        const gic_real t412 = m[199] * t169 - m[200] * t156 + (m[205] * t155 - m[206] * t149);
-        const gic_real t413 = y[16] * t172 - y[17] * t162 + (acc[1] * t161 - acc[2] * t163);
-        const gic_real t414 = t412 + (acc[3] + t413) + acc[10] * (m[211] * t155 - m[212] * t149);
-        const gic_real t415 = R(90.555) * (t414 + acc[7] * (m[217] * t155 - m[218] * t149));
+        const gic_real t408 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t113 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t100 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t99 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t93);
+        const gic_real t409 = y[TRAILING_ARM_STATE_OMEGA_Y] * t116 - y[TRAILING_ARM_STATE_OMEGA_Z] * t106 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t105 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t107);
+        const gic_real t410 = t408 + (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t409) +
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK] * (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t99 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t93);
+        const gic_real t411 = (t410 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t99 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t93)) * R(90.555);
+        const gic_real t412 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t169 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t156 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t155 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t149);
+        const gic_real t413 = y[TRAILING_ARM_STATE_OMEGA_Y] * t172 - y[TRAILING_ARM_STATE_OMEGA_Z] * t162 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t161 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * t163);
+        const gic_real t414 = t412 + (acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t413) +
+            acc[TRAILING_ARM_UNKNOWN_OF_RACK] * (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t155 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t149);
+        const gic_real t415 = R(90.555) * (t414 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t155 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t149));
         const gic_real t416 = t398 * R(2086.52) + t401 + t404 + t407 + t411 + t415;
-        const gic_real t417 = y[16] * t202 - y[17] * t196 + (acc[1] * t195 - acc[2] * R(0.843847));
-        const gic_real t418 = acc[3] + t417 - m[103] * t201 + acc[8] * t194;
+        const gic_real t417 = y[TRAILING_ARM_STATE_OMEGA_Y] * t202 - y[TRAILING_ARM_STATE_OMEGA_Z] * t196 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t195 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * R(0.843847));
+        const gic_real t418 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t417 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t201 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] * t194;
         const gic_real t419 = t418 * R(110.555);
-        const gic_real t420 = y[16] * t232 - y[17] * t226 + (acc[1] * t225 - acc[2] * R(-0.843847));
-        const gic_real t421 = acc[3] + t420 - m[133] * t231 + acc[9] * t224;
+        const gic_real t420 = y[TRAILING_ARM_STATE_OMEGA_Y] * t232 - y[TRAILING_ARM_STATE_OMEGA_Z] * t226 +
+            (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * t225 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * R(-0.843847));
+        const gic_real t421 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] + t420 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t231 + acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] * t224;
         const gic_real t422 = R(110.555) * t421;
         const gic_real t423 = t277 * t284;
         const gic_real t424 = t240 * t243;
@@ -4271,128 +5704,192 @@ static GIC_COLD int trailing_arm_inverse(const trailing_arm *self, gic_real time
         const gic_real t431 = R(-0.006807199999999902) * t381;
         const gic_real t432 = R(-0.006807199999999902) * t370;
         const gic_real t433 = t430 + (t431 + t432 + t427 + t424 - t431 - t432);
-        const gic_real t434 = t416 + t419 + t422 - (t425 + (t428 + (t429 + t433)));
-        const gic_real t435 = y[15] * R(1078.52);
-        const gic_real t436 = acc[5] + (y[15] * t397 - y[16] * t4 - acc[1] * R(0.056));
-        const gic_real t437 = y[17] * t435 - y[15] * t1 + acc[1] * R(2955.66) + (t398 * R(444.4287600000002) - t436 * R(116.84512));
-        const gic_real t438 = m[42] + y[15];
+        const gic_real residual_3 = t416 + t419 + t422 - (t425 + (t428 + (t429 + t433)));
+        const gic_real t435 = y[TRAILING_ARM_STATE_OMEGA_X] * R(1078.52);
+        const gic_real t436 = acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] + (y[TRAILING_ARM_STATE_OMEGA_X] * t397 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t4 - acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * R(0.056));
+        const gic_real t437 = y[TRAILING_ARM_STATE_OMEGA_Z] * t435 - y[TRAILING_ARM_STATE_OMEGA_X] * t1 +
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] * R(2955.66) + (t398 * R(444.4287600000002) - t436 * R(116.84512));
+        const gic_real t438 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t439 = R(0.4469) * t438;
-        const gic_real t440 = acc[2] - m[42] * y[16];
-        const gic_real t441 = acc[1] + m[42] * y[17];
-        const gic_real t442 = y[17] * t439 - t438 * t20 + (t19 * t440 + t21 * t441);
-        const gic_real t443 = t437 + (acc[1] + (t400 * R(0.4919654879999997) - t11 * R(13.051414655999999))) + (t442 + t26 * t404 - t33 * R(40.476046225));
-        const gic_real t444 = m[72] + y[15];
+        const gic_real t440 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t441 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t442 = y[TRAILING_ARM_STATE_OMEGA_Z] * t439 - t438 * t20 + (t19 * t440 + t21 * t441);
+        const gic_real t443 = t437 + (acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] + (t400 * R(0.4919654879999997) - t11 *
+            R(13.051414655999999))) + (t442 + t26 * t404 - t33 * R(40.476046225));
+        const gic_real t444 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X];
         const gic_real t445 = R(0.4469) * t444;
-        const gic_real t446 = acc[2] - m[72] * y[16];
-        const gic_real t447 = acc[1] + m[72] * y[17];
-        const gic_real t448 = y[17] * t445 - t444 * t48 + (t47 * t446 + t49 * t447);
+        const gic_real t446 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t447 = acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t448 = y[TRAILING_ARM_STATE_OMEGA_Z] * t445 - t444 * t48 + (t47 * t446 + t49 * t447);
         const gic_real t449 = t77 * t69 + (t81 * t67 + t87 * t78);
         const gic_real t450 = t69 * t449 - t78 * t79 + (t73 * t84 + (t80 * t86 + t81 * t89));
         const gic_real t451 = t450 + (t99 * t411 - t96 * t112);
-        const gic_real t452 = t443 + (t448 + t53 * t407 - R(40.476046225) * t59) + (t451 + (m[152] * t411 - t111 * R(149.724089775)));
+        const gic_real t452 = t443 + (t448 + t53 * t407 - R(40.476046225) * t59) + (t451 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t411 - t111 * R(149.724089775)));
         const gic_real t453 = t133 * t125 + (t137 * t123 + t143 * t134);
         const gic_real t454 = t125 * t453 - t134 * t135 + (t129 * t140 + (t136 * t142 + t137 * t145));
         const gic_real t455 = t454 + (t155 * t415 - t152 * t168);
-        const gic_real t456 = y[17] * t183 + (t185 * t178 + y[15] * t189);
-        const gic_real t457 = y[17] * t456 - y[15] * t184 + (t180 * t187 + (R(9.09449) * t188 + t185 * t190));
+        const gic_real t456 = y[TRAILING_ARM_STATE_OMEGA_Z] * t183 + (t185 * t178 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t189);
+        const gic_real t457 = y[TRAILING_ARM_STATE_OMEGA_Z] * t456 - y[TRAILING_ARM_STATE_OMEGA_X] * t184 + (t180 *
+            t187 + (R(9.09449) * t188 + t185 * t190));
         const gic_real t458 = t200 * R(110.555);
         const gic_real t459 = t457 + (t194 * t419 - t192 * t458);
-        const gic_real t460 = t452 + (t455 + (m[188] * t415 - R(149.724089775) * t167)) + (t459 + (t418 * R(2.874430000000003) - t200 * R(-127.13825)));
-        const gic_real t461 = y[17] * t213 + (t215 * t208 + y[15] * t219);
-        const gic_real t462 = y[17] * t461 - y[15] * t214 + (t210 * t217 + (R(9.09449) * t218 + t215 * t220));
+        const gic_real t460 = t452 + (t455 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t415 -
+            R(149.724089775) * t167)) + (t459 + (t418 * R(2.874430000000003) - t200 * R(-127.13825)));
+        const gic_real t461 = y[TRAILING_ARM_STATE_OMEGA_Z] * t213 + (t215 * t208 + y[TRAILING_ARM_STATE_OMEGA_X] *
+            t219);
+        const gic_real t462 = y[TRAILING_ARM_STATE_OMEGA_Z] * t461 - y[TRAILING_ARM_STATE_OMEGA_X] * t214 + (t210 *
+            t217 + (R(9.09449) * t218 + t215 * t220));
         const gic_real t463 = R(110.555) * t230;
         const gic_real t464 = t462 + (t224 * t422 - t222 * t463);
         const gic_real t465 = t239 * t387 - t237 * t424 + (t259 * t423 - t253 * t285);
         const gic_real t466 = t289 * t386 - t287 * t427 + (t298 * t426 - t295 * t314);
         const gic_real t467 = t321 * t429 - t317 * t337;
         const gic_real t468 = t345 * t430 - t341 * t361;
-        const gic_real t469 = t381 * R(-0.002199670439359969) - R(1.792978) * t383 + (R(-0.002199670439359969) * t370 - R(1.792978) * t373);
+        const gic_real t469 = t381 * R(-0.002199670439359969) - R(1.792978) * t383 + (R(-0.002199670439359969) * t370 -
+            R(1.792978) * t373);
         const gic_real t470 = t469 + (R(0.376) * t427 - R(-1.6) * t386) + (R(0.376) * t424 - R(-1.6) * t387);
         const gic_real t471 = R(0.09720579999999998) * t383 - t375 * t431 + (t470 + R(1.688965) * t383);
         const gic_real t472 = R(0.09720579999999998) * t373 - t364 * t432 + (t471 + R(1.688965) * t373);
-        const gic_real t473 = t468 + (t472 + (m[152] * t430 - R(1.653405) * t361)) + (m[188] * t429 - R(1.653405) * t337);
+        const gic_real t473 = t468 + (t472 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] * t430 - R(1.653405) *
+            t361)) + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] * t429 - R(1.653405) * t337);
         const gic_real t474 = t466 + (t467 + t473 + (R(0.026000000000000023) * t428 - R(-1.15) * t391));
-        const gic_real t475 = t460 + (t464 + (R(2.874430000000003) * t421 - R(-127.13825) * t230)) - (t465 + (t474 + (R(0.026000000000000023) * t425 - R(-1.15) * t394)));
+        const gic_real residual_1 = t460 + (t464 + (R(2.874430000000003) * t421 - R(-127.13825) * t230)) - (t465 +
+            (t474 + (R(0.026000000000000023) * t425 - R(-1.15) * t394)));
         const gic_real t476 = t15 * R(9.072);
         const gic_real t477 = t6 * R(2086.52) + t476 + t41 + t65 + t120 + t176;
         const gic_real t478 = t362 + (t382 + t371 + t294 + t244 - t382 - t371);
-        const gic_real t479 = t477 + t205 + t235 - (t395 + (t392 + (t338 + t478)));
-        const gic_real t480 = y[15] * t2 - y[16] * t435 + acc[2] * R(3570.2) + t6 * R(116.84512);
-        const gic_real t481 = t438 * t22 - y[16] * t439 + (t16 * t440 + t19 * t441);
+        const gic_real residual_4 = t477 + t205 + t235 - (t395 + (t392 + (t338 + t478)));
+        const gic_real t480 = y[TRAILING_ARM_STATE_OMEGA_X] * t2 - y[TRAILING_ARM_STATE_OMEGA_Y] * t435 +
+            acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] * R(3570.2) + t6 * R(116.84512);
+        const gic_real t481 = t438 * t22 - y[TRAILING_ARM_STATE_OMEGA_Y] * t439 + (t16 * t440 + t19 * t441);
         const gic_real t482 = t481 - t24 * t404 + (t40 * R(40.476046225) - t403 * R(7.359315990000001));
-        const gic_real t483 = t480 + (acc[2] + (t15 * R(13.051414655999999) - m[1] * t401)) + t482;
-        const gic_real t484 = t444 * t50 - y[16] * t445 + (t44 * t446 + t47 * t447);
+        const gic_real t483 = t480 + (acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] + (t15 * R(13.051414655999999) -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * t401)) + t482;
+        const gic_real t484 = t444 * t50 - y[TRAILING_ARM_STATE_OMEGA_Y] * t445 + (t44 * t446 + t47 * t447);
         const gic_real t485 = t484 - t52 * t407 + (R(40.476046225) * t64 - t406 * R(-7.359315990000001));
         const gic_real t486 = t78 * t82 - t67 * t449 + (t68 * t84 + (t73 * t86 + t77 * t89));
         const gic_real t487 = t486 + (t96 * t120 - t93 * t411);
-        const gic_real t488 = t483 + t485 + (t487 + (t119 * R(149.724089775) - m[151] * t411));
+        const gic_real t488 = t483 + t485 + (t487 + (t119 * R(149.724089775) -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] * t411));
         const gic_real t489 = t134 * t138 - t123 * t453 + (t124 * t140 + (t129 * t142 + t133 * t145));
         const gic_real t490 = t489 + (t152 * t176 - t149 * t415);
-        const gic_real t491 = y[15] * t186 - t178 * t456 + (t179 * t187 + (t180 * t188 + t183 * t190));
-        const gic_real t492 = t491 + (t192 * t205 - t418 * R(21.430755085)) + (t204 * R(-127.13825) - t418 * R(71.86075000000001));
-        const gic_real t493 = t488 + (t490 + (R(149.724089775) * t175 - m[187] * t415)) + t492;
-        const gic_real t494 = y[15] * t216 - t208 * t461 + (t209 * t217 + (t210 * t218 + t213 * t220));
-        const gic_real t495 = t494 + (t222 * t235 - t421 * R(-21.430755085)) + (R(-127.13825) * t234 - t421 * R(-71.86075000000001));
+        const gic_real t491 = y[TRAILING_ARM_STATE_OMEGA_X] * t186 - t178 * t456 + (t179 * t187 + (t180 * t188 + t183 *
+            t190));
+        const gic_real t492 = t491 + (t192 * t205 - t418 * R(21.430755085)) + (t204 * R(-127.13825) - t418 *
+            R(71.86075000000001));
+        const gic_real t493 = t488 + (t490 + (R(149.724089775) * t175 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t415)) + t492;
+        const gic_real t494 = y[TRAILING_ARM_STATE_OMEGA_X] * t216 - t208 * t461 + (t209 * t217 + (t210 * t218 + t213 *
+            t220));
+        const gic_real t495 = t494 + (t222 * t235 - t421 * R(-21.430755085)) + (R(-127.13825) * t234 - t421 *
+            R(-71.86075000000001));
         const gic_real t496 = t317 * t338 - t316 * t429;
         const gic_real t497 = t341 * t362 - t340 * t430;
-        const gic_real t498 = R(1.792978) * t382 - t381 * R(-0.003388550642239951) + (R(1.792978) * t371 - t370 * R(0.003388550642239951));
-        const gic_real t499 = t498 + (t293 * R(-0.08000000000000007) - R(0.6) * t427) + (t243 * R(0.08000000000000007) - R(-0.6) * t424);
-        const gic_real t500 = t376 * t431 - R(0.09720579999999998) * t382 + (t499 + (t381 * R(-0.00209039581919997) - R(1.688965) * t382));
-        const gic_real t501 = t365 * t432 - R(0.09720579999999998) * t371 + (t500 + (t370 * R(0.00209039581919997) - R(1.688965) * t371));
-        const gic_real t502 = t497 + (t501 + (R(1.653405) * t362 - m[151] * t430)) + (R(1.653405) * t338 - m[187] * t429);
-        const gic_real t503 = t295 * t315 - R(0.25970099999999996) * t426 - t289 * t294 + (t496 + t502 + (R(-1.15) * t392 - R(0.65) * t428));
-        const gic_real t504 = t253 * t286 - R(-0.25970099999999996) * t423 - t239 * t244 + (t503 + (R(-1.15) * t395 - R(-0.65) * t425));
+        const gic_real t498 = R(1.792978) * t382 - t381 * R(-0.003388550642239951) + (R(1.792978) * t371 - t370 *
+            R(0.003388550642239951));
+        const gic_real t499 = t498 + (t293 * R(-0.08000000000000007) - R(0.6) * t427) + (t243 * R(0.08000000000000007) -
+            R(-0.6) * t424);
+        const gic_real t500 = t376 * t431 - R(0.09720579999999998) * t382 + (t499 + (t381 * R(-0.00209039581919997) -
+            R(1.688965) * t382));
+        const gic_real t501 = t365 * t432 - R(0.09720579999999998) * t371 + (t500 + (t370 * R(0.00209039581919997) -
+            R(1.688965) * t371));
+        const gic_real t502 = t497 + (t501 + (R(1.653405) * t362 - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] *
+            t430)) + (R(1.653405) * t338 - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] * t429);
+        const gic_real t503 = t295 * t315 - R(0.25970099999999996) * t426 - t289 * t294 + (t496 + t502 + (R(-1.15) *
+            t392 - R(0.65) * t428));
+        const gic_real t504 = t253 * t286 - R(-0.25970099999999996) * t423 - t239 * t244 + (t503 + (R(-1.15) * t395 -
+            R(-0.65) * t425));
         const gic_real t505 = t436 * R(2086.52) + t12 + t34 + t60 + t112 + t168;
         const gic_real t506 = t361 + (t383 + t373 + t386 + t387 - t383 - t373);
-        const gic_real t507 = t505 + t458 + t463 - (t394 + (t391 + (t337 + t506)));
-        const gic_real t508 = m[185] * t112 + m[184] * t120 + (m[182] * t487 + (m[181] * t451 + m[180] * t121));
-        const gic_real t509 = m[185] * t361 + m[184] * t362 + (m[182] * t497 + (m[181] * t468 + m[180] * t363));
-        const gic_real t510 = t42 + t508 - (t384 - (x[0] - R(-0.29722)) * R(9310.0) + t509);
-        const gic_real t511 = m[221] * t168 + m[220] * t176 + (m[218] * t490 + (m[217] * t455 + m[216] * t177));
-        const gic_real t512 = m[221] * t337 + m[220] * t338 + (m[218] * t496 + (m[217] * t467 + m[216] * t339));
-        const gic_real t513 = t511 - t66 - (t374 - t372 - R(9310.0) * (x[1] - R(-0.29722)) + t512);
-        const gic_real t514 = t476 + (m[176] * t487 + (m[175] * t451 + m[174] * t121));
-        const gic_real t515 = t514 + (m[212] * t490 + (m[211] * t455 + m[210] * t177));
-        const gic_real t516 = m[176] * t497 + (m[175] * t468 + m[174] * t363) - (x[4] * R(100000.0) + xd[4] * R(12000.0));
-        const gic_real t517 = t516 + (m[212] * t496 + (m[211] * t467 + m[210] * t339));
-        const gic_real t518 = t207 + t236 - t396;
-        const gic_real t519 = t493 + t495 - t504;
-        const gic_real t520 = t459 - (t466 - (x[2] - R(-0.11142)) * R(22680.0));
-        const gic_real t521 = t464 - (t465 - R(22680.0) * (x[3] - R(-0.11142)));
-        const gic_real t522 = t515 - t517;
-        tau[0] = t518;
-        tau[3] = t434;
-        tau[1] = t475;
-        tau[4] = t479;
-        tau[2] = t519;
-        tau[5] = t507;
-        tau[6] = t510;
-        tau[7] = t513;
-        tau[8] = t520;
-        tau[9] = t521;
-        tau[10] = t522;
+        const gic_real residual_5 = t505 + t458 + t463 - (t394 + (t391 + (t337 + t506)));
+        const gic_real t508 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] * t112 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] * t120 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t487 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t451 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t121));
+        const gic_real t509 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] * t361 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] * t362 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t497 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t468 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t363));
+        const gic_real residual_6 = t42 + t508 - (t384 - (x[TRAILING_ARM_X_BAR_F_L] - R(-0.29722)) * R(9310.0) + t509);
+        const gic_real t511 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] * t168 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] * t176 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t490 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t455 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t177));
+        const gic_real t512 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] * t337 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] * t338 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t496 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t467 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t339));
+        const gic_real residual_7 = t511 - t66 - (t374 - t372 - R(9310.0) * (x[TRAILING_ARM_X_BAR_F_R] - R(-0.29722)) +
+            t512);
+        const gic_real t514 = t476 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t487 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t451 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t121));
+        const gic_real t515 = t514 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t490 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t455 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t177));
+        const gic_real t516 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t497 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t468 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t363) - (x[TRAILING_ARM_X_RACK] * R(100000.0) +
+            xd[TRAILING_ARM_X_RACK] * R(12000.0));
+        const gic_real t517 = t516 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t496 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t467 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t339));
+        const gic_real residual_0 = t207 + t236 - t396;
+        const gic_real residual_2 = t493 + t495 - t504;
+        const gic_real residual_8 = t459 - (t466 - (x[TRAILING_ARM_X_BAR_R_L] - R(-0.11142)) * R(22680.0));
+        const gic_real residual_9 = t464 - (t465 - R(22680.0) * (x[TRAILING_ARM_X_BAR_R_R] - R(-0.11142)));
+        const gic_real residual_10 = t515 - t517;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_X] = residual_0;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_X] = residual_3;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_Y] = residual_1;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] = residual_4;
+        tau[TRAILING_ARM_UNKNOWN_ALPHA_Z] = residual_2;
+        tau[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] = residual_5;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] = residual_6;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] = residual_7;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] = residual_8;
+        tau[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] = residual_9;
+        tau[TRAILING_ARM_UNKNOWN_OF_RACK] = residual_10;
     }
     return GIC_OK;
 }
 
 /* acc[] at the present rate; energy[3]: its rate, the power that changes it, sum of magnitudes. */
-static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *acc,
-    gic_real *energy)
+static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *acc, gic_real *energy)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
     const gic_real *const p = self->parameter, *const port = self->port;
     const gic_real *const rate = self->rate;
-    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc, (void)energy;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port, (void)rate, (void)acc,
+        (void)energy;
     {
-        const gic_real t1 = xd[0] * ((x[0] - R(-0.29722)) * R(9310.0)) + xd[1] * (R(9310.0) * (x[1] - R(-0.29722)));
-        const gic_real t2 = t1 + xd[2] * ((x[2] - R(-0.11142)) * R(22680.0)) + xd[3] * (R(22680.0) * (x[3] - R(-0.11142)));
-        const gic_real t3 = t2 + xd[4] * (x[4] * R(100000.0));
+        /* force bar_f_r */
+        const gic_real t1 = xd[TRAILING_ARM_X_BAR_F_L] * ((x[TRAILING_ARM_X_BAR_F_L] - R(-0.29722)) * R(9310.0)) +
+            xd[TRAILING_ARM_X_BAR_F_R] * (R(9310.0) * (x[TRAILING_ARM_X_BAR_F_R] - R(-0.29722)));
+        /* force bar_r_r */
+        const gic_real t2 = t1 + xd[TRAILING_ARM_X_BAR_R_L] * ((x[TRAILING_ARM_X_BAR_R_L] - R(-0.11142)) * R(22680.0)) +
+            xd[TRAILING_ARM_X_BAR_R_R] * (R(22680.0) * (x[TRAILING_ARM_X_BAR_R_R] - R(-0.11142)));
+        /* force rack */
+        const gic_real t3 = t2 + xd[TRAILING_ARM_X_RACK] * (x[TRAILING_ARM_X_RACK] * R(100000.0));
         const gic_real t4 = e[1] + e[1];
         const gic_real t5 = e[1] * t4;
         const gic_real t6 = e[2] + e[2];
         const gic_real t7 = e[2] * t6;
         const gic_real t8 = R(1.0) - (t5 + t7);
-        const gic_real t9 = rate[14] - R(-9.81);
+        /* applied forces: moment and force on the base, and along each coordinate */
+        const gic_real t9 = rate[TRAILING_ARM_STATE_V_Z] - R(-9.81);
         const gic_real t10 = e[3] * t6;
         const gic_real t11 = e[0] * t4;
         const gic_real t12 = t10 - t11;
@@ -4400,421 +5897,700 @@ static GIC_COLD int trailing_arm_energy(const trailing_arm *self, gic_real time,
         const gic_real t14 = e[1] * t13;
         const gic_real t15 = e[0] * t6;
         const gic_real t16 = t14 + t15;
-        const gic_real t17 = t8 * t9 + (t12 * rate[13] + t16 * rate[12]);
-        const gic_real t18 = y[17] * R(0.056) - y[15] * R(0.21300000000000008);
-        const gic_real t19 = y[16] * R(0.21300000000000008);
-        const gic_real t20 = t17 + (y[15] * t18 - y[16] * t19 - rate[16] * R(0.056));
-        const gic_real t21 = y[14] * t8 + (y[13] * t12 + y[12] * t16);
-        const gic_real t22 = y[16] * R(0.056);
+        const gic_real t17 = t8 * t9 + (t12 * rate[TRAILING_ARM_STATE_V_Y] + t16 * rate[TRAILING_ARM_STATE_V_X]);
+        const gic_real t18 = y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - y[TRAILING_ARM_STATE_OMEGA_X] *
+            R(0.21300000000000008);
+        const gic_real t19 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008);
+        const gic_real t20 = t17 + (y[TRAILING_ARM_STATE_OMEGA_X] * t18 - y[TRAILING_ARM_STATE_OMEGA_Y] * t19 -
+            rate[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056));
+        const gic_real t21 = y[TRAILING_ARM_STATE_V_Z] * t8 + (y[TRAILING_ARM_STATE_V_Y] * t12 +
+            y[TRAILING_ARM_STATE_V_X] * t16);
+        const gic_real t22 = y[TRAILING_ARM_STATE_OMEGA_Y] * R(0.056);
         const gic_real t23 = t10 + t11;
         const gic_real t24 = e[3] * t13;
         const gic_real t25 = R(1.0) - (t5 + t24);
         const gic_real t26 = e[2] * t4;
         const gic_real t27 = e[0] * t13;
         const gic_real t28 = t26 - t27;
-        const gic_real t29 = t23 * t9 + (t25 * rate[13] + t28 * rate[12]);
-        const gic_real t30 = y[15] * t22 + y[17] * t19 + (rate[17] * R(0.056) - rate[15] * R(0.21300000000000008));
-        const gic_real t31 = y[14] * t23 + (y[13] * t25 + y[12] * t28);
+        const gic_real t29 = t23 * t9 + (t25 * rate[TRAILING_ARM_STATE_V_Y] + t28 * rate[TRAILING_ARM_STATE_V_X]);
+        const gic_real t30 = y[TRAILING_ARM_STATE_OMEGA_X] * t22 + y[TRAILING_ARM_STATE_OMEGA_Z] * t19 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * R(0.056) - rate[TRAILING_ARM_STATE_OMEGA_X] * R(0.21300000000000008));
+        const gic_real t31 = y[TRAILING_ARM_STATE_V_Z] * t23 + (y[TRAILING_ARM_STATE_V_Y] * t25 +
+            y[TRAILING_ARM_STATE_V_X] * t28);
         const gic_real t32 = t14 - t15;
         const gic_real t33 = t26 + t27;
         const gic_real t34 = R(1.0) - (t7 + t24);
-        const gic_real t35 = t32 * t9 + (t33 * rate[13] + t34 * rate[12]);
-        const gic_real t36 = t35 + (rate[16] * R(0.21300000000000008) - (y[17] * t18 + y[16] * t22));
-        const gic_real t37 = y[14] * t32 + (y[13] * t33 + y[12] * t34);
+        const gic_real t35 = t32 * t9 + (t33 * rate[TRAILING_ARM_STATE_V_Y] + t34 * rate[TRAILING_ARM_STATE_V_X]);
+        const gic_real t36 = t35 + (rate[TRAILING_ARM_STATE_OMEGA_Y] * R(0.21300000000000008) -
+            (y[TRAILING_ARM_STATE_OMEGA_Z] * t18 + y[TRAILING_ARM_STATE_OMEGA_Y] * t22));
+        const gic_real t37 = y[TRAILING_ARM_STATE_V_Z] * t32 + (y[TRAILING_ARM_STATE_V_Y] * t33 +
+            y[TRAILING_ARM_STATE_V_X] * t34);
         const gic_real t38 = (t29 + t30) * (t18 + t31) + t36 * (t19 + t37);
         const gic_real t39 = (t20 * (t21 - t22) + t38) * R(2086.52);
-        const gic_real t40 = y[17] * (rate[17] * R(3570.2)) + (y[16] * (rate[16] * R(2955.66)) + y[15] * (rate[15] * R(1078.52)));
-        const gic_real t41 = m[16] + (R(1.438648) * y[17] - R(0.05422899999999997) * y[15]);
-        const gic_real t42 = m[16] + t41;
-        const gic_real t43 = R(0.05422899999999997) * y[16] - m[1] * y[17];
-        const gic_real t44 = y[15] * t42 - y[16] * t43 + (m[1] * rate[15] - R(1.438648) * rate[16]);
-        const gic_real t45 = m[1] * y[15] - R(1.438648) * y[16];
-        const gic_real t46 = y[17] * t43 - y[15] * t45 + (R(1.438648) * rate[17] - R(0.05422899999999997) * rate[15]);
-        const gic_real t47 = y[16] * t45 - y[17] * t42 + (R(0.05422899999999997) * rate[16] - m[1] * rate[17]);
-        const gic_real t48 = (rate[22] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 + t43);
+        const gic_real t40 = y[TRAILING_ARM_STATE_OMEGA_Z] * (rate[TRAILING_ARM_STATE_OMEGA_Z] * R(3570.2)) +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * (rate[TRAILING_ARM_STATE_OMEGA_Y] * R(2955.66)) +
+            y[TRAILING_ARM_STATE_OMEGA_X] * (rate[TRAILING_ARM_STATE_OMEGA_X] * R(1078.52)));
+        const gic_real t41 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] + (R(1.438648) *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t42 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_VELOCITY_Y] + t41;
+        const gic_real t43 = R(0.05422899999999997) * y[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t44 = y[TRAILING_ARM_STATE_OMEGA_X] * t42 - y[TRAILING_ARM_STATE_OMEGA_Y] * t43 +
+            (m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * rate[TRAILING_ARM_STATE_OMEGA_X] - R(1.438648) *
+            rate[TRAILING_ARM_STATE_OMEGA_Y]);
+        const gic_real t45 = m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * y[TRAILING_ARM_STATE_OMEGA_X] -
+            R(1.438648) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t46 = y[TRAILING_ARM_STATE_OMEGA_Z] * t43 - y[TRAILING_ARM_STATE_OMEGA_X] * t45 + (R(1.438648) *
+            rate[TRAILING_ARM_STATE_OMEGA_Z] - R(0.05422899999999997) * rate[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t47 = y[TRAILING_ARM_STATE_OMEGA_Y] * t45 - y[TRAILING_ARM_STATE_OMEGA_Z] * t42 +
+            (R(0.05422899999999997) * rate[TRAILING_ARM_STATE_OMEGA_Y] -
+            m[TRAILING_ARM_MOTION_RACK + TRAILING_ARM_C_Y] * rate[TRAILING_ARM_STATE_OMEGA_Z]);
+        const gic_real t48 = (rate[TRAILING_ARM_STATE_RACK_RATE] + (t29 + t46)) * (t31 + t41) + (t35 + t47) * (t37 +
+            t43);
         const gic_real t49 = ((t17 + t44) * (t21 + t45) + t48) * R(9.072);
-        const gic_real t50 = y[17] * rate[17] + (y[16] * rate[16] + y[15] * rate[15]);
-        const gic_real t51 = R(1.688965) * y[17];
-        const gic_real t52 = m[41] * R(3.0379110359107786e-06) + m[40] * R(0.24689200985615367);
-        const gic_real t53 = m[42] * t52;
-        const gic_real t54 = t51 - y[15] * t52 - t53;
+        const gic_real t50 = y[TRAILING_ARM_STATE_OMEGA_Z] * rate[TRAILING_ARM_STATE_OMEGA_Z] +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * rate[TRAILING_ARM_STATE_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_X] *
+            rate[TRAILING_ARM_STATE_OMEGA_X]);
+        const gic_real t51 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t52 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.24689200985615367);
+        const gic_real t53 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t52;
+        const gic_real t54 = t51 - y[TRAILING_ARM_STATE_OMEGA_X] * t52 - t53;
         const gic_real t55 = t54 - t53;
-        const gic_real t56 = m[38] * R(3.0379110359107786e-06) + m[37] * R(0.24689200985615367);
+        const gic_real t56 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.24689200985615367);
         const gic_real t57 = R(0.307086) + t56;
-        const gic_real t58 = y[16] * t52 - y[17] * t57;
-        const gic_real t59 = R(1.688965) * rate[16];
-        const gic_real t60 = y[15] * t55 - y[16] * t58 + (rate[15] * t57 - t59);
-        const gic_real t61 = m[42] * t56;
-        const gic_real t62 = R(1.688965) * y[16];
-        const gic_real t63 = t61 + (y[15] * t57 - t62);
-        const gic_real t64 = (t17 + t60 - m[42] * t53 + rate[18] * t56) * (t21 + t63);
+        const gic_real t58 = y[TRAILING_ARM_STATE_OMEGA_Y] * t52 - y[TRAILING_ARM_STATE_OMEGA_Z] * t57;
+        const gic_real t59 = R(1.688965) * rate[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t60 = y[TRAILING_ARM_STATE_OMEGA_X] * t55 - y[TRAILING_ARM_STATE_OMEGA_Y] * t58 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t57 - t59);
+        const gic_real t61 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t56;
+        const gic_real t62 = R(1.688965) * y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t63 = t61 + (y[TRAILING_ARM_STATE_OMEGA_X] * t57 - t62);
+        const gic_real t64 = (t17 + t60 - m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t53 +
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE] * t56) * (t21 + t63);
         const gic_real t65 = t61 + t63;
-        const gic_real t66 = R(1.688965) * rate[17];
-        const gic_real t67 = y[17] * t58 - y[15] * t65 + (t66 - rate[15] * t52);
-        const gic_real t68 = (t29 + t67 - m[42] * t61 - rate[18] * t52) * (t31 + t54);
-        const gic_real t69 = y[16] * t65 - y[17] * t55 + (rate[16] * t52 - rate[17] * t57);
+        const gic_real t66 = R(1.688965) * rate[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t67 = y[TRAILING_ARM_STATE_OMEGA_Z] * t58 - y[TRAILING_ARM_STATE_OMEGA_X] * t65 + (t66 -
+            rate[TRAILING_ARM_STATE_OMEGA_X] * t52);
+        const gic_real t68 = (t29 + t67 - m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t61 -
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE] * t52) * (t31 + t54);
+        const gic_real t69 = y[TRAILING_ARM_STATE_OMEGA_Y] * t65 - y[TRAILING_ARM_STATE_OMEGA_Z] * t55 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t52 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t57);
         const gic_real t70 = (t64 + (t68 + (t35 + t69) * (t37 + t58))) * R(23.965);
-        const gic_real t71 = rate[17] - m[42] * y[16];
-        const gic_real t72 = (m[41] * (m[41] * R(0.8938)) + m[40] * (m[40] * R(0.4469))) * t71;
-        const gic_real t73 = m[38] * R(0.8938);
-        const gic_real t74 = m[37] * R(0.4469);
-        const gic_real t75 = m[41] * t73 + m[40] * t74;
-        const gic_real t76 = rate[16] + m[42] * y[17];
-        const gic_real t77 = t75 * t71 + (m[38] * t73 + m[37] * t74) * t76;
-        const gic_real t78 = y[16] * t77 + (m[42] + y[15]) * (R(0.4469) * (rate[15] + rate[18]));
-        const gic_real t79 = y[17] * (t72 + t75 * t76) + t78;
-        const gic_real t80 = m[71] * R(3.0379110359107786e-06) + m[70] * R(-0.24689200985615367);
-        const gic_real t81 = m[72] * t80;
-        const gic_real t82 = t51 - y[15] * t80 - t81;
+        const gic_real t71 = rate[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t72 = (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] *
+            R(0.4469))) * t71;
+        const gic_real t73 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t74 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t75 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * t73 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * t74;
+        const gic_real t76 = rate[TRAILING_ARM_STATE_OMEGA_Y] + m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t77 = t75 * t71 + (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * t73 +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * t74) * t76;
+        const gic_real t78 = y[TRAILING_ARM_STATE_OMEGA_Y] * t77 +
+            (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X]) * (R(0.4469) *
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + rate[TRAILING_ARM_STATE_BAR_F_L_RATE]));
+        const gic_real t79 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t72 + t75 * t76) + t78;
+        const gic_real t80 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.24689200985615367);
+        const gic_real t81 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t80;
+        const gic_real t82 = t51 - y[TRAILING_ARM_STATE_OMEGA_X] * t80 - t81;
         const gic_real t83 = t82 - t81;
-        const gic_real t84 = m[68] * R(3.0379110359107786e-06) + m[67] * R(-0.24689200985615367);
+        const gic_real t84 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(3.0379110359107786e-06) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.24689200985615367);
         const gic_real t85 = R(-0.307086) + t84;
-        const gic_real t86 = y[16] * t80 - y[17] * t85;
-        const gic_real t87 = y[15] * t83 - y[16] * t86 + (rate[15] * t85 - t59);
-        const gic_real t88 = m[72] * t84;
-        const gic_real t89 = t88 + (y[15] * t85 - t62);
-        const gic_real t90 = (t17 + t87 - m[72] * t81 - rate[19] * t84) * (t21 + t89);
+        const gic_real t86 = y[TRAILING_ARM_STATE_OMEGA_Y] * t80 - y[TRAILING_ARM_STATE_OMEGA_Z] * t85;
+        const gic_real t87 = y[TRAILING_ARM_STATE_OMEGA_X] * t83 - y[TRAILING_ARM_STATE_OMEGA_Y] * t86 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t85 - t59);
+        const gic_real t88 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t84;
+        const gic_real t89 = t88 + (y[TRAILING_ARM_STATE_OMEGA_X] * t85 - t62);
+        const gic_real t90 = (t17 + t87 - m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t81 -
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE] * t84) * (t21 + t89);
         const gic_real t91 = t88 + t89;
-        const gic_real t92 = y[17] * t86 - y[15] * t91 + (t66 - rate[15] * t80);
-        const gic_real t93 = (t29 + t92 - m[72] * t88 + rate[19] * t80) * (t31 + t82);
-        const gic_real t94 = y[16] * t91 - y[17] * t83 + (rate[16] * t80 - rate[17] * t85);
+        const gic_real t92 = y[TRAILING_ARM_STATE_OMEGA_Z] * t86 - y[TRAILING_ARM_STATE_OMEGA_X] * t91 + (t66 -
+            rate[TRAILING_ARM_STATE_OMEGA_X] * t80);
+        const gic_real t93 = (t29 + t92 - m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t88 +
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE] * t80) * (t31 + t82);
+        const gic_real t94 = y[TRAILING_ARM_STATE_OMEGA_Y] * t91 - y[TRAILING_ARM_STATE_OMEGA_Z] * t83 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t80 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t85);
         const gic_real t95 = R(23.965) * (t90 + (t93 + (t35 + t94) * (t37 + t86)));
-        const gic_real t96 = rate[17] - m[72] * y[16];
-        const gic_real t97 = (m[71] * (m[71] * R(0.8938)) + m[70] * (m[70] * R(0.4469))) * t96;
-        const gic_real t98 = m[68] * R(0.8938);
-        const gic_real t99 = m[67] * R(0.4469);
-        const gic_real t100 = m[71] * t98 + m[70] * t99;
-        const gic_real t101 = rate[16] + m[72] * y[17];
-        const gic_real t102 = t100 * t96 + (m[68] * t98 + m[67] * t99) * t101;
-        const gic_real t103 = y[16] * t102 + (m[72] + y[15]) * (R(0.4469) * (rate[15] - rate[19]));
-        const gic_real t104 = y[17] * (t97 + t100 * t101) + t103;
+        const gic_real t96 = rate[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t97 = (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.8938)) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] *
+            R(0.4469))) * t96;
+        const gic_real t98 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.8938);
+        const gic_real t99 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(0.4469);
+        const gic_real t100 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * t98 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * t99;
+        const gic_real t101 = rate[TRAILING_ARM_STATE_OMEGA_Y] + m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t102 = t100 * t96 + (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * t98 +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * t99) * t101;
+        const gic_real t103 = y[TRAILING_ARM_STATE_OMEGA_Y] * t102 +
+            (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] + y[TRAILING_ARM_STATE_OMEGA_X]) * (R(0.4469) *
+            (rate[TRAILING_ARM_STATE_OMEGA_X] - rate[TRAILING_ARM_STATE_BAR_F_R_RATE]));
+        const gic_real t104 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t97 + t100 * t101) + t103;
         const gic_real t105 = t39 + t40 + (t49 + t50) + (t70 + t79) + (t95 + t104);
-        const gic_real t106 = m[155] * R(0.09182100000000004);
-        const gic_real t107 = m[153] * R(-0.004825999999999997);
-        const gic_real t108 = t106 + (t107 + m[154] * R(0.08910630000000008));
-        const gic_real t109 = m[161] * R(0.09182100000000004);
-        const gic_real t110 = m[159] * R(-0.004825999999999997);
-        const gic_real t111 = t109 + (t110 + m[160] * R(0.08910630000000008));
-        const gic_real t112 = m[164] * t108 - m[162] * t111;
-        const gic_real t113 = m[158] * R(0.09182100000000004);
-        const gic_real t114 = m[156] * R(-0.004825999999999997);
-        const gic_real t115 = t113 + (t114 + m[157] * R(0.08910630000000008));
-        const gic_real t116 = m[163] * t111 - m[164] * t115;
-        const gic_real t117 = m[162] * t112 - m[163] * t116 + (m[168] * t115 - m[169] * t108);
-        const gic_real t118 = m[166] + t112;
+        /* wheel tire_f_l */
+        const gic_real t106 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t107 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t108 = t106 + (t107 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] *
+            R(0.08910630000000008));
+        const gic_real t109 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t110 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t111 = t109 + (t110 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            R(0.08910630000000008));
+        const gic_real t112 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t108 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t111;
+        const gic_real t113 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t114 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t115 = t113 + (t114 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] *
+            R(0.08910630000000008));
+        const gic_real t116 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t111 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t115;
+        const gic_real t117 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t112 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t116 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t115 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t108);
+        const gic_real t118 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] + t112;
         const gic_real t119 = R(1.653405) + t108;
-        const gic_real t120 = m[152] + t111;
-        const gic_real t121 = t118 + (y[17] * t119 - y[15] * t120);
+        const gic_real t120 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t111;
+        const gic_real t121 = t118 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t119 - y[TRAILING_ARM_STATE_OMEGA_X] * t120);
         const gic_real t122 = t118 + t121;
-        const gic_real t123 = m[151] + t115;
-        const gic_real t124 = t116 + (y[16] * t120 - y[17] * t123);
+        const gic_real t123 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t115;
+        const gic_real t124 = t116 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t120 - y[TRAILING_ARM_STATE_OMEGA_Z] * t123);
         const gic_real t125 = t116 + t124;
-        const gic_real t126 = y[15] * t122 - y[16] * t125 + (rate[15] * t123 - rate[16] * t119);
-        const gic_real t127 = m[173] + t117 + (t17 + t126) + rate[22] * (m[174] * t115 - m[175] * t108);
-        const gic_real t128 = t127 + rate[18] * (m[185] + (m[180] * t115 - m[181] * t108));
-        const gic_real t129 = m[162] * t115 - m[163] * t108;
-        const gic_real t130 = m[167] + t129;
-        const gic_real t131 = t130 + (y[15] * t123 - y[16] * t119);
-        const gic_real t132 = m[164] * t116 - m[162] * t129 + (m[170] * t108 - m[168] * t111);
+        const gic_real t126 = y[TRAILING_ARM_STATE_OMEGA_X] * t122 - y[TRAILING_ARM_STATE_OMEGA_Y] * t125 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t123 - rate[TRAILING_ARM_STATE_OMEGA_Y] * t119);
+        const gic_real t127 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Z] + t117 + (t17 + t126) +
+            rate[TRAILING_ARM_STATE_RACK_RATE] * (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t115 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t108);
+        const gic_real t128 = t127 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t115 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t108));
+        const gic_real t129 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t115 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t108;
+        const gic_real t130 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] + t129;
+        const gic_real t131 = t130 + (y[TRAILING_ARM_STATE_OMEGA_X] * t123 - y[TRAILING_ARM_STATE_OMEGA_Y] * t119);
+        const gic_real t132 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t116 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t129 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t108 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] * t111);
         const gic_real t133 = t130 + t131;
-        const gic_real t134 = y[17] * t125 - y[15] * t133 + (rate[17] * t119 - rate[15] * t120);
-        const gic_real t135 = m[172] + t132 + (t29 + t134) + rate[22] * (m[176] * t108 - m[174] * t111);
-        const gic_real t136 = t135 + rate[18] * (m[184] + (m[182] * t108 - m[180] * t111));
-        const gic_real t137 = m[163] * t129 - m[164] * t112 + (m[169] * t111 - m[170] * t115);
-        const gic_real t138 = y[16] * t133 - y[17] * t122 + (rate[16] * t120 - rate[17] * t123);
-        const gic_real t139 = t137 + (t35 + t138) + rate[22] * (m[175] * t111 - m[176] * t115);
-        const gic_real t140 = (t139 + rate[18] * (m[181] * t111 - m[182] * t115)) * (t37 + t124);
+        const gic_real t134 = y[TRAILING_ARM_STATE_OMEGA_Z] * t125 - y[TRAILING_ARM_STATE_OMEGA_X] * t133 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t119 - rate[TRAILING_ARM_STATE_OMEGA_X] * t120);
+        const gic_real t135 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ACCELERATION_Y] + t132 + (t29 + t134) +
+            rate[TRAILING_ARM_STATE_RACK_RATE] * (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t108 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] * t111);
+        const gic_real t136 = t135 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t108 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] * t111));
+        const gic_real t137 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t129 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t112 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] * t111 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] * t115);
+        const gic_real t138 = y[TRAILING_ARM_STATE_OMEGA_Y] * t133 - y[TRAILING_ARM_STATE_OMEGA_Z] * t122 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t120 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t123);
+        const gic_real t139 = t137 + (t35 + t138) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] * t111 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] * t115);
+        const gic_real t140 = (t139 + rate[TRAILING_ARM_STATE_BAR_F_L_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] * t111 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] * t115)) * (t37 + t124);
         const gic_real t141 = t128 * (t21 + t131) + (t136 * (t31 + t121) + t140);
         const gic_real t142 = t141 * R(90.555);
-        const gic_real t143 = m[161] * (m[161] * R(4.7728205)) + (m[160] * (m[160] * R(7.58122)) + m[159] * (m[159] * R(4.8947505)));
-        const gic_real t144 = m[170] + (rate[17] + (m[163] * y[15] - m[162] * y[16])) + m[176] * rate[22];
-        const gic_real t145 = t144 + m[182] * rate[18];
-        const gic_real t146 = m[158] * R(4.7728205);
-        const gic_real t147 = m[157] * R(7.58122);
-        const gic_real t148 = m[156] * R(4.8947505);
-        const gic_real t149 = m[161] * t146 + (m[160] * t147 + m[159] * t148);
-        const gic_real t150 = m[169] + (rate[16] + (m[162] * y[17] - m[164] * y[15])) + m[175] * rate[22];
-        const gic_real t151 = t150 + m[181] * rate[18];
-        const gic_real t152 = m[155] * R(4.7728205);
-        const gic_real t153 = m[154] * R(7.58122);
-        const gic_real t154 = m[153] * R(4.8947505);
-        const gic_real t155 = m[161] * t152 + (m[160] * t153 + m[159] * t154);
-        const gic_real t156 = m[168] + (rate[15] + (m[164] * y[16] - m[163] * y[17])) + m[174] * rate[22];
-        const gic_real t157 = t156 + m[180] * rate[18];
-        const gic_real t158 = (m[164] + y[17]) * (t143 * t145 + (t149 * t151 + t155 * t157));
-        const gic_real t159 = (m[158] * t146 + (m[157] * t147 + m[156] * t148)) * t151;
-        const gic_real t160 = m[158] * t152 + (m[157] * t153 + m[156] * t154);
-        const gic_real t161 = (m[163] + y[16]) * (t149 * t145 + (t159 + t160 * t157));
-        const gic_real t162 = (m[155] * t152 + (m[154] * t153 + m[153] * t154)) * t157;
-        const gic_real t163 = (m[162] + y[15]) * (t155 * t145 + (t160 * t151 + t162));
+        const gic_real t143 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t144 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Z] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 2] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t145 = t144 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 8] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t146 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t147 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t148 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t149 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t146 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t147 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t148);
+        const gic_real t150 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_Y] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 1] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t151 = t150 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 7] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t152 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t153 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t154 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t155 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * t152 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * t153 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * t154);
+        const gic_real t156 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_ALPHA_X] +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 0] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t157 = t156 + m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_S + 6] *
+            rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t158 = (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] +
+            y[TRAILING_ARM_STATE_OMEGA_Z]) * (t143 * t145 + (t149 * t151 + t155 * t157));
+        const gic_real t159 = (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t146 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t147 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t148)) * t151;
+        const gic_real t160 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * t152 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * t153 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * t154);
+        const gic_real t161 = (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] +
+            y[TRAILING_ARM_STATE_OMEGA_Y]) * (t149 * t145 + (t159 + t160 * t157));
+        const gic_real t162 = (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * t152 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * t153 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * t154)) * t157;
+        const gic_real t163 = (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] +
+            y[TRAILING_ARM_STATE_OMEGA_X]) * (t155 * t145 + (t160 * t151 + t162));
         const gic_real t164 = t158 + (t161 + t163);
-        const gic_real t165 = m[191] * R(0.09182100000000004);
-        const gic_real t166 = m[189] * R(-0.004825999999999997);
-        const gic_real t167 = t165 + (t166 + m[190] * R(-0.08910630000000008));
-        const gic_real t168 = m[197] * R(0.09182100000000004);
-        const gic_real t169 = m[195] * R(-0.004825999999999997);
-        const gic_real t170 = t168 + (t169 + m[196] * R(-0.08910630000000008));
-        const gic_real t171 = m[200] * t167 - m[198] * t170;
-        const gic_real t172 = m[194] * R(0.09182100000000004);
-        const gic_real t173 = m[192] * R(-0.004825999999999997);
-        const gic_real t174 = t172 + (t173 + m[193] * R(-0.08910630000000008));
-        const gic_real t175 = m[199] * t170 - m[200] * t174;
-        const gic_real t176 = m[198] * t171 - m[199] * t175 + (m[204] * t174 - m[205] * t167);
-        const gic_real t177 = m[202] + t171;
+        /* wheel tire_f_r */
+        const gic_real t165 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004);
+        const gic_real t166 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997);
+        const gic_real t167 = t165 + (t166 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] *
+            R(-0.08910630000000008));
+        const gic_real t168 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004);
+        const gic_real t169 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997);
+        const gic_real t170 = t168 + (t169 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            R(-0.08910630000000008));
+        const gic_real t171 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t167 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t170;
+        const gic_real t172 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004);
+        const gic_real t173 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997);
+        const gic_real t174 = t172 + (t173 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] *
+            R(-0.08910630000000008));
+        const gic_real t175 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t170 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t174;
+        const gic_real t176 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t171 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t175 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t174 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t167);
+        const gic_real t177 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] + t171;
         const gic_real t178 = R(1.653405) + t167;
-        const gic_real t179 = m[188] + t170;
-        const gic_real t180 = t177 + (y[17] * t178 - y[15] * t179);
+        const gic_real t179 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t170;
+        const gic_real t180 = t177 + (y[TRAILING_ARM_STATE_OMEGA_Z] * t178 - y[TRAILING_ARM_STATE_OMEGA_X] * t179);
         const gic_real t181 = t177 + t180;
-        const gic_real t182 = m[187] + t174;
-        const gic_real t183 = t175 + (y[16] * t179 - y[17] * t182);
+        const gic_real t182 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t174;
+        const gic_real t183 = t175 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t179 - y[TRAILING_ARM_STATE_OMEGA_Z] * t182);
         const gic_real t184 = t175 + t183;
-        const gic_real t185 = y[15] * t181 - y[16] * t184 + (rate[15] * t182 - rate[16] * t178);
-        const gic_real t186 = m[209] + t176 + (t17 + t185) + rate[22] * (m[210] * t174 - m[211] * t167);
-        const gic_real t187 = t186 + rate[19] * (m[221] + (m[216] * t174 - m[217] * t167));
-        const gic_real t188 = m[198] * t174 - m[199] * t167;
-        const gic_real t189 = m[203] + t188;
-        const gic_real t190 = t189 + (y[15] * t182 - y[16] * t178);
-        const gic_real t191 = m[200] * t175 - m[198] * t188 + (m[206] * t167 - m[204] * t170);
+        const gic_real t185 = y[TRAILING_ARM_STATE_OMEGA_X] * t181 - y[TRAILING_ARM_STATE_OMEGA_Y] * t184 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * t182 - rate[TRAILING_ARM_STATE_OMEGA_Y] * t178);
+        const gic_real t186 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Z] + t176 + (t17 + t185) +
+            rate[TRAILING_ARM_STATE_RACK_RATE] * (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t174 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t167);
+        const gic_real t187 = t186 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 11] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t174 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t167));
+        const gic_real t188 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t174 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t167;
+        const gic_real t189 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] + t188;
+        const gic_real t190 = t189 + (y[TRAILING_ARM_STATE_OMEGA_X] * t182 - y[TRAILING_ARM_STATE_OMEGA_Y] * t178);
+        const gic_real t191 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t175 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t188 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t167 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] * t170);
         const gic_real t192 = t189 + t190;
-        const gic_real t193 = y[17] * t184 - y[15] * t192 + (rate[17] * t178 - rate[15] * t179);
-        const gic_real t194 = m[208] + t191 + (t29 + t193) + rate[22] * (m[212] * t167 - m[210] * t170);
-        const gic_real t195 = t194 + rate[19] * (m[220] + (m[218] * t167 - m[216] * t170));
-        const gic_real t196 = m[199] * t188 - m[200] * t171 + (m[205] * t170 - m[206] * t174);
-        const gic_real t197 = y[16] * t192 - y[17] * t181 + (rate[16] * t179 - rate[17] * t182);
-        const gic_real t198 = t196 + (t35 + t197) + rate[22] * (m[211] * t170 - m[212] * t174);
-        const gic_real t199 = (t198 + rate[19] * (m[217] * t170 - m[218] * t174)) * (t37 + t183);
+        const gic_real t193 = y[TRAILING_ARM_STATE_OMEGA_Z] * t184 - y[TRAILING_ARM_STATE_OMEGA_X] * t192 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t178 - rate[TRAILING_ARM_STATE_OMEGA_X] * t179);
+        const gic_real t194 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ACCELERATION_Y] + t191 + (t29 + t193) +
+            rate[TRAILING_ARM_STATE_RACK_RATE] * (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t167 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] * t170);
+        const gic_real t195 = t194 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 10] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t167 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] * t170));
+        const gic_real t196 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t188 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t171 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] * t170 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] * t174);
+        const gic_real t197 = y[TRAILING_ARM_STATE_OMEGA_Y] * t192 - y[TRAILING_ARM_STATE_OMEGA_Z] * t181 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t179 - rate[TRAILING_ARM_STATE_OMEGA_Z] * t182);
+        const gic_real t198 = t196 + (t35 + t197) + rate[TRAILING_ARM_STATE_RACK_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] * t170 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] * t174);
+        const gic_real t199 = (t198 + rate[TRAILING_ARM_STATE_BAR_F_R_RATE] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] * t170 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] * t174)) * (t37 + t183);
         const gic_real t200 = t187 * (t21 + t190) + (t195 * (t31 + t180) + t199);
         const gic_real t201 = R(90.555) * t200;
-        const gic_real t202 = m[197] * (m[197] * R(4.7728205)) + (m[196] * (m[196] * R(7.58122)) + m[195] * (m[195] * R(4.8947505)));
-        const gic_real t203 = m[206] + (rate[17] + (m[199] * y[15] - m[198] * y[16])) + m[212] * rate[22];
-        const gic_real t204 = t203 + m[218] * rate[19];
-        const gic_real t205 = m[194] * R(4.7728205);
-        const gic_real t206 = m[193] * R(7.58122);
-        const gic_real t207 = m[192] * R(4.8947505);
-        const gic_real t208 = m[197] * t205 + (m[196] * t206 + m[195] * t207);
-        const gic_real t209 = m[205] + (rate[16] + (m[198] * y[17] - m[200] * y[15])) + m[211] * rate[22];
-        const gic_real t210 = t209 + m[217] * rate[19];
-        const gic_real t211 = m[191] * R(4.7728205);
-        const gic_real t212 = m[190] * R(7.58122);
-        const gic_real t213 = m[189] * R(4.8947505);
-        const gic_real t214 = m[197] * t211 + (m[196] * t212 + m[195] * t213);
-        const gic_real t215 = m[204] + (rate[15] + (m[200] * y[16] - m[199] * y[17])) + m[210] * rate[22];
-        const gic_real t216 = t215 + m[216] * rate[19];
-        const gic_real t217 = (m[200] + y[17]) * (t202 * t204 + (t208 * t210 + t214 * t216));
-        const gic_real t218 = (m[194] * t205 + (m[193] * t206 + m[192] * t207)) * t210;
-        const gic_real t219 = m[194] * t211 + (m[193] * t212 + m[192] * t213);
-        const gic_real t220 = (m[199] + y[16]) * (t208 * t204 + (t218 + t219 * t216));
-        const gic_real t221 = (m[191] * t211 + (m[190] * t212 + m[189] * t213)) * t216;
-        const gic_real t222 = (m[198] + y[15]) * (t214 * t204 + (t219 * t210 + t221));
+        const gic_real t202 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(4.7728205)) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(7.58122)) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] *
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(4.8947505)));
+        const gic_real t203 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Z] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Y])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 2] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t204 = t203 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 8] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t205 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(4.7728205);
+        const gic_real t206 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(7.58122);
+        const gic_real t207 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(4.8947505);
+        const gic_real t208 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t205 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t206 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t207);
+        const gic_real t209 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_Y] +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] *
+            y[TRAILING_ARM_STATE_OMEGA_Z] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_X])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 1] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t210 = t209 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 7] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t211 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(4.7728205);
+        const gic_real t212 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(7.58122);
+        const gic_real t213 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(4.8947505);
+        const gic_real t214 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * t211 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * t212 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * t213);
+        const gic_real t215 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_ALPHA_X] +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] *
+            y[TRAILING_ARM_STATE_OMEGA_Y] - m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z])) + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 0] *
+            rate[TRAILING_ARM_STATE_RACK_RATE];
+        const gic_real t216 = t215 + m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_S + 6] *
+            rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t217 = (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] +
+            y[TRAILING_ARM_STATE_OMEGA_Z]) * (t202 * t204 + (t208 * t210 + t214 * t216));
+        const gic_real t218 = (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t205 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t206 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t207)) * t210;
+        const gic_real t219 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * t211 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * t212 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * t213);
+        const gic_real t220 = (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] +
+            y[TRAILING_ARM_STATE_OMEGA_Y]) * (t208 * t204 + (t218 + t219 * t216));
+        const gic_real t221 = (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * t211 +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * t212 +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * t213)) * t216;
+        const gic_real t222 = (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] +
+            y[TRAILING_ARM_STATE_OMEGA_X]) * (t214 * t204 + (t219 * t210 + t221));
         const gic_real t223 = t217 + (t220 + t222);
-        const gic_real t224 = m[95] * R(-0.04753299999999999) + m[93] * R(-0.45756300000000016);
+        const gic_real t224 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t225 = R(-1.15) + t224;
-        const gic_real t226 = m[101] * R(-0.04753299999999999) + m[99] * R(-0.45756300000000016);
+        const gic_real t226 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t227 = R(0.026000000000000023) + t226;
-        const gic_real t228 = y[17] * t225 - y[15] * t227;
-        const gic_real t229 = m[103] * t226;
-        const gic_real t230 = t229 + (y[16] * t227 - y[17] * R(0.843847));
+        const gic_real t228 = y[TRAILING_ARM_STATE_OMEGA_Z] * t225 - y[TRAILING_ARM_STATE_OMEGA_X] * t227;
+        const gic_real t229 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t226;
+        const gic_real t230 = t229 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t227 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(0.843847));
         const gic_real t231 = t229 + t230;
-        const gic_real t232 = y[15] * t228 - y[16] * t231 + (rate[15] * R(0.843847) - rate[16] * t225);
-        const gic_real t233 = m[103] * t224;
-        const gic_real t234 = y[15] * R(0.843847) - y[16] * t225 - t233;
-        const gic_real t235 = (t17 + t232 - m[103] * t229 - rate[20] * t224) * (t21 + t234);
+        const gic_real t232 = y[TRAILING_ARM_STATE_OMEGA_X] * t228 - y[TRAILING_ARM_STATE_OMEGA_Y] * t231 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - rate[TRAILING_ARM_STATE_OMEGA_Y] * t225);
+        const gic_real t233 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t224;
+        const gic_real t234 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t225 - t233;
+        const gic_real t235 = (t17 + t232 - m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t229 -
+            rate[TRAILING_ARM_STATE_BAR_R_L_RATE] * t224) * (t21 + t234);
         const gic_real t236 = t234 - t233;
-        const gic_real t237 = y[17] * t231 - y[15] * t236 + (rate[17] * t225 - rate[15] * t227);
-        const gic_real t238 = y[16] * t236 - y[17] * t228 + (rate[16] * t227 - rate[17] * R(0.843847));
-        const gic_real t239 = (t35 + t238 - m[103] * t233 + rate[20] * t226) * (t37 + t230);
+        const gic_real t237 = y[TRAILING_ARM_STATE_OMEGA_Z] * t231 - y[TRAILING_ARM_STATE_OMEGA_X] * t236 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t225 - rate[TRAILING_ARM_STATE_OMEGA_X] * t227);
+        const gic_real t238 = y[TRAILING_ARM_STATE_OMEGA_Y] * t236 - y[TRAILING_ARM_STATE_OMEGA_Z] * t228 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t227 - rate[TRAILING_ARM_STATE_OMEGA_Z] * R(0.843847));
+        const gic_real t239 = (t35 + t238 - m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t233 +
+            rate[TRAILING_ARM_STATE_BAR_R_L_RATE] * t226) * (t37 + t230);
         const gic_real t240 = (t235 + ((t29 + t237) * (t31 + t228) + t239)) * R(110.555);
-        const gic_real t241 = m[101] * (m[101] * R(6.78001) + m[99] * R(-0.109132)) + m[99] * (m[101] * R(-0.109132) + m[99] * R(5.46131));
-        const gic_real t242 = rate[17] + m[103] * y[15];
-        const gic_real t243 = m[101] * R(0.075632) + m[99] * R(0.729032);
-        const gic_real t244 = rate[16] + rate[20];
-        const gic_real t245 = m[95] * R(6.78001) + m[93] * R(-0.109132);
-        const gic_real t246 = m[95] * R(-0.109132) + m[93] * R(5.46131);
-        const gic_real t247 = m[101] * t245 + m[99] * t246;
-        const gic_real t248 = rate[15] - m[103] * y[17];
-        const gic_real t249 = y[17] * (t241 * t242 + (t243 * t244 + t247 * t248));
-        const gic_real t250 = m[95] * R(0.075632) + m[93] * R(0.729032);
-        const gic_real t251 = (m[103] + y[16]) * (t243 * t242 + (R(9.09449) * t244 + t250 * t248));
-        const gic_real t252 = t250 * t244 + (m[95] * t245 + m[93] * t246) * t248;
-        const gic_real t253 = t249 + (t251 + y[15] * (t247 * t242 + t252));
+        const gic_real t241 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t242 = rate[TRAILING_ARM_STATE_OMEGA_Z] + m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t243 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(0.729032);
+        const gic_real t244 = rate[TRAILING_ARM_STATE_OMEGA_Y] + rate[TRAILING_ARM_STATE_BAR_R_L_RATE];
+        const gic_real t245 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t246 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t247 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * t245 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * t246;
+        const gic_real t248 = rate[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t249 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t241 * t242 + (t243 * t244 + t247 * t248));
+        const gic_real t250 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(0.729032);
+        const gic_real t251 = (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y]) *
+            (t243 * t242 + (R(9.09449) * t244 + t250 * t248));
+        const gic_real t252 = t250 * t244 + (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * t245 +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * t246) * t248;
+        const gic_real t253 = t249 + (t251 + y[TRAILING_ARM_STATE_OMEGA_X] * (t247 * t242 + t252));
         const gic_real t254 = t105 + (t142 + t164) + (t201 + t223) + (t240 + t253);
-        const gic_real t255 = m[125] * R(-0.04753299999999999) + m[123] * R(-0.45756300000000016);
+        const gic_real t255 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.45756300000000016);
         const gic_real t256 = R(-1.15) + t255;
-        const gic_real t257 = m[131] * R(-0.04753299999999999) + m[129] * R(-0.45756300000000016);
+        const gic_real t257 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.04753299999999999) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.45756300000000016);
         const gic_real t258 = R(0.026000000000000023) + t257;
-        const gic_real t259 = y[17] * t256 - y[15] * t258;
-        const gic_real t260 = m[133] * t257;
-        const gic_real t261 = t260 + (y[16] * t258 - y[17] * R(-0.843847));
+        const gic_real t259 = y[TRAILING_ARM_STATE_OMEGA_Z] * t256 - y[TRAILING_ARM_STATE_OMEGA_X] * t258;
+        const gic_real t260 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t257;
+        const gic_real t261 = t260 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t258 - y[TRAILING_ARM_STATE_OMEGA_Z] *
+            R(-0.843847));
         const gic_real t262 = t260 + t261;
-        const gic_real t263 = y[15] * t259 - y[16] * t262 + (rate[15] * R(-0.843847) - rate[16] * t256);
-        const gic_real t264 = m[133] * t255;
-        const gic_real t265 = y[15] * R(-0.843847) - y[16] * t256 - t264;
-        const gic_real t266 = (t17 + t263 - m[133] * t260 - rate[21] * t255) * (t21 + t265);
+        const gic_real t263 = y[TRAILING_ARM_STATE_OMEGA_X] * t259 - y[TRAILING_ARM_STATE_OMEGA_Y] * t262 +
+            (rate[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - rate[TRAILING_ARM_STATE_OMEGA_Y] * t256);
+        const gic_real t264 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t255;
+        const gic_real t265 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.843847) - y[TRAILING_ARM_STATE_OMEGA_Y] * t256 -
+            t264;
+        const gic_real t266 = (t17 + t263 - m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t260 -
+            rate[TRAILING_ARM_STATE_BAR_R_R_RATE] * t255) * (t21 + t265);
         const gic_real t267 = t265 - t264;
-        const gic_real t268 = y[17] * t262 - y[15] * t267 + (rate[17] * t256 - rate[15] * t258);
-        const gic_real t269 = y[16] * t267 - y[17] * t259 + (rate[16] * t258 - rate[17] * R(-0.843847));
-        const gic_real t270 = (t35 + t269 - m[133] * t264 + rate[21] * t257) * (t37 + t261);
+        const gic_real t268 = y[TRAILING_ARM_STATE_OMEGA_Z] * t262 - y[TRAILING_ARM_STATE_OMEGA_X] * t267 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Z] * t256 - rate[TRAILING_ARM_STATE_OMEGA_X] * t258);
+        const gic_real t269 = y[TRAILING_ARM_STATE_OMEGA_Y] * t267 - y[TRAILING_ARM_STATE_OMEGA_Z] * t259 +
+            (rate[TRAILING_ARM_STATE_OMEGA_Y] * t258 - rate[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.843847));
+        const gic_real t270 = (t35 + t269 - m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t264 +
+            rate[TRAILING_ARM_STATE_BAR_R_R_RATE] * t257) * (t37 + t261);
         const gic_real t271 = R(110.555) * (t266 + ((t29 + t268) * (t31 + t259) + t270));
-        const gic_real t272 = m[131] * (m[131] * R(6.78001) + m[129] * R(-0.109132)) + m[129] * (m[131] * R(-0.109132) + m[129] * R(5.46131));
-        const gic_real t273 = rate[17] + m[133] * y[15];
-        const gic_real t274 = m[131] * R(-0.075632) + m[129] * R(-0.729032);
-        const gic_real t275 = rate[16] + rate[21];
-        const gic_real t276 = m[125] * R(6.78001) + m[123] * R(-0.109132);
-        const gic_real t277 = m[125] * R(-0.109132) + m[123] * R(5.46131);
-        const gic_real t278 = m[131] * t276 + m[129] * t277;
-        const gic_real t279 = rate[15] - m[133] * y[17];
-        const gic_real t280 = y[17] * (t272 * t273 + (t274 * t275 + t278 * t279));
-        const gic_real t281 = m[125] * R(-0.075632) + m[123] * R(-0.729032);
-        const gic_real t282 = (m[133] + y[16]) * (t274 * t273 + (R(9.09449) * t275 + t281 * t279));
-        const gic_real t283 = t281 * t275 + (m[125] * t276 + m[123] * t277) * t279;
-        const gic_real t284 = t280 + (t282 + y[15] * (t278 * t273 + t283));
-        const gic_real t285 = t113 + (m[157] * R(0.12319000000000002) + t114);
-        const gic_real t286 = t106 + (m[154] * R(0.12319000000000002) + t107);
-        const gic_real t287 = m[151] + t285;
+        const gic_real t272 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.109132)) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] *
+            R(-0.109132) + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(5.46131));
+        const gic_real t273 = rate[TRAILING_ARM_STATE_OMEGA_Z] + m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t274 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.729032);
+        const gic_real t275 = rate[TRAILING_ARM_STATE_OMEGA_Y] + rate[TRAILING_ARM_STATE_BAR_R_R_RATE];
+        const gic_real t276 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(6.78001) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.109132);
+        const gic_real t277 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.109132) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(5.46131);
+        const gic_real t278 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * t276 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * t277;
+        const gic_real t279 = rate[TRAILING_ARM_STATE_OMEGA_X] - m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] *
+            y[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t280 = y[TRAILING_ARM_STATE_OMEGA_Z] * (t272 * t273 + (t274 * t275 + t278 * t279));
+        const gic_real t281 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.075632) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.729032);
+        const gic_real t282 = (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] + y[TRAILING_ARM_STATE_OMEGA_Y]) *
+            (t274 * t273 + (R(9.09449) * t275 + t281 * t279));
+        const gic_real t283 = t281 * t275 + (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * t276 +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * t277) * t279;
+        const gic_real t284 = t280 + (t282 + y[TRAILING_ARM_STATE_OMEGA_X] * (t278 * t273 + t283));
+        const gic_real t285 = t113 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            t114);
+        const gic_real t286 = t106 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            t107);
+        const gic_real t287 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t285;
         const gic_real t288 = R(1.653405) + t286;
-        const gic_real t289 = m[167] + (m[162] * t285 - m[163] * t286) + (y[15] * t287 - y[16] * t288);
-        const gic_real t290 = t109 + (m[160] * R(0.12319000000000002) + t110);
-        const gic_real t291 = m[152] + t290;
-        const gic_real t292 = m[166] + (m[164] * t286 - m[162] * t290) + (y[17] * t288 - y[15] * t291);
-        const gic_real t293 = m[163] * t290 - m[164] * t285 + (y[16] * t291 - y[17] * t287);
-        const gic_real t294 = y[14] + (t8 * t289 + (t23 * t292 + t32 * t293));
-        const gic_real t295 = y[13] + (t12 * t289 + (t25 * t292 + t33 * t293));
-        const gic_real t296 = y[0] + (t16 * t291 + (t28 * t287 + t34 * t288));
-        const gic_real t297 = y[1] + (t12 * t291 + (t25 * t287 + t33 * t288));
+        const gic_real t289 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t285 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t286) + (y[TRAILING_ARM_STATE_OMEGA_X] * t287 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t288);
+        const gic_real t290 = t109 + (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            t110);
+        const gic_real t291 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t290;
+        const gic_real t292 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t286 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t290) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t288 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t291);
+        const gic_real t293 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t290 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t285 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t291 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t287);
+        const gic_real t294 = y[TRAILING_ARM_STATE_V_Z] + (t8 * t289 + (t23 * t292 + t32 * t293));
+        const gic_real t295 = y[TRAILING_ARM_STATE_V_Y] + (t12 * t289 + (t25 * t292 + t33 * t293));
+        const gic_real t296 = y[TRAILING_ARM_STATE_R_X] + (t16 * t291 + (t28 * t287 + t34 * t288));
+        const gic_real t297 = y[TRAILING_ARM_STATE_R_Y] + (t12 * t291 + (t25 * t287 + t33 * t288));
         gic_real road298[3];
         if (!trailing_arm_road_height(self, time, t296, t297, road298))
             return GIC_ERROR_ROAD;
-        const gic_real t299 = y[12] + (t16 * t289 + (t28 * t292 + t34 * t293));
+        const gic_real t299 = y[TRAILING_ARM_STATE_V_X] + (t16 * t289 + (t28 * t292 + t34 * t293));
         const gic_real t300 = t295 * road298[2] + t299 * road298[1] - t294;
-        const gic_real t301 = y[2] + (t8 * t291 + (t23 * t287 + t32 * t288));
+        const gic_real t301 = y[TRAILING_ARM_STATE_R_Z] + (t8 * t291 + (t23 * t287 + t32 * t288));
         const gic_real t302 = road298[0] + R(0.4699) - t301;
         const gic_real t303 = GIC_MIN(GIC_MAX(t302 * R(100.0), R(0.0)), R(1.0));
         const gic_real t304 = t300 * ((R(3.0) - (t303 + t303)) * (t303 * t303) * R(500.0));
-        const gic_real t305 = m[41] * R(0.01121887479261392) + m[40] * R(0.2403881036540444);
+        /* force shock_f_l */
+        const gic_real t305 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_ZY] * R(0.2403881036540444);
         const gic_real t306 = t305 - R(0.32313880000000006);
-        const gic_real t307 = m[38] * R(0.01121887479261392) + m[37] * R(0.2403881036540444);
+        const gic_real t307 = m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_A_YY] * R(0.2403881036540444);
         const gic_real t308 = R(0.307086) + t307 - R(0.4977892);
         const gic_real t309 = R(1.0) / GIC_SQRT(t306 * t306 + (t308 * t308 + R(4.633797183999867e-05)));
-        const gic_real t310 = t309 * (m[42] * t307 * t306 - m[42] * t305 * t308);
-        const gic_real t311 = m[71] * R(0.01121887479261392) + m[70] * R(-0.2403881036540444);
+        const gic_real t310 = t309 * (m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t307 * t306 -
+            m[TRAILING_ARM_MOTION_LCA_F_L + TRAILING_ARM_OMEGA_X] * t305 * t308);
+        /* force shock_f_r */
+        const gic_real t311 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_ZY] * R(-0.2403881036540444);
         const gic_real t312 = t311 - R(0.32313880000000006);
-        const gic_real t313 = m[68] * R(0.01121887479261392) + m[67] * R(-0.2403881036540444);
+        const gic_real t313 = m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YZ] * R(0.01121887479261392) +
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_A_YY] * R(-0.2403881036540444);
         const gic_real t314 = R(-0.307086) + t313 - R(-0.4977892);
         const gic_real t315 = R(1.0) / GIC_SQRT(t312 * t312 + (R(4.633797183999867e-05) + t314 * t314));
-        const gic_real t316 = t315 * (m[72] * t313 * t312 - m[72] * t311 * t314);
-        const gic_real t317 = m[101] * R(-0.03999999999999998) + m[99] * R(-0.40000000000000013);
+        const gic_real t316 = t315 * (m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t313 * t312 -
+            m[TRAILING_ARM_MOTION_LCA_F_R + TRAILING_ARM_OMEGA_X] * t311 * t314);
+        /* force shock_r_l */
+        const gic_real t317 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t318 = R(0.026000000000000023) + t317 - R(0.376);
-        const gic_real t319 = m[95] * R(-0.03999999999999998) + m[93] * R(-0.40000000000000013);
+        const gic_real t319 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t320 = R(-1.15) + t319 - R(-1.6);
         const gic_real t321 = R(1.0) / GIC_SQRT(t318 * t318 + (R(0.0025000000000000044) + t320 * t320));
-        const gic_real t322 = t321 * (m[103] * t317 * t320 - m[103] * t319 * t318);
+        const gic_real t322 = t321 * (m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t317 * t320 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t319 * t318);
         const gic_real t323 = t310 * (t310 * R(17490.8)) + t316 * (R(17490.8) * t316) + t322 * (t322 * R(9500.0));
-        const gic_real t324 = m[131] * R(-0.03999999999999998) + m[129] * R(-0.40000000000000013);
+        /* force shock_r_r */
+        const gic_real t324 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.40000000000000013);
         const gic_real t325 = R(0.026000000000000023) + t324 - R(0.376);
-        const gic_real t326 = m[125] * R(-0.03999999999999998) + m[123] * R(-0.40000000000000013);
+        const gic_real t326 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.03999999999999998) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.40000000000000013);
         const gic_real t327 = R(-1.15) + t326 - R(-1.6);
         const gic_real t328 = R(1.0) / GIC_SQRT(t325 * t325 + (R(0.0025000000000000044) + t327 * t327));
-        const gic_real t329 = t328 * (m[133] * t324 * t327 - m[133] * t326 * t325);
-        const gic_real t330 = t323 + t329 * (R(9500.0) * t329) + xd[4] * (xd[4] * R(12000.0));
-        const gic_real t331 = t172 + (m[193] * R(-0.12319000000000002) + t173);
-        const gic_real t332 = t165 + (m[190] * R(-0.12319000000000002) + t166);
-        const gic_real t333 = m[187] + t331;
+        const gic_real t329 = t328 * (m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t324 * t327 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t326 * t325);
+        const gic_real t330 = t323 + t329 * (R(9500.0) * t329) + xd[TRAILING_ARM_X_RACK] * (xd[TRAILING_ARM_X_RACK] *
+            R(12000.0));
+        const gic_real t331 = t172 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            t173);
+        const gic_real t332 = t165 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            t166);
+        const gic_real t333 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t331;
         const gic_real t334 = R(1.653405) + t332;
-        const gic_real t335 = m[203] + (m[198] * t331 - m[199] * t332) + (y[15] * t333 - y[16] * t334);
-        const gic_real t336 = t168 + (m[196] * R(-0.12319000000000002) + t169);
-        const gic_real t337 = m[188] + t336;
-        const gic_real t338 = m[202] + (m[200] * t332 - m[198] * t336) + (y[17] * t334 - y[15] * t337);
-        const gic_real t339 = m[199] * t336 - m[200] * t331 + (y[16] * t337 - y[17] * t333);
-        const gic_real t340 = y[14] + (t8 * t335 + (t23 * t338 + t32 * t339));
-        const gic_real t341 = y[13] + (t12 * t335 + (t25 * t338 + t33 * t339));
-        const gic_real t342 = y[0] + (t16 * t337 + (t28 * t333 + t34 * t334));
-        const gic_real t343 = y[1] + (t12 * t337 + (t25 * t333 + t33 * t334));
+        const gic_real t335 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t331 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t332) + (y[TRAILING_ARM_STATE_OMEGA_X] * t333 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t334);
+        const gic_real t336 = t168 + (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            t169);
+        const gic_real t337 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t336;
+        const gic_real t338 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t332 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t336) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t334 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t337);
+        const gic_real t339 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t336 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t331 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t337 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t333);
+        const gic_real t340 = y[TRAILING_ARM_STATE_V_Z] + (t8 * t335 + (t23 * t338 + t32 * t339));
+        const gic_real t341 = y[TRAILING_ARM_STATE_V_Y] + (t12 * t335 + (t25 * t338 + t33 * t339));
+        const gic_real t342 = y[TRAILING_ARM_STATE_R_X] + (t16 * t337 + (t28 * t333 + t34 * t334));
+        const gic_real t343 = y[TRAILING_ARM_STATE_R_Y] + (t12 * t337 + (t25 * t333 + t33 * t334));
         gic_real road344[3];
         if (!trailing_arm_road_height(self, time, t342, t343, road344))
             return GIC_ERROR_ROAD;
-        const gic_real t345 = y[12] + (t16 * t335 + (t28 * t338 + t34 * t339));
+        const gic_real t345 = y[TRAILING_ARM_STATE_V_X] + (t16 * t335 + (t28 * t338 + t34 * t339));
         const gic_real t346 = t341 * road344[2] + t345 * road344[1] - t340;
-        const gic_real t347 = y[2] + (t8 * t337 + (t23 * t333 + t32 * t334));
+        const gic_real t347 = y[TRAILING_ARM_STATE_R_Z] + (t8 * t337 + (t23 * t333 + t32 * t334));
         const gic_real t348 = R(0.4699) + road344[0] - t347;
         const gic_real t349 = GIC_MIN(GIC_MAX(R(100.0) * t348, R(0.0)), R(1.0));
         const gic_real t350 = t346 * (R(500.0) * ((R(3.0) - (t349 + t349)) * (t349 * t349)));
-        const gic_real t351 = t294 * GIC_MAX(t304 + t302 * R(283000.0), R(0.0)) - t330 + t340 * GIC_MAX(t350 + R(283000.0) * t348, R(0.0));
-        const gic_real t352 = m[95] * R(-0.052288999999999974) + m[93] * R(-0.5034050000000001);
+        const gic_real t351 = t294 * GIC_MAX(t304 + t302 * R(283000.0), R(0.0)) - t330 + t340 * GIC_MAX(t350 +
+            R(283000.0) * t348, R(0.0));
+        /* wheel tire_r_l */
+        const gic_real t352 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t353 = R(-1.15) + t352;
-        const gic_real t354 = y[15] * R(0.909701) - y[16] * t353 - m[103] * t352;
-        const gic_real t355 = m[101] * R(-0.052288999999999974) + m[99] * R(-0.5034050000000001);
+        const gic_real t354 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t353 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t352;
+        const gic_real t355 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t356 = R(0.026000000000000023) + t355;
-        const gic_real t357 = y[17] * t353 - y[15] * t356;
-        const gic_real t358 = m[103] * t355 + (y[16] * t356 - y[17] * R(0.909701));
-        const gic_real t359 = y[14] + (t8 * t354 + (t23 * t357 + t32 * t358));
-        const gic_real t360 = y[13] + (t12 * t354 + (t25 * t357 + t33 * t358));
-        const gic_real t361 = y[0] + (t16 * t356 + (t28 * R(0.909701) + t34 * t353));
-        const gic_real t362 = y[1] + (t12 * t356 + (t25 * R(0.909701) + t33 * t353));
+        const gic_real t357 = y[TRAILING_ARM_STATE_OMEGA_Z] * t353 - y[TRAILING_ARM_STATE_OMEGA_X] * t356;
+        const gic_real t358 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t355 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t356 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t359 = y[TRAILING_ARM_STATE_V_Z] + (t8 * t354 + (t23 * t357 + t32 * t358));
+        const gic_real t360 = y[TRAILING_ARM_STATE_V_Y] + (t12 * t354 + (t25 * t357 + t33 * t358));
+        const gic_real t361 = y[TRAILING_ARM_STATE_R_X] + (t16 * t356 + (t28 * R(0.909701) + t34 * t353));
+        const gic_real t362 = y[TRAILING_ARM_STATE_R_Y] + (t12 * t356 + (t25 * R(0.909701) + t33 * t353));
         gic_real road363[3];
         if (!trailing_arm_road_height(self, time, t361, t362, road363))
             return GIC_ERROR_ROAD;
-        const gic_real t364 = y[12] + (t16 * t354 + (t28 * t357 + t34 * t358));
+        const gic_real t364 = y[TRAILING_ARM_STATE_V_X] + (t16 * t354 + (t28 * t357 + t34 * t358));
         const gic_real t365 = t360 * road363[2] + t364 * road363[1] - t359;
-        const gic_real t366 = y[2] + (t8 * t356 + (t23 * R(0.909701) + t32 * t353));
+        const gic_real t366 = y[TRAILING_ARM_STATE_R_Z] + (t8 * t356 + (t23 * R(0.909701) + t32 * t353));
         const gic_real t367 = R(0.4699) + road363[0] - t366;
         const gic_real t368 = GIC_MIN(GIC_MAX(R(100.0) * t367, R(0.0)), R(1.0));
         const gic_real t369 = t365 * (R(500.0) * ((R(3.0) - (t368 + t368)) * (t368 * t368)));
-        const gic_real t370 = m[125] * R(-0.052288999999999974) + m[123] * R(-0.5034050000000001);
+        /* wheel tire_r_r */
+        const gic_real t370 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
         const gic_real t371 = R(-1.15) + t370;
-        const gic_real t372 = y[15] * R(-0.909701) - y[16] * t371 - m[133] * t370;
-        const gic_real t373 = m[131] * R(-0.052288999999999974) + m[129] * R(-0.5034050000000001);
+        const gic_real t372 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t371 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t370;
+        const gic_real t373 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
         const gic_real t374 = R(0.026000000000000023) + t373;
-        const gic_real t375 = y[17] * t371 - y[15] * t374;
-        const gic_real t376 = m[133] * t373 + (y[16] * t374 - y[17] * R(-0.909701));
-        const gic_real t377 = y[14] + (t8 * t372 + (t23 * t375 + t32 * t376));
-        const gic_real t378 = y[13] + (t12 * t372 + (t25 * t375 + t33 * t376));
-        const gic_real t379 = y[0] + (t16 * t374 + (t28 * R(-0.909701) + t34 * t371));
-        const gic_real t380 = y[1] + (t12 * t374 + (t25 * R(-0.909701) + t33 * t371));
+        const gic_real t375 = y[TRAILING_ARM_STATE_OMEGA_Z] * t371 - y[TRAILING_ARM_STATE_OMEGA_X] * t374;
+        const gic_real t376 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t373 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t374 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t377 = y[TRAILING_ARM_STATE_V_Z] + (t8 * t372 + (t23 * t375 + t32 * t376));
+        const gic_real t378 = y[TRAILING_ARM_STATE_V_Y] + (t12 * t372 + (t25 * t375 + t33 * t376));
+        const gic_real t379 = y[TRAILING_ARM_STATE_R_X] + (t16 * t374 + (t28 * R(-0.909701) + t34 * t371));
+        const gic_real t380 = y[TRAILING_ARM_STATE_R_Y] + (t12 * t374 + (t25 * R(-0.909701) + t33 * t371));
         gic_real road381[3];
         if (!trailing_arm_road_height(self, time, t379, t380, road381))
             return GIC_ERROR_ROAD;
-        const gic_real t382 = y[12] + (t16 * t372 + (t28 * t375 + t34 * t376));
+        const gic_real t382 = y[TRAILING_ARM_STATE_V_X] + (t16 * t372 + (t28 * t375 + t34 * t376));
         const gic_real t383 = t378 * road381[2] + t382 * road381[1] - t377;
-        const gic_real t384 = y[2] + (t8 * t374 + (t23 * R(-0.909701) + t32 * t371));
+        const gic_real t384 = y[TRAILING_ARM_STATE_R_Z] + (t8 * t374 + (t23 * R(-0.909701) + t32 * t371));
         const gic_real t385 = R(0.4699) + road381[0] - t384;
         const gic_real t386 = GIC_MIN(GIC_MAX(R(100.0) * t385, R(0.0)), R(1.0));
         const gic_real t387 = t383 * (R(500.0) * ((R(3.0) - (t386 + t386)) * (t386 * t386)));
-        const gic_real t388 = t351 + t359 * GIC_MAX(t369 + R(283000.0) * t367, R(0.0)) + t377 * GIC_MAX(t387 + R(283000.0) * t385, R(0.0));
+        const gic_real t388 = t351 + t359 * GIC_MAX(t369 + R(283000.0) * t367, R(0.0)) + t377 * GIC_MAX(t387 +
+            R(283000.0) * t385, R(0.0));
         const gic_real t389 = GIC_FABS(t40) + GIC_FABS(t39) + (GIC_FABS(t50) + GIC_FABS(t49));
         const gic_real t390 = t389 + (GIC_FABS(t79) + GIC_FABS(t70)) + (GIC_FABS(t104) + GIC_FABS(t95));
         const gic_real t391 = t390 + (GIC_FABS(t164) + GIC_FABS(t142)) + (GIC_FABS(t223) + GIC_FABS(t201));
         const gic_real t392 = t391 + (GIC_FABS(t253) + GIC_FABS(t240)) + (GIC_FABS(t284) + GIC_FABS(t271));
         const gic_real t393 = t3 + (t254 + (t271 + t284));
         const gic_real t394 = t392 + (GIC_FABS(t388) + GIC_FABS(t3));
-        const gic_real t395 = rate[15];
-        const gic_real t396 = rate[16];
-        const gic_real t397 = rate[17];
-        const gic_real t398 = rate[18];
-        const gic_real t399 = rate[19];
-        const gic_real t400 = rate[20];
-        const gic_real t401 = rate[21];
-        const gic_real t402 = rate[22];
-        energy[0] = t393;
-        energy[1] = t388;
-        energy[2] = t394;
-        acc[0] = t395;
-        acc[3] = t35;
-        acc[1] = t396;
-        acc[4] = t29;
-        acc[2] = t397;
-        acc[5] = t17;
-        acc[6] = t398;
-        acc[7] = t399;
-        acc[8] = t400;
-        acc[9] = t401;
-        acc[10] = t402;
+        const gic_real t395 = rate[TRAILING_ARM_STATE_OMEGA_X];
+        const gic_real t396 = rate[TRAILING_ARM_STATE_OMEGA_Y];
+        const gic_real t397 = rate[TRAILING_ARM_STATE_OMEGA_Z];
+        const gic_real t398 = rate[TRAILING_ARM_STATE_BAR_F_L_RATE];
+        const gic_real t399 = rate[TRAILING_ARM_STATE_BAR_F_R_RATE];
+        const gic_real t400 = rate[TRAILING_ARM_STATE_BAR_R_L_RATE];
+        const gic_real t401 = rate[TRAILING_ARM_STATE_BAR_R_R_RATE];
+        const gic_real t402 = rate[TRAILING_ARM_STATE_RACK_RATE];
+        energy[TRAILING_ARM_ENERGY_RATE] = t393;
+        energy[TRAILING_ARM_ENERGY_POWER] = t388;
+        energy[TRAILING_ARM_ENERGY_MAGNITUDES] = t394;
+        acc[TRAILING_ARM_UNKNOWN_ALPHA_X] = t395;
+        acc[TRAILING_ARM_UNKNOWN_ACCELERATION_X] = t35;
+        acc[TRAILING_ARM_UNKNOWN_ALPHA_Y] = t396;
+        acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Y] = t29;
+        acc[TRAILING_ARM_UNKNOWN_ALPHA_Z] = t397;
+        acc[TRAILING_ARM_UNKNOWN_ACCELERATION_Z] = t17;
+        acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_L] = t398;
+        acc[TRAILING_ARM_UNKNOWN_OF_BAR_F_R] = t399;
+        acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_L] = t400;
+        acc[TRAILING_ARM_UNKNOWN_OF_BAR_R_R] = t401;
+        acc[TRAILING_ARM_UNKNOWN_OF_RACK] = t402;
     }
     return GIC_OK;
 }
 
 GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
 {
-    gic_real e[4], acc[TRAILING_ARM_UNKNOWN_ROOM], unit[TRAILING_ARM_UNKNOWN_ROOM], tau0[TRAILING_ARM_UNKNOWN_ROOM], tau[TRAILING_ARM_UNKNOWN_ROOM];
+    gic_real e[4], acc[TRAILING_ARM_UNKNOWN_ROOM], unit[TRAILING_ARM_UNKNOWN_ROOM], tau0[TRAILING_ARM_UNKNOWN_ROOM],
+        tau[TRAILING_ARM_UNKNOWN_ROOM];
     gic_real M[TRAILING_ARM_UNKNOWN_ROOM][TRAILING_ARM_UNKNOWN_ROOM], energy[3], scale, residual[2];
     const gic_real time = trailing_arm_time(self);
     const gic_self_test none = {R(0.0), R(0.0), R(0.0), R(1.0), R(0.0), R(0.0)};
@@ -4875,7 +6651,7 @@ GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
-/* ---- descriptor -------------------------------------------------------------------------------------------------------- */
+/* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int trailing_arm_any_setup(void *self)
 {

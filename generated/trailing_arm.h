@@ -69,12 +69,12 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xa580b6d5
+#define TRAILING_ARM_H 0xe6da9eff
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 6
-#error "trailing_arm.h was generated for version 6 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
+#error "trailing_arm.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -83,7 +83,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    TRAILING_ARM_ABI = 6,
+    TRAILING_ARM_ABI = 7,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_SLOW = 23,
@@ -120,7 +120,8 @@ enum {
     TRAILING_ARM_DEPENDENCE_ROOM = 2
 };
 
-/* Where each number stands: vehicle.state[TRAILING_ARM_STATE_...], .input[TRAILING_ARM_INPUT_...], .output[TRAILING_ARM_OUTPUT_...]. */
+/* Where each number stands: vehicle.state[TRAILING_ARM_STATE_...], .input[TRAILING_ARM_INPUT_...],
+ * .output[TRAILING_ARM_OUTPUT_...]. */
 enum {
     TRAILING_ARM_STATE_R_X = 0, /* m */
     TRAILING_ARM_STATE_R_Y = 1, /* m */
@@ -229,40 +230,50 @@ enum {
 };
 
 /* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is work
- * space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+ * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
+ * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
 typedef struct trailing_arm {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64 bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
+        bytes */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* work space: bodies relative to the base */
-    gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
-    gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* work space: where Newton begins: the last good one, and the next */
+    gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
+        motion */
+    gic_real start[GIC_STARTS][TRAILING_ARM_START_ROOM];  /* work space: where Newton begins: the last good one, and the
+        next */
     gic_real state[TRAILING_ARM_STATE_ROOM];
     gic_real input[TRAILING_ARM_INPUT_ROOM];
     gic_real output[TRAILING_ARM_OUTPUT_ROOM];
-    gic_real parameter[TRAILING_ARM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls, geometric
-                                                    * ones (trailing_arm_model.parameter_geometric) by trailing_arm_setup_with */
+    gic_real parameter[TRAILING_ARM_PARAMETER_ROOM];      /* tunable parameters; they may change between any two calls,
+                                                    * geometric ones (trailing_arm_model.parameter_geometric) by
+                                                    * trailing_arm_setup_with */
     gic_real port[TRAILING_ARM_PORT_ROOM];                /* external forces and torques, 6 numbers a port */
     int32_t discrete[TRAILING_ARM_DISCRETE_ROOM];         /* 0: index of the dependent Euler parameter */
-    gic_real rate[TRAILING_ARM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last outputs */
+    gic_real rate[TRAILING_ARM_STATE_ROOM];               /* d state / dt at the start of the last step, or of the last
+        outputs */
     gic_real history[GIC_HISTORY(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_STATES - TRAILING_ARM_SLOW)];
     gic_real scratch[GIC_SCRATCH(TRAILING_ARM_STATE_ROOM, TRAILING_ARM_INPUT_ROOM)];
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
-    gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back behind; 0: it was not good */
+    gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
+        last recovery */
+    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
+        behind; 0: it was not good */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int trailing_arm_setup(trailing_arm *self);
 
-/* The same as if the file had these numbers (TRAILING_ARM_PARAMETERS) as values of its tunable parameters; self->parameter will do. */
+/* The same as if the file had these numbers (TRAILING_ARM_PARAMETERS) as values of its tunable parameters;
+ * self->parameter will do. */
 int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter);
 
-/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: TRAILING_ARM_STATES numbers. rate is written only on GIC_OK. */
+/* rate = d state / dt at `time`; inputs are read from self->input. state and rate: TRAILING_ARM_STATES numbers. rate is
+ * written only on GIC_OK. */
 int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
+ * before. */
 int trailing_arm_step(trailing_arm *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -274,19 +285,20 @@ int trailing_arm_poses(trailing_arm *self, gic_real *pose);
 /* Present time, s. */
 gic_real trailing_arm_time(const trailing_arm *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which condition
- * parameters violate, NULL: none. */
+/* What a status means; which subset of bodies and which number of the state the last status was about, and which
+ * condition parameters violate, NULL: none. */
 const char *trailing_arm_status_text(int status);
 const char *trailing_arm_status_subset(const trailing_arm *self);
 const char *trailing_arm_status_state(const trailing_arm *self);
 const char *trailing_arm_status_condition(const trailing_arm *self);
 
-/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the same bits. */
+/* Keep and bring back everything: state, integrator history, Newton start. Going on from a restored instance gives the
+ * same bits. */
 void trailing_arm_snapshot(const trailing_arm *self, trailing_arm *copy);
 void trailing_arm_restore(trailing_arm *self, const trailing_arm *copy);
 
-/* Measure how well the code satisfies the equations that it was generated from, at the present state. GIC_ERROR_RESIDUAL:
- * not as well as promised; other functions check that too, now and then. */
+/* Measure how well the code satisfies the equations that it was generated from, at the present state.
+ * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
 int trailing_arm_self_test(trailing_arm *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

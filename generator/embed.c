@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A tool of the build: `embed FILE... > embedded.c` prints files as C, as `embedded` of gicgen.h wants them, so that
+ * A tool of the build: `embed FILE... > embedded.c` prints files as the C array `embedded` of emit/emit.h, so that
  * the programs need no data files. */
 #include <errno.h>
 #include <stdio.h>
@@ -18,7 +18,7 @@ static _Noreturn void fail(const char *path)
     exit(1);
 }
 
-/* Numbers rather than a string literal: C99 promises no literal longer than 4095 characters. */
+/* Numbers instead of a string literal: C99 guarantees literals of 4095 characters only. */
 static void print_bytes(const char *path, int index)
 {
     FILE *file = fopen(path, "rb");
@@ -36,7 +36,7 @@ static void print_bytes(const char *path, int index)
 
 int main(int count, char **path)
 {
-    puts("/* SPDX-License-Identifier: MIT */\n#include \"gicgen.h\"");
+    puts("/* SPDX-License-Identifier: MIT */\n#include \"emit/emit.h\"");
     for (int i = 1; i < count; ++i)
         print_bytes(path[i], i);
     puts("\nconst Embedded embedded[] = {");

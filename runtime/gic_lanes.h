@@ -8,14 +8,20 @@
  *     #include "gic_lanes.h"
  *
  * declares gic_lane, gic_mask (all bits of a lane set where something holds) and LANE_SIN and its like. With another
- * GIC_LANES, a power of 2, it may be included again, and with the same one too; the names then mean whatever GIC_LANES is where they stand.
+ * GIC_LANES, a power of 2, it may be included again, and with the same one too; the names then mean whatever GIC_LANES
+ * is where they stand.
  *
- * Errors in units of the last place (of the result, rounded; tests/lanes measures them), of gic_real double and float:
+ * Errors in units of the last place (of the result, rounded; tests/data/lanes measures them), of gic_real double and
+ * float:
  *
- *     LANE_SIN, LANE_COS    3 and 3 within |x| <= 2^20 and |x| <= 4096      LANE_EXP      2 and 2 within |x| <= 708 and
- * 87 LANE_TAN              4 and 4 the same                                LANE_LOG      4 and 4 of normal numbers > 0
- *     LANE_ASIN, LANE_ACOS  4 and 4 everywhere                              LANE_TANH     4 and 4 everywhere
- *     LANE_ATAN             3 and 3 everywhere                              LANE_SQRT     0.5 and 0.5 everywhere
+ *     LANE_SIN, LANE_COS    3 and 3 within |x| <= 2^20 and |x| <= 4096
+ *     LANE_TAN              4 and 4 the same
+ *     LANE_ASIN, LANE_ACOS  4 and 4 everywhere
+ *     LANE_ATAN             3 and 3 everywhere
+ *     LANE_EXP              2 and 2 within |x| <= 708 and |x| <= 87
+ *     LANE_LOG              4 and 4 of normal numbers > 0
+ *     LANE_TANH             4 and 4 everywhere
+ *     LANE_SQRT             0.5 and 0.5 everywhere
  *     LANE_ATAN2            4 and 4 within 2^-900 to 2^900 and 2^-90 to 2^90 of the larger argument
  *
  * In lanes outside, and for LANE_POW, libm's functions are called one by one. Infinities, zeros and their signs, and
@@ -36,10 +42,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Vectors pass between functions in memory alone, but for those that are always inline. */
+/* Vectors are passed between functions in memory, except to inline ones. */
 #pragma GCC diagnostic ignored "-Wpsabi"
-/* The functions count on the order of sums, whatever the command line says; a root of a negative number need not set
- * errno. */
+/* The functions rely on the order of sums, so -ffast-math is switched off for them; a root of a negative number need
+ * not set errno. */
 #ifdef __clang__
 #pragma clang fp reassociate(off)
 #else
@@ -54,8 +60,7 @@
 #define LANE_FUNCTION static inline __attribute__((always_inline, unused))
 #define FOR_LANES(l) for (l = 0; l < GIC_LANES; ++l)
 
-/* The bits of a number: those of its magnitude, its exponent; how far its exponent and its sign stand from the right.
- */
+/* The bits of a number: masks of its magnitude and exponent; shifts of its exponent and sign. */
 #ifdef GIC_FLOAT
 #define GIC_MATH(name) name##f
 #define GIC_MAGNITUDE INT32_C(0x7fffffff)
@@ -75,10 +80,10 @@
 #define LANE_SELECT(m, yes, no) GIC_LANES_NAME(lane_select_, GIC_LANES)(m, yes, no)
 /* x in some lanes, 0 in the others */
 #define LANE_WHERE(m, x) ((gic_lane)((m) & (gic_mask)(x)))
-#define LANE_FABS(x) ((gic_lane)((gic_mask)(x)&GIC_MAGNITUDE))
+#define LANE_FABS(x) ((gic_lane)(GIC_MAGNITUDE & (gic_mask)(x)))
 #define LANE_SIGN(x) ((gic_mask)(x) & ~GIC_MAGNITUDE)
-/* Where x is a finite number, by its bits. */
-#define LANE_FINITE(x) ((gic_mask)(((gic_mask)(x)&GIC_EXPONENT) != GIC_EXPONENT))
+/* Mask of the lanes in which x is finite, from its bits. */
+#define LANE_FINITE(x) ((gic_mask)((GIC_EXPONENT & (gic_mask)(x)) != GIC_EXPONENT))
 #define LANE_POSITIVE(x, yes, no) LANE_SELECT((gic_mask)((x) > GIC_R(0.0)), yes, no)
 #define LANE_MIN(x, y) GIC_LANES_NAME(lane_min_, GIC_LANES)(x, y)
 #define LANE_MAX(x, y) GIC_LANES_NAME(lane_max_, GIC_LANES)(x, y)
@@ -95,7 +100,7 @@
 #define LANE_TANH(x) GIC_LANES_NAME(lane_tanh_, GIC_LANES)(x)
 #define LANE_POW(x, y) GIC_LANES_NAME(lane_pow_, GIC_LANES)(x, y)
 
-/* Pieces of the functions below. */
+/* Helpers of the functions below. */
 #define LANE_MEND(outside, f, x, y) GIC_LANES_NAME(lane_mend_, GIC_LANES)(outside, f, x, y)
 #define LANE_MEND_TWO(outside, f, a, b, y) GIC_LANES_NAME(lane_mend_two_, GIC_LANES)(outside, f, a, b, y)
 #define LANE_REDUCE(x, turns) GIC_LANES_NAME(lane_reduce_, GIC_LANES)(x, turns)
@@ -104,7 +109,7 @@
 #define LANE_SMALL_ASIN(x, z) GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(x, z)
 #define LANE_GROWTH(x, scale) GIC_LANES_NAME(lane_growth_, GIC_LANES)(x, scale)
 
-/* Added to a number that is not large, it leaves the nearest whole number in the last bits. */
+/* Adding it to a number that is not large leaves the nearest whole number in the last bits. */
 #ifdef GIC_FLOAT
 #define GIC_ROUNDER GIC_R(12582912.0)
 #define GIC_TURNING GIC_R(4096.0)
@@ -119,7 +124,7 @@
 
 #endif
 
-/* Each number of lanes once: several models may stand in one translation unit. */
+/* Each number of lanes is declared once, since several models may be in one translation unit. */
 #if GIC_LANES == 2 && !defined(GIC_LANES_2)
 #define GIC_LANES_2
 #define GIC_LANES_NEW
@@ -187,7 +192,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_max_, GIC_LANES)(gic_lane x, gic_lane
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_sqrt_, GIC_LANES)(gic_lane x)
 {
     int l = 0;
-    /* compilers take such roots together only when they are told to */
+    /* compilers combine such roots only if told to */
 #if defined(__AVX__) && !defined(GIC_FLOAT)
     for (; l + 4 <= GIC_LANES; l += 4) {
         double four __attribute__((vector_size(32)));
@@ -201,7 +206,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_sqrt_, GIC_LANES)(gic_lane x)
     return x;
 }
 
-/* y, but in some lanes f(x) one by one. What is rare stays out of the way of what is not. */
+/* y, but f(x) for single lanes; rare, so kept out of the way of the common case. */
 static __attribute__((noinline, cold, unused)) void
 GIC_LANES_NAME(lane_call_, GIC_LANES)(const gic_mask *where, gic_real (*f)(gic_real), const gic_lane *x, gic_lane *y)
 {
@@ -224,7 +229,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_mend_, GIC_LANES)(gic_mask outside, g
     return y;
 }
 
-/* The same of f(a, b). */
+/* y, but f(a, b) for single lanes. */
 static __attribute__((noinline, cold, unused)) void
 GIC_LANES_NAME(lane_call_two_, GIC_LANES)(const gic_mask *where, gic_real (*f)(gic_real, gic_real), const gic_lane *a,
                                           const gic_lane *b, gic_lane *y)
@@ -296,7 +301,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_sin_, GIC_LANES)(gic_lane x)
     return LANE_MEND(~inside, GIC_MATH(sin), x, (gic_lane)((gic_mask)y ^ turned ^ LANE_SIGN(x)));
 }
 
-/* sin of a quarter further: x is an odd number of quarters and r. */
+/* cos x = sin(x + pi/2): x is an odd number of quarter turns plus r. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_cos_, GIC_LANES)(gic_lane x)
 {
     const gic_mask inside = (gic_mask)(LANE_FABS(x) <= GIC_TURNING);
@@ -376,7 +381,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_atan2_, GIC_LANES)(gic_lane y, gic_la
     const gic_real pi = GIC_R(3.141592653589793), rest = GIC_R(1.2246467991473532e-16);
 #endif
     const gic_lane larger = LANE_MAX(LANE_FABS(x), LANE_FABS(y));
-    /* no comparison holds of NaN, which is in `larger` if it is in x; else it is caught in y */
+    /* comparisons with NaN are false: a NaN of x is in `larger`, one of y is caught there */
     const gic_mask inside = (gic_mask)(larger >= least) & (gic_mask)(larger <= most) & LANE_FINITE(y) & LANE_FINITE(x);
     const gic_lane arc =
         LANE_ARC(LANE_WHERE(inside, LANE_FABS(y)), LANE_SELECT(inside, LANE_FABS(x), LANE(GIC_R(1.0))));
@@ -406,7 +411,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(gic_lane x, g
     return x + x * (z * share);
 }
 
-/* Beyond 1/2 by half the angle from 1. */
+/* Beyond 1/2 by the half-angle formula. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_asin_, GIC_LANES)(gic_lane x)
 {
     const gic_lane a = LANE_FABS(x);
@@ -471,7 +476,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_exp_, GIC_LANES)(gic_lane x)
     return LANE_MEND(~inside, GIC_MATH(exp), x, scale + scale * y);
 }
 
-/* e / (e + 2), e = exp(2 |x|) - 1; from 20 on it is 1, and of NaN NaN. */
+/* e / (e + 2), e = exp(2 |x|) - 1; 1 from 20 on, NaN for NaN. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_tanh_, GIC_LANES)(gic_lane x)
 {
     const gic_mask beyond = (gic_mask)(LANE_FABS(x) > GIC_R(20.0));

@@ -137,7 +137,7 @@ int gic_road_table_setup(gic_road_table *road)
             return GIC_ERROR_ARGUMENT;
     table_slopes(road->x, road->left, road->slope_left, road->count);
     table_slopes(road->x, road->right, road->slope_right, road->count);
-    /* steps may be too steep for a number */
+    /* very steep pieces can overflow */
     if (!gic_finite(road->slope_left, road->count) || !gic_finite(road->slope_right, road->count))
         return GIC_ERROR_ARGUMENT;
     return GIC_OK;
@@ -145,8 +145,7 @@ int gic_road_table_setup(gic_road_table *road)
 
 /* ---- height fields -------------------------------------------------------------------------------------- */
 
-/* The four nodes that a place on an axis depends on: their indices, weights and the weights' derivatives by the place.
- */
+/* The four nodes that a place on an axis depends on: indices, weights, derivatives of the weights by the place. */
 typedef struct support {
     int32_t node[4];
     gic_real weight[4], rate[4];
@@ -162,7 +161,7 @@ static support support_at(gic_real place, gic_real first, gic_real spacing, int3
     const int32_t cell = (int32_t)along < last ? (int32_t)along : last - 1;
     const gic_real t = along - (gic_real)cell, u = GIC_R(1.0) - t, by = GIC_R(1.0) / spacing;
     const int before = cell > 0, after = cell + 1 < last;
-    /* what the slopes at the cell's two ends contribute, 0 where an end is level */
+    /* the contribution of the slopes at the cell's two ends, 0 if an end is level */
     const gic_real slope0 = before ? GIC_R(0.5) * t * u * u : GIC_R(0.0);
     const gic_real slope1 = after ? GIC_R(-0.5) * t * t * u : GIC_R(0.0);
     const gic_real slope0_rate = before ? GIC_R(0.5) * u * (u - GIC_R(2.0) * t) * by : GIC_R(0.0);
@@ -191,7 +190,7 @@ void gic_grid_height(const gic_road *road, int32_t lane, gic_real time, gic_real
     out[0] = x + y;
     out[1] = out[2] = GIC_R(0.0);
     if (!gic_finite(&x, 1) || !gic_finite(&y, 1))
-        return; /* no index can be made of it */
+        return; /* the index would overflow */
     const support along = support_at(x, grid->x0, grid->dx, grid->nx);
     const support across = support_at(y, grid->y0, grid->dy, grid->ny);
     out[0] = GIC_R(0.0);
@@ -229,8 +228,8 @@ static gic_real smooth(gic_real t)
     return t < GIC_R(1.0) ? t * t * (GIC_R(3.0) - GIC_R(2.0) * t) : GIC_R(1.0);
 }
 
-/* The next of a sequence of independent numbers of mean 0 and variance 1, nearly normal: the sum of the four quarters
- * of what splitmix64 gives. */
+/* The next of a sequence of independent numbers with mean 0 and variance 1, nearly normal: the sum of the four quarters
+ * of a number of splitmix64. */
 static gic_real noise(uint64_t *state)
 {
     uint64_t bits = *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -308,7 +307,7 @@ void gic_patched_height(const gic_road *road, int32_t lane, gic_real time, gic_r
         under->height(under, lane, time, x, y, out);
 }
 
-/* How far a place is inside [low, high]: 1 inside, 0 outside, smooth over `fade` about the ends. */
+/* 1 inside [low, high], 0 outside, smooth over `fade` around the ends. */
 static gic_real inside(gic_real place, gic_real low, gic_real high, gic_real fade)
 {
     return smooth((place - low) / fade + GIC_R(0.5)) * smooth((high - place) / fade + GIC_R(0.5));

@@ -40,7 +40,8 @@ typedef struct gic_road_sine {
 #define gic_sine_height GIC_NAME(gic_sine_height)
 void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
-/* To this, m, a place at an edge between tracks is on it: at y = 0 but for rounding a wheel is on the right. */
+/* Within this distance, m, a place counts as on the edge between tracks: a wheel at y = 0 but for rounding is on the
+ * right. */
 #ifdef GIC_FLOAT
 #define GIC_ROAD_EDGE GIC_R(1e-5)
 #else
@@ -52,8 +53,8 @@ typedef struct gic_bump {
     gic_real x, length, height, y_low, y_high;
 } gic_bump;
 
-/* Bumps by rising x; where some overlap, their sum. The time of a call grows with the logarithm of `count` and with the
- * number of bumps within the longest one's length. longest: filled by gic_road_bumps_setup. */
+/* Bumps in order of increasing x; overlapping ones add up. The time of a call grows with the logarithm of `count` and
+ * with the number of bumps within the longest one's length. longest: set by gic_road_bumps_setup. */
 typedef struct gic_road_bumps {
     gic_road head;
     const gic_bump *bump;
@@ -63,15 +64,15 @@ typedef struct gic_road_bumps {
 
 #define gic_bumps_height GIC_NAME(gic_bumps_height)
 void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-/* GIC_ERROR_ARGUMENT when x falls, a length is not positive or a number not finite. */
+/* GIC_ERROR_ARGUMENT if x decreases, a length is not positive or a number is not finite. */
 #define gic_road_bumps_setup GIC_NAME(gic_road_bumps_setup)
 int gic_road_bumps_setup(gic_road_bumps *road);
 
 /* ---- measured and random ones --------------------------------------------------------------------------- */
 
-/* Heights left (y > GIC_ROAD_EDGE) and right of the middle at rising x, monotone cubic (Fritsch-Carlson) between,
- * constant outside; level at both ends, so that the slope has no jump. slope_left, slope_right: `count` numbers, filled
- * by gic_road_table_setup. */
+/* Heights left (y > GIC_ROAD_EDGE) and right of the middle at increasing x, monotone cubic (Fritsch-Carlson) between,
+ * constant outside; level at both ends, so that the slope has no jump. slope_left, slope_right: `count` numbers, set by
+ * gic_road_table_setup. */
 typedef struct gic_road_table {
     gic_road head;
     const gic_real *x, *left, *right;
@@ -81,12 +82,12 @@ typedef struct gic_road_table {
 
 #define gic_table_height GIC_NAME(gic_table_height)
 void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-/* Fill the slopes; GIC_ERROR_ARGUMENT when count < 2, x does not rise or a number is not finite. */
+/* Set the slopes; GIC_ERROR_ARGUMENT if count < 2, x does not increase or a number is not finite. */
 #define gic_road_table_setup GIC_NAME(gic_road_table_setup)
 int gic_road_table_setup(gic_road_table *road);
 
 /* Heights at the nodes x0 + i dx, y0 + j dy, i < nx, j < ny: height[j * nx + i]. Catmull-Rom cubics in both directions
- * between the nodes, level across the edges and constant beyond them. The time of a call depends on nothing. */
+ * between the nodes, level across the edges and constant beyond them. All calls take the same time. */
 typedef struct gic_road_grid {
     gic_road head;
     gic_real x0, y0, dx, dy;
@@ -96,7 +97,7 @@ typedef struct gic_road_grid {
 
 #define gic_grid_height GIC_NAME(gic_grid_height)
 void gic_grid_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
-/* GIC_ERROR_ARGUMENT when there are fewer than 2 x 2 nodes, a spacing is not positive or a number not finite. */
+/* GIC_ERROR_ARGUMENT if there are fewer than 2 x 2 nodes, a spacing is not positive or a number is not finite. */
 #define gic_road_grid_check GIC_NAME(gic_road_grid_check)
 int gic_road_grid_check(const gic_road_grid *road);
 
@@ -120,7 +121,7 @@ int gic_road_iso8608_setup(gic_road_grid *road, const gic_iso8608 *profile, gic_
 
 /* ---- roads made of roads -------------------------------------------------------------------------------- */
 
-/* The sum of the heights of `count` roads. Their friction does not matter. */
+/* The sum of the heights of `count` roads; their friction is ignored. */
 typedef struct gic_road_sum {
     gic_road head;
     const gic_road *const *part;
@@ -136,8 +137,8 @@ typedef struct gic_friction_patch {
     gic_real x_low, x_high, y_low, y_high, value, fade;
 } gic_friction_patch;
 
-/* Another road (`under`, NULL: flat at 0) with friction `value` and patches; where patches overlap the last one lies on
- * top. The time of a call of friction grows with `count`. */
+/* Another road (`under`, NULL: flat at 0) with friction `value` and patches; where patches overlap the last one counts.
+ * The time of a call of friction grows with `count`. */
 typedef struct gic_road_patched {
     gic_road head;
     const gic_road *under;

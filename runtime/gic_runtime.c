@@ -49,7 +49,7 @@ static gic_real *array_at(void *self, size_t offset)
     return (gic_real *)(void *)((char *)self + offset);
 }
 
-/* By four numbers, all read before one is written: compilers take vectors, for nothing can overlap within them. */
+/* Four numbers at a time, all read before one is written: compilers then use vectors, since no overlap matters. */
 static void copy(gic_real *to, const gic_real *from, int32_t count)
 {
     int32_t i = 0;
@@ -85,15 +85,15 @@ static void set_inputs(const gic_model *model, void *self, gic_real time)
         head->input_function(head->user, head->lane, time, array_at(self, model->input_offset));
 }
 
-/* The right-hand side with the inputs of its own time. */
+/* Evaluate the right-hand side with the inputs of its time. */
 static int evaluate(const gic_model *model, void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     set_inputs(model, self, time);
     return model->rhs(self, time, state, rate);
 }
 
-/* AB3 for `count` numbers: one step on from `from`, which `next` may be, with the rates there and at the two steps
- * before. */
+/* AB3 for `count` numbers: one step from `from` to `next`, which may be the same, with the rates at its start and at
+ * the two steps before. */
 static void adams_bashforth(int32_t count, gic_real step, const gic_real *from, const gic_real *rate,
                             const gic_real *past, const gic_real *older, gic_real *next)
 {
@@ -101,20 +101,20 @@ static void adams_bashforth(int32_t count, gic_real step, const gic_real *from, 
     int32_t i = 0;
     for (; i + 4 <= count; i += 4) { /* by four, as above */
         const gic_real *r = rate + i, *p = past + i, *o = older + i, *f = from + i;
-        const gic_real a = f[0] + weight * (GIC_R(23.0) * r[0] - GIC_R(16.0) * p[0] + GIC_R(5.0) * o[0]);
-        const gic_real b = f[1] + weight * (GIC_R(23.0) * r[1] - GIC_R(16.0) * p[1] + GIC_R(5.0) * o[1]);
-        const gic_real c = f[2] + weight * (GIC_R(23.0) * r[2] - GIC_R(16.0) * p[2] + GIC_R(5.0) * o[2]);
-        const gic_real d = f[3] + weight * (GIC_R(23.0) * r[3] - GIC_R(16.0) * p[3] + GIC_R(5.0) * o[3]);
+        const gic_real a = GIC_ADAMS_BASHFORTH(f[0], weight, r[0], p[0], o[0]);
+        const gic_real b = GIC_ADAMS_BASHFORTH(f[1], weight, r[1], p[1], o[1]);
+        const gic_real c = GIC_ADAMS_BASHFORTH(f[2], weight, r[2], p[2], o[2]);
+        const gic_real d = GIC_ADAMS_BASHFORTH(f[3], weight, r[3], p[3], o[3]);
         next[i] = a;
         next[i + 1] = b;
         next[i + 2] = c;
         next[i + 3] = d;
     }
     for (; i < count; ++i)
-        next[i] = from[i] + weight * (GIC_R(23.0) * rate[i] - GIC_R(16.0) * past[i] + GIC_R(5.0) * older[i]);
+        next[i] = GIC_ADAMS_BASHFORTH(from[i], weight, rate[i], past[i], older[i]);
 }
 
-/* Where a number of a state is out of bounds, or GIC_ERROR_RESULT where none is. */
+/* Record which number of a state is out of bounds; GIC_ERROR_RESULT if none is. */
 static int out_of_bounds(void *self, const gic_real *state, int32_t first, int32_t behind)
 {
     gic_head *head = (gic_head *)self;
@@ -131,7 +131,7 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
                        const gic_real *rate, gic_real *next, gic_real *work)
 {
     const int32_t n = model->slow_count + model->fast_count;
-    /* `next` gathers the weighted slopes, so that the state is added only once */
+    /* `next` sums the weighted slopes, so that the state is added only once */
     gic_real *stage = work, *slope = work + n;
     copy(next, rate, n);
     copy(slope, rate, n);
@@ -141,7 +141,7 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
         for (int32_t i = 0; i < n; ++i)
             stage[i] = from[i] + reach * slope[i];
         const int status = evaluate(model, self, time + reach, stage, slope);
-        /* what the step made of it is no state: give_up() says so, unless it knows of a coordinate that went too far */
+        /* the stage left all bounds: record which number did; give_up() reports it unless a coordinate is to blame */
         if (status == GIC_ERROR_INPUT)
             (void)out_of_bounds(self, stage, 0, n);
         if (status != GIC_OK)
@@ -154,11 +154,12 @@ static int runge_kutta(const gic_model *model, void *self, gic_real time, gic_re
     return GIC_OK;
 }
 
-/* What makes the numbers that an integrator found a state; it looks at bounds itself, and bounded ones stay so. */
+/* Turn an integrated vector into a valid state. The model's function checks bounds itself; without one they are checked
+ * here. */
 static int settle(const gic_model *model, void *self, gic_real *next)
 {
     const int32_t n = model->slow_count + model->fast_count;
-    ((gic_head *)self)->subset = -1; /* what follows is about the whole state */
+    ((gic_head *)self)->subset = -1; /* from here on the status is about the whole state */
     const int status = model->settle(self, next);
     return status == GIC_ERROR_INPUT && !gic_bounded(next, n) ? out_of_bounds(self, next, 0, n) : status;
 }
@@ -170,7 +171,7 @@ static gic_real absolute(gic_real x)
 
 int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown)
 {
-    const int32_t half = (model->slow_count - model->free_base) / 2; /* from a coordinate to its rate */
+    const int32_t half = (model->slow_count - model->free_base) / 2; /* distance from a coordinate to its rate */
     gic_real farthest = GIC_R(1.0);
     int32_t coordinates = 0;
     if (status != GIC_ERROR_INPUT && status != GIC_ERROR_ORIENTATION && status != GIC_ERROR_REACH &&
@@ -180,7 +181,7 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
     for (int32_t c = 0; c < model->coordinate_count; ++c)
         coordinates += model->coordinate_state[c] >= 0;
     if (model->slow_count != 2 * coordinates + (model->free_base ? 13 : 0))
-        return status; /* a host's engine that integrates something else */
+        return status; /* an engine of a host with another state */
     for (int32_t c = 0; c < model->coordinate_count; ++c) {
         const int32_t at = model->coordinate_state[c];
         if (at < 0)
@@ -194,7 +195,7 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
             *grown = at;
         }
     }
-    /* Euler parameters move at half the angular velocity, which is named, for it is what grows */
+    /* Euler parameters move at half the angular velocity; the message names the latter */
     for (int32_t i = 0; model->free_base && i < 3; ++i) {
         const gic_real moved = GIC_R(2.0) * step * absolute(rate[4 + i]);
         if (moved > farthest) {
@@ -205,8 +206,8 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
     return farthest > GIC_R(1.0) ? GIC_ERROR_UNSTABLE : status;
 }
 
-/* The state one step on from `from`, into `next`, and the rate at the step's start, into `rate`, which *newest becomes
- * once it is there. `past` holds the two rates before the step, or is NULL: then RK4. */
+/* One step from `from` to `next`; the rate at the start goes to `rate`, and *newest points to it as soon as it is
+ * known. `past` has the two rates before the step; NULL: RK4. */
 static int advance(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
                    const gic_real *past, gic_real *rate, gic_real *next, gic_real *work, const gic_real **newest)
 {
@@ -222,7 +223,7 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
     return status == GIC_OK ? settle(model, self, next) : status;
 }
 
-/* Can a step of this length be tried? `part` is the smallest that time has to move by. */
+/* Check that a step of this length may be tried; `part` is the smallest amount by which time must advance. */
 static int check_step(const gic_model *model, void *self, gic_real step, gic_real part)
 {
     if (model->abi_version != GIC_ABI_VERSION || model->real_size != sizeof(gic_real))
@@ -236,14 +237,14 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
     return GIC_OK;
 }
 
-/* Does a step go on from the one before? Then its history counts. */
+/* True if the step continues the one before it, so that its history is valid. */
 static int goes_on(const gic_head *head, gic_real step, int32_t method, int32_t ratio)
 {
     return step == head->step && method == head->method && ratio == head->ratio;
 }
 
-/* A step fails with `status`: the instance is as before, that Newton's method starts from among it. newest: rate known
- * last. */
+/* End a step that failed with `status`: the instance, its Newton start included, becomes as before. newest: the latest
+ * known rate. */
 static int give_up(const gic_model *model, void *self, gic_real step, int status, const gic_real *newest,
                    const gic_real *input_before)
 {
@@ -253,7 +254,7 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
     gic_real *rate = array_at(self, model->scratch_offset);
     if (newest != rate)
         copy(rate, newest, n);
-    /* of coordinates, the state knows theirs */
+    /* coordinates are reset too: they follow from the state */
     for (int32_t c = 0; c < model->coordinate_count; ++c) {
         const int32_t at = model->coordinate_state[c];
         if (at >= 0 && at + half < n && absolute(state[at + half]) > absolute(rate[at]))
@@ -262,29 +263,206 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
     head->flip = head->hold;
     head->hold = -1;
     copy(array_at(self, model->input_offset), input_before, model->input_count);
-    /* a state that is none was not made by a step */
+    /* a state that was invalid before was not made by a step */
     if (gic_bounded(state, n))
         status = gic_blame(model, step, rate, status, &head->grown);
     return head->status = status == GIC_ERROR_INPUT && head->grown >= 0 ? GIC_ERROR_UNSTABLE : status;
 }
 
-/* At the end of a step, with its state there. */
-static void arrive(const gic_model *model, void *self)
+/* Between the ends of a step: the cubic through states and rates. */
+static void between(int32_t n, gic_real share, gic_real step, const gic_real *from, const gic_real *rate,
+                    const gic_real *to, const gic_real *rate_there, gic_real *state)
 {
-    gic_head *head = (gic_head *)self;
-    ++head->steps;
-    head->hold = -1;
-    set_inputs(model, self, gic_time(self));
-    if (model->shift)
-        (void)model->shift(self);
+    const gic_real rest = GIC_R(1.0) - share, blend = share * share * (GIC_R(3.0) - GIC_R(2.0) * share);
+    for (int32_t i = 0; i < n; ++i)
+        state[i] = from[i] + blend * (to[i] - from[i]) + step * share * rest * (rest * rate[i] - share * rate_there[i]);
 }
 
-/* A step was made: the instance moves on, with `history` rates kept. */
-static void move_on(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, int32_t history,
-                    const gic_real *next, const gic_real *rate)
+enum { MOST_DISCRETE = 8 };
+
+static int32_t *discrete_of(const gic_model *model, void *self)
+{
+    return (int32_t *)(void *)((char *)self + model->discrete_offset);
+}
+
+static void copy_discrete(const gic_model *model, int32_t *to, const int32_t *from)
+{
+    for (int32_t i = 0; i < model->discrete_count; ++i)
+        to[i] = from[i];
+}
+
+/* What is left of a step: states and rates where it begins and where it ends. */
+typedef struct Rest {
+    gic_real end, length; /* s */
+    const gic_real *from, *rate, *to, *rate_there;
+    int32_t discrete[MOST_DISCRETE];
+} Rest;
+
+/* Put the instance at a share of the rest and look at its gears there: 1 if they change, 0 if not, or a status. */
+static int changes_at(const gic_model *model, void *self, const Rest *rest, gic_real share)
+{
+    gic_head *head = (gic_head *)self;
+    gic_real *state = array_at(self, model->state_offset);
+    const int64_t switches = head->switch_count;
+    copy_discrete(model, discrete_of(model, self), rest->discrete);
+    between(model->slow_count + model->fast_count, share, rest->length, rest->from, rest->rate, rest->to,
+            rest->rate_there, state);
+    head->start_time = rest->end - (GIC_R(1.0) - share) * rest->length;
+    head->steps = 0;
+    set_inputs(model, self, head->start_time);
+    const int status = settle(model, self, state);
+    head->switch_count = switches;
+    return status == GIC_OK ? model->shift(self) : status;
+}
+
+/* Find the first change of gear in the rest and leave the instance right after it. *share: where it is. */
+static int locate_change(const gic_model *model, void *self, const Rest *rest, gic_real *share)
+{
+    const int halvings = sizeof(gic_real) < sizeof(double) ? 20 : 45;
+    gic_real low = GIC_R(0.0), high = GIC_R(1.0);
+    int found = changes_at(model, self, rest, low);
+    if (found == 1)
+        high = low;
+    for (int i = 0; i < halvings && found >= 0 && low < high; ++i) {
+        const gic_real middle = GIC_R(0.5) * (low + high);
+        found = changes_at(model, self, rest, middle);
+        if (found == 1)
+            high = middle;
+        else
+            low = middle;
+    }
+    *share = high;
+    if (found >= 0)
+        found = changes_at(model, self, rest, high);
+    return found == 1 ? GIC_OK : found == 0 ? GIC_ERROR_EVENTS : found;
+}
+
+/* The rest of a step by RK4, in as many parts as the step has fast ones. The rate at its start goes to `first`; work: 4
+ * rows of a state. */
+static int finish_step(const gic_model *model, void *self, const Rest *rest, gic_real *first, gic_real *work)
+{
+    const int32_t n = model->slow_count + model->fast_count, parts = ((const gic_head *)self)->ratio;
+    const gic_real part = rest->length / (gic_real)parts, *newest;
+    gic_real *state = array_at(self, model->state_offset);
+    int status = GIC_OK;
+    for (int32_t k = 0; k < parts && status == GIC_OK; ++k) {
+        const gic_real time = rest->end - (gic_real)(parts - k) * part;
+        status = advance(model, self, time, part, state, NULL, k == 0 ? first : work, work + n, work + 2 * n, &newest);
+        if (status == GIC_OK)
+            copy(state, work + n, n);
+    }
+    return status;
+}
+
+/* Gears at the end of a step, whose state at the start is in row 1 of the scratch array. Each change is located, and
+ * the step goes on from there. On a failure the instance is left at some time within the step. */
+static int change_gears(const gic_model *model, void *self)
+{
+    const int32_t n = model->slow_count + model->fast_count;
+    gic_head *head = (gic_head *)self;
+    gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
+    gic_real *from = scratch + n, *to = scratch + 3 * n, *rate_there = scratch + 4 * n, *end_state = scratch + 9 * n,
+             share = GIC_R(0.0);
+    Rest rest = {gic_time(self), head->step, from, array_at(self, model->rate_offset), to, rate_there, {0}};
+    for (int32_t changes = 0; share < GIC_R(1.0); ++changes) {
+        copy_discrete(model, rest.discrete, discrete_of(model, self));
+        copy(end_state, state, n); /* to a row of its own: without a change the others keep what the step has there */
+        if (!model->shift(self))
+            return GIC_OK;
+        copy(to, end_state, n);
+        if (changes == GIC_CHANGES)
+            return GIC_ERROR_EVENTS;
+        head->history = 0;
+        copy_discrete(model, discrete_of(model, self), rest.discrete);
+        int status = evaluate(model, self, rest.end, to, rate_there);
+        if (status == GIC_OK)
+            status = locate_change(model, self, &rest, &share);
+        if (status == GIC_OK && share < GIC_R(1.0)) {
+            rest.length *= GIC_R(1.0) - share;
+            copy(scratch + 2 * n, state, n);
+            status = finish_step(model, self, &rest, scratch, to);
+            rest.from = scratch + 2 * n;
+            rest.rate = scratch;
+        }
+        if (status != GIC_OK)
+            return status;
+        head->start_time = rest.end;
+        set_inputs(model, self, rest.end);
+    }
+    return GIC_OK;
+}
+
+/* What a step changes of an instance before its gears are known: rows 7 and 8 of the scratch array have the rate at the
+ * start of the step before, and for march() the older row of the history. */
+typedef struct Kept {
+    gic_real start_time, step;
+    int64_t steps;
+    int32_t method, ratio, history;
+} Kept;
+
+static gic_real *kept_rows(const gic_model *model, void *self)
+{
+    return array_at(self, model->scratch_offset) + 7 * (model->slow_count + model->fast_count);
+}
+
+static Kept keep(const gic_model *model, void *self)
+{
+    const gic_head *head = (const gic_head *)self;
+    if (model->shift)
+        copy(kept_rows(model, self), array_at(self, model->rate_offset), model->slow_count + model->fast_count);
+    return (Kept){head->start_time, head->step, head->steps, head->method, head->ratio, head->history};
+}
+
+static void take_back(const gic_model *model, void *self, const Kept *kept)
+{
+    gic_head *head = (gic_head *)self;
+    copy(array_at(self, model->rate_offset), kept_rows(model, self), model->slow_count + model->fast_count);
+    head->start_time = kept->start_time;
+    head->step = kept->step;
+    head->steps = kept->steps;
+    head->method = kept->method;
+    head->ratio = kept->ratio;
+    head->history = kept->history;
+}
+
+/* After a step that began at `from`, a row of the scratch array: gears change. If that fails, state and gears are those
+ * at the start again. */
+static int arrive(const gic_model *model, void *self, const gic_real *from)
+{
+    gic_head *head = (gic_head *)self;
+    int32_t discrete[MOST_DISCRETE];
+    ++head->steps;
+    set_inputs(model, self, gic_time(self));
+    if (model->shift) {
+        const gic_real start_time = head->start_time;
+        const int64_t steps = head->steps;
+        const int32_t n = model->slow_count + model->fast_count;
+        gic_real *start = array_at(self, model->scratch_offset) + n;
+        if (from != start)
+            copy(start, from, n);
+        copy_discrete(model, discrete, discrete_of(model, self));
+        const int status = model->discrete_count <= MOST_DISCRETE ? change_gears(model, self) : GIC_ERROR_ABI;
+        head->start_time = start_time;
+        head->steps = steps;
+        if (status != GIC_OK) {
+            copy(array_at(self, model->state_offset), start, n);
+            copy_discrete(model, discrete_of(model, self), discrete);
+            return status;
+        }
+    }
+    head->hold = -1;
+    return GIC_OK;
+}
+
+/* Finish a step: the instance advances, with `history` rates to keep, or none if its gears change. If that fails it is
+ * as before. */
+static int move_on(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, int32_t history,
+                   gic_real *next, const gic_real *rate)
 {
     gic_head *head = (gic_head *)self;
     const int32_t n = model->slow_count + model->fast_count;
+    gic_real *state = array_at(self, model->state_offset);
+    const Kept kept = keep(model, self);
     if (!goes_on(head, step, method, ratio)) {
         head->start_time = gic_time(self);
         head->steps = 0;
@@ -293,14 +471,20 @@ static void move_on(const gic_model *model, void *self, gic_real step, int32_t m
         head->ratio = ratio;
     }
     head->history = history;
-    copy(array_at(self, model->state_offset), next, n);
+    for (int32_t i = 0; i < n; ++i) { /* the state at the start stays in `next` */
+        const gic_real start = state[i];
+        state[i] = next[i];
+        next[i] = start;
+    }
     copy(array_at(self, model->rate_offset), rate, n);
-    arrive(model, self);
+    const int status = arrive(model, self, next);
+    if (status != GIC_OK)
+        take_back(model, self, &kept);
+    return status;
 }
 
-/* A step of AB3 that goes on from two others, by the model's own function: 1 when it was made. One that fails leaves
- * the instance as it was, but for what counts the work, and is made again by the functions above, which find out why.
- */
+/* A step of AB3 with history by the model's own function: 1 if it was made. A failed one leaves the instance unchanged
+ * except for counts, and is repeated by the functions above, which find the cause. */
 static int march(const gic_model *model, void *self, gic_real step)
 {
     gic_head *head = (gic_head *)self;
@@ -320,9 +504,20 @@ static int march(const gic_model *model, void *self, gic_real step)
         copy(input_before, input, model->input_count);
         set_inputs(model, self, time);
     }
+    const int32_t n = model->slow_count + model->fast_count;
+    gic_real *from = array_at(self, model->scratch_offset) + n, *history = array_at(self, model->history_offset);
+    gic_real *older = kept_rows(model, self) + n;
+    const Kept kept = keep(model, self);
+    if (model->shift) {
+        copy(from, array_at(self, model->state_offset), n);
+        copy(older, history + n, n);
+    }
     if (model->march(self, time) == GIC_OK) {
-        arrive(model, self);
-        return 1;
+        if (arrive(model, self, from) == GIC_OK)
+            return 1;
+        copy(history, history + n, n);
+        copy(history + n, older, n);
+        take_back(model, self, &kept);
     }
     head->flip = head->hold;
     head->hold = -1;
@@ -352,7 +547,7 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
     const int32_t known = goes_on(head, step, method, 1) && method == GIC_AB3 ? head->history : 0;
     gic_real *history = array_at(self, model->history_offset);
     gic_real *rate = array_at(self, model->scratch_offset), *next = rate + n, *work = next + n;
-    gic_real *input_before = work + 2 * n;
+    gic_real *input_before = rate + GIC_SCRATCH(n, 0);
     const gic_real *newest = array_at(self, model->rate_offset);
     copy(input_before, array_at(self, model->input_offset), model->input_count);
     head->hold = head->flip;
@@ -360,28 +555,31 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
                                     known == 2 ? history : NULL, rate, next, work, &newest);
     if (status != GIC_OK)
         return give_up(model, self, step, status, newest, input_before);
-    if (method == GIC_AB3) {
+    status = move_on(model, self, step, method, 1, method == GIC_RK4 ? 0 : known < 2 ? known + 1 : 2, next, rate);
+    if (status != GIC_OK)
+        return give_up(model, self, step, status, rate, input_before);
+    if (head->history > 0) {
         copy(history + n, history, n);
         copy(history, rate, n);
     }
-    move_on(model, self, step, method, 1, method == GIC_RK4 ? 0 : known < 2 ? known + 1 : 2, next, rate);
     return GIC_OK;
 }
 
 /* ---- dual rate -------------------------------------------------------------------------------------------- */
 
-/* A step of gic_step_dual in the making. */
+/* A step of gic_step_dual under way. */
 typedef struct Dual {
     const gic_model *model;
     void *self;
-    gic_real start, step; /* time is start + steps * step, whichever way the head counts so far */
+    gic_real start, step; /* time is start + steps * step, independent of the head's present count */
     int64_t steps;
     int32_t ratio;
     gic_real steady;   /* of gic_step_steady */
-    gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 what the method needs */
+    gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 for the method */
     gic_real *link;    /* rows 0 to 2: at this slow step and the two before; 3 at the next; 4 at a fast step */
-    const gic_real *next, *fast[2]; /* results: the state; rates of the fast states at the last two fast steps */
-    const gic_real *newest;         /* rate of all states known last */
+    gic_real *next;
+    const gic_real *fast[2]; /* results: the state; rates of the fast states at the last two fast steps */
+    const gic_real *newest;  /* the latest known rate of all states */
 } Dual;
 
 static gic_real *row(const Dual *dual, int32_t i)
@@ -389,7 +587,7 @@ static gic_real *row(const Dual *dual, int32_t i)
     return dual->scratch + i * (dual->model->slow_count + dual->model->fast_count);
 }
 
-/* When fast step k from 0 to `ratio` begins: from integers, so that no error accumulates. */
+/* Start of fast step k, 0 to `ratio`: from integers, so that no error accumulates. */
 static gic_real moment(const Dual *dual, int32_t k)
 {
     const gic_real whole = (gic_real)(dual->steps + k / dual->ratio);
@@ -407,8 +605,8 @@ static int link_at(const Dual *dual, int32_t k, const gic_real *slow, gic_real *
     return gic_finite(link, dual->model->link_count) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
-/* The links at the beginning of fast step k: cubic through the four rows. Differences are weighted, so that what stays
- * the same stays the same to the last bit. */
+/* The links at the beginning of fast step k: the cubic through four rows. Differences are weighted, so that equal rows
+ * give the same number to the last bit. */
 static void interpolate(const Dual *dual, int32_t k, gic_real *link)
 {
     const int32_t count = dual->model->link_count;
@@ -426,7 +624,7 @@ static void interpolate(const Dual *dual, int32_t k, gic_real *link)
 static int start_dual(Dual *dual, int32_t known)
 {
     const gic_model *model = dual->model;
-    const gic_real *from = array_at(dual->self, model->state_offset);
+    gic_real *from = array_at(dual->self, model->state_offset);
     gic_real *link = dual->link;
     int status = known == 0 ? link_at(dual, 0, from, link + 4 * model->link_count) : GIC_OK;
     for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
@@ -441,14 +639,14 @@ static int start_dual(Dual *dual, int32_t known)
     return status == GIC_OK ? link_at(dual, dual->ratio, from, link + 3 * model->link_count) : status;
 }
 
-/* The course of the fast states: their rates as they were on average of late. */
+/* Running means of the fast states' rates. */
 static gic_real *course(const Dual *dual)
 {
     const gic_model *model = dual->model;
     return array_at(dual->self, model->history_offset) + 2 * (model->slow_count + model->fast_count);
 }
 
-/* Do the fast states keep their course? rate: theirs at the start of this step. */
+/* True if the fast states' rates are near their means. rate: theirs at the start of this step. */
 static int keeps_course(const Dual *dual, const gic_real *fast, const gic_real *rate)
 {
     const gic_real *mean = course(dual);
@@ -461,8 +659,8 @@ static int keeps_course(const Dual *dual, const gic_real *fast, const gic_real *
     return dual->steady > GIC_R(0.0);
 }
 
-/* A step on course. What rates differ from it acts for a fast step only, which is short enough for the fast states to
- * be stable; rates: room for those that this makes in all. */
+/* Advance all fast states at their mean rates. The deviation of the present rates acts for one fast step only, which is
+ * short enough for stability; rates: room for the resulting rates. */
 static int stay_on_course(Dual *dual, gic_real *fast, const gic_real *rate, gic_real *rates)
 {
     const gic_real *mean = course(dual);
@@ -522,7 +720,7 @@ static int march_dual(Dual *dual)
     return GIC_OK;
 }
 
-/* After a step of the fast states from `before` to `after`: the course is a mean over some `ratio` steps. */
+/* After a step of the fast states from `before` to `after`: update the running means, over some `ratio` steps. */
 static void follow_course(const Dual *dual, int32_t known, const gic_real *before, const gic_real *after)
 {
     gic_real *mean = course(dual);
@@ -543,7 +741,7 @@ static void keep_dual(const Dual *dual, int32_t known)
     copy(history + n + slow, dual->fast[1], fast);
     copy(history + slow, dual->fast[0], fast);
     if (dual->steady > GIC_R(0.0))
-        follow_course(dual, known, array_at(dual->self, model->state_offset) + slow, dual->next + slow);
+        follow_course(dual, known, dual->next + slow, array_at(dual->self, model->state_offset) + slow);
     if (known == 0)
         copy(link, link + 4 * links, links);
     copy(link + 2 * links, link + links, links);
@@ -560,7 +758,7 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
 {
     if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
         return gic_step(model, self, step, GIC_AB3);
-    /* without a ratio there is no fast step that time could move by */
+    /* without a valid ratio there is no fast step to check */
     const int usable = ratio > 0 && ratio <= GIC_RATIOS;
     int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
     if (status != GIC_OK)
@@ -572,7 +770,7 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
     const int same = goes_on(head, step, GIC_AB3, ratio);
     const int32_t known = same ? head->history : 0;
     gic_real *scratch = array_at(self, model->scratch_offset);
-    gic_real *input_before = scratch + 7 * (model->slow_count + model->fast_count);
+    gic_real *input_before = scratch + GIC_SCRATCH(model->slow_count + model->fast_count, 0);
     Dual dual = {model,
                  self,
                  same ? head->start_time : gic_time(self),
@@ -590,8 +788,11 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
     status = head->status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
     if (status != GIC_OK)
         return give_up(model, self, step, status, dual.newest, input_before);
-    keep_dual(&dual, known);
-    move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0));
+    status = move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0));
+    if (status != GIC_OK)
+        return give_up(model, self, step, status, row(&dual, 0), input_before);
+    if (head->history > 0)
+        keep_dual(&dual, known);
     return GIC_OK;
 }
 
@@ -599,15 +800,15 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
 
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4])
 {
-    /* a stage of an integrator leaves unit length by (step * angular velocity / 2)^2, which must pass; what a
-     * caller forgot to normalize must not */
+    /* a stage of an integrator changes the length by (step * angular velocity / 2)^2, which must be accepted; a
+     * caller's unnormalized parameters must not */
     const gic_real tolerance = GIC_R(0.01);
     const gic_real excess =
         given[0] * given[0] + given[1] * given[1] + given[2] * given[2] + given[3] * given[3] - GIC_R(1.0);
     if (!GIC_FINITE(given, 4) || excess > tolerance || excess < -tolerance)
         return GIC_ERROR_ORIENTATION;
 
-    /* above 1.01 / 2.21 no other can be a tenth larger, and nearly always that is so */
+    /* above 1.01 / 2.21 no other can be a tenth larger, which is the usual case */
     int32_t now = *dependent;
     if (now < 0 || now > 3 || !(given[now] * given[now] > GIC_R(0.46))) {
         int32_t largest = 0;
@@ -627,7 +828,7 @@ int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switch
     for (int32_t i = 0; i < 4; ++i)
         rest -= i == now ? GIC_R(0.0) : given[i] * given[i];
     const gic_real root = MATH(sqrt)(rest), signed_root = given[now] < GIC_R(0.0) ? -root : root;
-    /* not by a place that is known late: readers would wait for it */
+    /* not indexed by a number that is known late: readers would wait for the store */
     for (int32_t i = 0; i < 4; ++i)
         e[i] = i == now ? signed_root : given[i];
     return GIC_OK;

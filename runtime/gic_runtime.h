@@ -25,8 +25,8 @@
 extern "C" {
 #endif
 
-/* Raised when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 6
+/* Increased when generated code and runtime of different versions no longer fit together. */
+#define GIC_ABI_VERSION 7
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
@@ -39,7 +39,7 @@ typedef double gic_real;
 #endif
 #define GIC_R(x) ((gic_real)(x))
 
-/* X(name, code, text): 0 is good, negative means that the call changed nothing and has no result. */
+/* X(name, code, text): 0 is success; a negative status means that the call changed nothing and has no result. */
 #define GIC_STATUS_LIST(X) \
     X(GIC_OK, 0, "ok") \
     X(GIC_ERROR_ARGUMENT, -1, "an argument is out of range (step, method, time or size)") \
@@ -58,77 +58,79 @@ typedef double gic_real;
     X(GIC_ERROR_ASSUMPTION, -13, "what code for one scene takes for granted does not hold") \
     X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long") \
     X(GIC_ERROR_RESIDUAL, -15, \
-      "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error")
+      "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error") \
+    X(GIC_ERROR_EVENTS, -16, "gears change more often within a step than a step can follow")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -15
+        GIC_STATUS_LAST = -16
 } gic_status;
 
-/* What a status means, in one line; never NULL. */
+/* The text of a status, one line; never NULL. */
 #define gic_status_text GIC_NAME(gic_status_text)
 const char *gic_status_text(int status);
 
 /* ---- road ------------------------------------------------------------------------------------- */
 
-/* A road z = h(x, y), world frame, metres; those of gic_road.h, or one of your own. `height` fills out[0] = h,
- * out[1] = dh/dx, out[2] = dh/dy. `friction`: of the road at a place, relative to the one that the tires were measured
- * on; NULL: 1 everywhere. `lane` is the instance's lane index. The rest of a road's data follows this head in the
- * user's own structure. */
+/* A road z = h(x, y), world frame, metres: one of gic_road.h or your own. `height` sets out[0] = h, out[1] = dh/dx,
+ * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on; NULL: 1 everywhere.
+ * `lane` is the instance's lane index. Data of a road follow this head in the user's own structure. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
 } gic_road;
 
-/* Newton starts of an instance: the last good one, one held, and two for the steps of a way from one to another. */
+/* Newton starts of an instance: the last good one, one that is kept for the step under way, and two for a change
+ * followed in pieces. */
 #define GIC_STARTS 4
 
-/* Numbers, at least one, that fill what stands before them, in bytes, up to a multiple of 64. */
+/* Size of an array, at least one number, that fills a structure of `bytes` bytes up to a multiple of 64. */
 #define GIC_FILL(bytes) ((64 - (bytes) % 64) / sizeof(gic_real))
 
 /* ---- the instance ------------------------------------------------------------------------------- */
 
 typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
 
-/* Called before every evaluation at `time` when it is set: fill input[] with the values at that time. */
+/* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
 
 /* The head of every generated structure. */
 typedef struct gic_head {
     gic_real start_time; /* s */
-    gic_real step;       /* s, of the steps counted below */
-    gic_real ahead;      /* s, what a step leads to: nearer in time a configuration where coordinates stop being
-                          * independent is none that a right-hand side takes. Step functions set it, outputs don't need
-                          * it; integrators of others may */
+    gic_real step;       /* s, of the steps counted in `steps` */
+    gic_real ahead;      /* s until the end of the present step: a configuration in which coordinates lose independence
+                          * within this time, at the present velocities, is refused. Step functions set it; outputs
+                          * don't need it; other integrators may set it */
     int64_t steps;       /* time = start_time + steps * step, so that no error accumulates */
     int32_t method;      /* of the last step; a change restarts the multistep history */
     int32_t history;     /* rates kept for AB3: 0, 1 or 2 */
-    int32_t ratio;       /* of the last step: fast steps in it, 1: a single rate; a change restarts the history too */
-    int32_t lane;        /* free for the caller: which vehicle of many this is */
-    int32_t flip;        /* which of the Newton starts is the last good one */
-    int32_t hold;        /* one that must not be lost: that of the beginning of a step under way, -1: none */
+    int32_t ratio;       /* of the last step: number of fast steps, 1: single rate; a change restarts the history too */
+    int32_t lane;        /* for the caller: the index of this vehicle among many */
+    int32_t flip;        /* index of the last good Newton start */
+    int32_t hold;        /* index of the Newton start at the beginning of the step under way, which is kept; -1: none */
     int32_t status;      /* of the last call */
-    int32_t subset;      /* that the status is about, -1: none; see the descriptor's subset_name */
-    int32_t condition;  /* that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; the descriptor's condition_text */
-    int32_t grown;      /* index in state[] of what GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
-    int32_t unchecked;  /* evaluations until the next whose results are checked, GIC_ERROR_RESIDUAL; 0: the next one */
-    int64_t rhs_count;  /* right-hand sides evaluated */
-    int64_t fast_count; /* rates of the fast states alone evaluated, by gic_step_dual */
-    int64_t newton_count; /* subset solutions, and the corrections they took in total */
+    int32_t subset;      /* the subset that the status is about, -1: none; see the descriptor's subset_name */
+    int32_t condition;   /* the condition that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; see condition_text
+                          */
+    int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
+    int32_t unchecked;   /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
+    int64_t rhs_count;   /* right-hand sides evaluated */
+    int64_t fast_count;  /* evaluations of the fast states' rates only, by gic_step_dual */
+    int64_t newton_count; /* solutions of subsets, and the total of their corrections */
     int64_t correction_count;
     int64_t switch_count; /* changes of the dependent Euler parameter */
-    /* what was skipped, and what could not be: counted where it happens, so that it costs nothing elsewhere */
+    /* work that was skipped or added, counted where it happens, at no cost elsewhere */
     int64_t late_count;    /* Newton corrections beyond the first check of a solution */
-    int64_t kept_count;    /* subset solutions reused: their inputs had not changed */
-    int64_t air_count;     /* tires not evaluated: their wheels were in the air */
-    int64_t steady_count;  /* fast rates not evaluated: fast states changed steadily, gic_step_steady */
-    int64_t sleep_count;   /* steps in which the state was left as it is: for whoever makes steps */
-    gic_real largest_step; /* largest last Newton correction accepted, relative to the subset's size */
+    int64_t kept_count;    /* solutions of subsets reused since their inputs had not changed */
+    int64_t air_count;     /* tires not evaluated since their wheels had no contact */
+    int64_t steady_count;  /* fast rates not evaluated since fast states changed steadily, gic_step_steady */
+    int64_t sleep_count;   /* steps in which a sleeping vehicle kept its state; counted by hosts */
+    gic_real largest_step; /* largest final Newton correction, relative to the subset's size */
     gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */
     const gic_road *road;  /* NULL: flat at z = 0 */
-    gic_input_function *input_function; /* NULL: input[] is what the caller puts there */
+    gic_input_function *input_function; /* NULL: the caller sets input[] */
     void *user;
 } gic_head;
 
@@ -138,12 +140,12 @@ typedef struct gic_signal {
     const char *name, *unit;
 } gic_signal;
 
-/* What the emitted self-test measured at one state; all relative, rounding-size when the code is sound. Figures beyond
- * what FORMAT.md section 14 promises come with GIC_ERROR_RESIDUAL. */
+/* Results of the emitted self-test at one state; all relative, of the size of rounding in correct code. Values beyond
+ * those promised in FORMAT.md section 14 come with GIC_ERROR_RESIDUAL. */
 typedef struct gic_self_test {
     gic_real constraint;     /* largest sum of a subset's constraint residuals, relative to its size */
     gic_real motion;         /* of the constraints' first and second derivatives, relative to their terms */
-    gic_real symmetry;       /* of the mass matrix built column by column by an independent path */
+    gic_real symmetry;       /* asymmetry of the mass matrix when it is built column by column by an independent path */
     gic_real smallest_pivot; /* of its Cholesky factorization, relative to the diagonal: > 0 means definite */
     gic_real balance;        /* residual of the equations of motion at the computed accelerations */
     gic_real energy;         /* rate of kinetic and potential energy against the power of dampers, tires and drives */
@@ -156,7 +158,7 @@ typedef struct gic_model {
     const char *name, *description, *hash, *generator;
     int32_t free_base;  /* 1: state begins with r, e and v, omega (FORMAT.md section 10) */
     int32_t slow_count; /* continuous states of the multibody system, first in state[] */
-    int32_t fast_count; /* continuous fast states, behind them */
+    int32_t fast_count; /* continuous fast states, after the slow ones */
     int32_t discrete_count;
     int32_t input_count, parameter_count, output_count, port_count;
     int32_t coordinate_count; /* dual coordinates, free and driven, in the order of the file */
@@ -166,42 +168,42 @@ typedef struct gic_model {
         output_offset, port_offset;
     const gic_signal *state, *discrete, *input, *parameter, *output, *port, *coordinate;
     const gic_real *coordinate_design, *coordinate_low, *coordinate_high;
-    const int32_t *coordinate_state; /* index of w in state[] (its rate: slow_count / 2 further on), -1: driven */
-    const int32_t *coordinate_input; /* driven: index of value in input[], rate and acceleration follow; else -1 */
+    const int32_t *coordinate_state; /* index of w in state[] (that of its rate: slow_count / 2 more), -1: driven */
+    const int32_t *coordinate_input; /* driven: index of its value in input[], followed by rate and acceleration; else
+                                      * -1 */
     const char *const *subset_name, *const *body_name;
     const int32_t
-        *parameter_geometric; /* 1: acts at set-up only, points, axes, masses and so on depend on it; 0: at once */
+        *parameter_geometric; /* 1: used by points, axes, masses and so on, acts at set-up only; 0: acts at once */
     int32_t condition_count;
-    const char *const *condition_text; /* what geometric parameters must not violate; what code for one scene assumes */
+    const char *const *condition_text; /* conditions on geometric parameters; assumptions of code for one scene */
     /* the functions; `self` is the instance, `parameter` has parameter_count numbers */
     int (*setup)(void *self);
     int (*setup_with)(void *self, const gic_real *parameter);
     int (*rhs)(void *self, gic_real time, const gic_real *state, gic_real *rate);
-    /* makes numbers that an integrator found a state; GIC_ERROR_INPUT, and nothing changed, where not all are bounded
-     */
+    /* turn the numbers of an integrator into a valid state; GIC_ERROR_INPUT and no change if one is out of bounds */
     int (*settle)(void *self, gic_real *state);
     int (*outputs)(void *self);
     int (*poses)(void *self, gic_real *pose);
     int (*self_test)(void *self, gic_self_test *result);
-    /* Step functions call it for a step of AB3, head.ahead long, from `time` with two past rates, and NULL lets them
-     * make it of the functions above. On GIC_OK state, rate and history have moved, else none of them has. */
+    /* An AB3 step of length head.ahead from `time` with two past rates; NULL: step functions use the functions above.
+     * On GIC_OK state, rate and history have advanced, otherwise none of them. */
     int (*march)(void *self, gic_real time);
     /* Dual rate (TIRES.md section 9); models without fast states have link_count 0 and NULL here. */
-    int32_t link_count; /* numbers through which the slow part moves the fast one */
-    size_t link_offset; /* of 5 link_count numbers: links at the present slow step and the two before, newest first, and
-                         * two rows of scratch */
-    /* link[] at a slow state (slow_count numbers), whose dependent coordinates are recovered; inputs as for rhs */
+    int32_t link_count; /* numbers by which the slow states act on the fast ones */
+    size_t link_offset; /* array of 5 link_count numbers: links at the present slow step and the two before, newest
+                         * first, and two rows of work space */
+    /* link[] at a slow state (slow_count numbers): dependent coordinates are recovered; inputs as for rhs */
     int (*link)(void *self, gic_real time, const gic_real *slow, gic_real *link);
     /* rate[] (fast_count) of a fast state (fast_count) at links */
     int (*fast)(void *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate);
-    /* let all wheels roll at the present state: TIRES.md section 2 */
+    /* set fast states so that all wheels roll at the present state: TIRES.md section 2 */
     int (*roll)(void *self);
-    /* Discrete states at the present state, after a step (POWERTRAIN.md section 4): 1 where they change; NULL: they
-     * change by themselves. Step functions call it. */
+    /* Update the discrete states for the present state and time (POWERTRAIN.md section 4): 1 if they changed; NULL: no
+     * such states, or they update themselves. Step functions call it after a step, and to locate a change within it. */
     int (*shift)(void *self);
-    /* What an evaluation at `time` and `state` left in the instance, and rate[], against constraints and equations of
-     * motion: GIC_OK or GIC_ERROR_RESIDUAL. Evaluations do this by themselves; code for many vehicles asks for it, one
-     * vehicle at a time. NULL: an engine of a host. */
+    /* Check the results that an evaluation at `time` and `state` left in the instance, and rate[], against constraints
+     * and equations of motion: GIC_OK or GIC_ERROR_RESIDUAL. Evaluations do so from time to time; code for many
+     * vehicles calls it for one vehicle at a time. NULL: an engine of a host. */
     int (*check)(void *self, gic_real time, const gic_real *state, const gic_real *rate);
 } gic_model;
 
@@ -210,9 +212,12 @@ typedef struct gic_model {
  * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
  * calls. */
 #define GIC_HISTORY(n, fast) (2 * (n) + (fast))
-#define GIC_SCRATCH(n, inputs) (7 * (n) + (inputs))
+#define GIC_SCRATCH(n, inputs) (10 * (n) + (inputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
+
+/* The most changes of gear in one step; more give GIC_ERROR_EVENTS. */
+#define GIC_CHANGES 32
 
 /* One step of `step` seconds with AB3 or RK4. AB3 starts with two steps of RK4, which keeps its order. On GIC_OK state,
  * time and, where there is an input function, input[] have moved by one step; otherwise they are untouched. A new step
@@ -220,7 +225,7 @@ typedef struct gic_model {
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 
-/* The largest ratio of gic_step_dual, so that a wrong one is a status and not a step without end. */
+/* The largest ratio of gic_step_dual; larger ones give a status. */
 #define GIC_RATIOS 10000
 
 /* One step of `step` seconds of AB3 in which the fast states take `ratio` steps, 1 to GIC_RATIOS: TIRES.md section 9.
@@ -231,14 +236,14 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 #define gic_step_dual GIC_NAME(gic_step_dual)
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
 
-/* The same with fast steps only while they are needed: where the rate of each fast state x at the start of a step is
- * its mean rate of late but for steady (1 + |x|) / step, all fast states go on at their mean rates, and their rates are
- * not evaluated again in the step. steady 0: always fast steps. SCENE.md section 9 says what comes of it. */
+/* As gic_step_dual, but fast steps only when needed: if every fast state x satisfies |rate - mean rate| * step <=
+ * steady * (1 + |x|) at the start of a step, all fast states advance at their running mean rates and the fast steps are
+ * skipped. steady 0: never skipped. SCENE.md section 9 has the consequences. */
 #define gic_step_steady GIC_NAME(gic_step_steady)
 int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady);
 
-/* The change of an angle (rad) without whole turns: within half a turn, and as it is where it is that already. One too
- * large to lie between two states is given back as it is, too. */
+/* A change of an angle (rad) without whole turns: within half a turn. Changes within half a turn, and changes too large
+ * to be those of an angle, are returned as they are. */
 #define gic_unwound GIC_NAME(gic_unwound)
 gic_real gic_unwound(gic_real change);
 
@@ -246,21 +251,26 @@ gic_real gic_unwound(gic_real change);
 #define gic_time GIC_NAME(gic_time)
 gic_real gic_time(const void *self);
 
-/* Forget integrator history, because state or inputs jumped; time goes on from `time`. */
+/* AB3: a number after a step from its value, its rate there and its rates at the two steps before; weight: step / 12.
+ * For numbers, vectors and complex numbers. */
+#define GIC_ADAMS_BASHFORTH(value, weight, rate, past, older) \
+    ((value) + (weight) * (GIC_R(23.0) * (rate)-GIC_R(16.0) * (past) + GIC_R(5.0) * (older)))
+
+/* Forget the integrator's history after state or inputs have jumped; the time becomes `time`. */
 #define gic_restart GIC_NAME(gic_restart)
 void gic_restart(void *self, gic_real time);
 
-/* 1 when every number is finite; looks at bits, so it works under -ffast-math too. */
+/* 1 if every number is finite; tests bits, so that it works under -ffast-math too. */
 #define gic_finite GIC_NAME(gic_finite)
 int gic_finite(const gic_real *x, int32_t count);
 
-/* 1 when every number can be one of a state: finite, and below 2^30 in magnitude, in single precision below 2^20
+/* 1 if every number may be part of a state: finite and below 2^30 in magnitude, in single precision below 2^20
  * (FORMAT.md section 14). */
 #define gic_bounded GIC_NAME(gic_bounded)
 int gic_bounded(const gic_real *x, int32_t count);
 
-/* GIC_FINITE and GIC_BOUNDED are the same as part of the code around them: counts are small and mostly known. tcc,
- * which inlines nothing, calls the functions. */
+/* GIC_FINITE and GIC_BOUNDED are inline versions, since counts are small and mostly known. tcc, which inlines nothing,
+ * calls the functions. */
 #ifdef GIC_FLOAT
 typedef uint32_t gic_word;
 #define GIC_BITS_OF_SIGN UINT32_C(0x80000000)
@@ -283,8 +293,8 @@ static inline gic_word gic_bits(gic_real x)
     return look.bits;
 }
 
-/* Are all numbers below a power of two, given by its bits? A comparison with itself or with infinity would be optimized
- * away under -ffast-math. Exponents from the bound's on carry into the place of the sign: no branch for each number. */
+/* True if all numbers are below a power of two, given by its bits. Comparisons with infinity would be optimized away
+ * under -ffast-math. Adding to the exponent carries into the sign bit if it is too large: no branch for each number. */
 static inline int gic_below(const gic_real *x, int32_t count, gic_word bound)
 {
     gic_word above = 0;
@@ -294,7 +304,7 @@ static inline int gic_below(const gic_real *x, int32_t count, gic_word bound)
     return !(above & GIC_BITS_OF_SIGN);
 }
 
-/* Are all numbers the same, bit for bit? */
+/* True if all numbers are equal bit for bit. */
 static inline int gic_alike(const gic_real *x, const gic_real *y, int32_t count)
 {
     gic_word other = 0;
@@ -312,30 +322,30 @@ static inline int gic_alike(const gic_real *x, const gic_real *y, int32_t count)
 #define GIC_BOUNDED(x, count) gic_below(x, count, GIC_BITS_OF_BOUND)
 #endif
 
-/* Why a step of `step` seconds fails with `status`: GIC_ERROR_UNSTABLE where at rate[] (states, the newest known) a
- * coordinate moves by more than a quarter of its range, or 0.5 rad, or the base turns by more than 1 rad, within it;
- * *grown is then its index in state[]. Else `status`. Step functions call it. */
+/* The cause of a step of `step` seconds that failed with `status`: GIC_ERROR_UNSTABLE if at rate[] (the newest known
+ * rates) a coordinate would move by more than a quarter of its range, or 0.5 rad, or the base turn by more than 1 rad;
+ * *grown is its index in state[]. Else `status`. Step functions call it. */
 #define gic_blame GIC_NAME(gic_blame)
 int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown);
 
 /* ---- orientation ------------------------------------------------------------------------------------ */
 
-/* No three Euler parameters stay independent over a full turn (Serban and Haug 2000, Proposition 3.1). e[4] from
- * `given`, with the dependent parameter recovered from the other three. *dependent is the index of the dependent one;
- * it moves to the parameter of largest magnitude when that is more than a tenth larger
- * (*switches counts it). Returns GIC_ERROR_ORIENTATION when `given` is not near unit length. e may be `given`. */
+/* No three Euler parameters stay independent over a full turn (Serban and Haug 2000, Proposition 3.1). Sets e[4] from
+ * `given` with the dependent parameter recovered from the other three. *dependent is its index; it changes to the
+ * parameter of largest magnitude when that is more than a tenth larger (*switches counts changes).
+ * GIC_ERROR_ORIENTATION if `given` is not near unit length. e may be `given`. */
 #define gic_orientation GIC_NAME(gic_orientation)
 int gic_orientation(const gic_real given[4], int32_t *dependent, int64_t *switches, gic_real e[4]);
 
-/* 1 where rates of positions and orientation are those of the velocities in the state: of the base, world frame and
- * Euler parameters e[4], and of free coordinates. rate and state: slow_count numbers of each. */
+/* 1 if rates of positions and orientation agree with the velocities in the state: of the base, world frame and Euler
+ * parameters e[4], and of free coordinates. rate and state: slow_count numbers each. */
 #define gic_rates_match GIC_NAME(gic_rates_match)
 int gic_rates_match(const gic_model *model, const gic_real *state, const gic_real e[4], const gic_real *rate);
 
 /* ---- tables -------------------------------------------------------------------------------------------- */
 
-/* y over rising x, `count` of them. cubic: with `slope`, monotone between the points; else straight lines. onward:
- * beyond the ends on along the end's slope; else constant. */
+/* y over increasing x, `count` points. cubic: with `slope`, monotone between the points; else linear. onward: beyond
+ * the ends linear with the end's slope; else constant. */
 typedef struct gic_table {
     const gic_real *x, *y, *slope;
     int32_t count, cubic, onward;
@@ -346,10 +356,45 @@ gic_real gic_table_value(const gic_table *table, gic_real x);
 
 /* ---- inputs ------------------------------------------------------------------------------------------- */
 
-/* A twice continuously differentiable move from y0 at t0 to y1 at t1 (quintic, at rest at both ends, constant outside):
- * out = value, rate, acceleration. What a driven coordinate wants. t1 > t0. */
+/* A twice continuously differentiable move from y0 at t0 to y1 at t1 (quintic, at rest at both ends, constant outside),
+ * as for driven coordinates: out = value, rate, acceleration. t1 > t0. */
 #define gic_quintic GIC_NAME(gic_quintic)
 void gic_quintic(gic_real time, gic_real t0, gic_real t1, gic_real y0, gic_real y1, gic_real out[3]);
+
+/* ---- changes of gear ---------------------------------------------------------------------------------- */
+
+/* Tolerance for comparisons of numbers that are equal in exact arithmetic: relative to a time; relative to 1 + the size
+ * of compared numbers. */
+#define GIC_LIMIT_ROUNDING (sizeof(gic_real) < sizeof(double) ? GIC_R(1e-4) : GIC_R(1e-9))
+
+static inline int gic_reached(gic_real time, gic_real limit)
+{
+    return time >= (GIC_R(1.0) - GIC_LIMIT_ROUNDING) * limit;
+}
+
+static inline int gic_above(gic_real x, gic_real limit)
+{
+    return x - limit > GIC_LIMIT_ROUNDING * (GIC_R(1.0) + (limit < GIC_R(0.0) ? -limit : limit));
+}
+
+/* The gear after `gear` (POWERTRAIN.md section 4): 0 is neutral, -1 reverse where `reverse` is not 0. choice: selector,
+ * turbine speed, the speeds (rad/s) above which gears 1 to forward - 1 shift up, the speeds below which gears 2 to
+ * forward shift down. settled: 1 when the latency since the last change has passed. */
+static inline int32_t gic_next_gear(int32_t gear, int32_t forward, int32_t reverse, const gic_real *choice, int settled)
+{
+    const gic_real *const up = choice + 2, *const down = up + forward - 1;
+    const int backwards = gic_above(-choice[0], GIC_R(0.5)) && reverse != 0;
+    const int32_t wanted = gic_above(choice[0], GIC_R(0.5)) ? 1 : backwards ? -1 : 0;
+    if (wanted != (gear > 0) - (gear < 0))
+        return wanted;
+    if (gear > 0 && settled) {
+        if (gear < forward && gic_above(choice[1], up[gear - 1]))
+            return gear + 1;
+        if (gear > 1 && gic_above(-choice[1], -down[gear - 2]))
+            return gear - 1;
+    }
+    return gear;
+}
 
 #ifdef __cplusplus
 }

@@ -15,6 +15,7 @@ stopped, and the order of the draw doesn't change where other lines do.
 """
 import argparse
 import collections
+import fcntl
 import fnmatch
 import os
 import re
@@ -33,34 +34,40 @@ KINDS = ("generator/*.c", "runtime/*.c", "templates/*.c.in", "templates/*.h.in",
 WAYS = ([], ["--lanes", "4"], ["--batch", "8"], ["--solve", "augmented", "--recovery", "newton"])
 NOTICED, SURVIVED, OPEN, EQUIVALENT, REFUSED = "noticed", "SURVIVED", "open", "equivalent", "refused"
 # s of processor time: as a factor of what a test takes without a change; at most where that is not known
-PATIENCE, LONGEST = 10, 900
+PATIENCE, LONGEST = 4, 900
+MOST = 6 << 30  # bytes of a process: a change may make it write without end
+OWN = 5  # tests that are there for one file may take so many times --longest
 # how much of what tests draw at random
-AMOUNTS = {"ROWS": "5", "VEHICLES": "1", "MECHANISMS": "12", "COMPILED": "2", "MISTAKES": "60"}
+AMOUNTS = {"ROWS": "8", "VEHICLES": "1", "MECHANISMS": "12", "COMPILED": "2", "MISTAKES": "60"}
 
 Row = collections.namedtuple("Row", "key file line what text verdict test seconds")
 
 
 class Journal:
-    """Rows of a text file, which are only ever added or replaced."""
+    """Rows of a text file in the order of their keys, which are only ever added or replaced; several runs may do so."""
 
     def __init__(self, path):
         self.path, self.rows = path, {}
-        if os.path.exists(path):
-            with open(path) as file:
-                for line in file:
-                    if not line.startswith("#"):
-                        row = Row(*line.rstrip("\n").split("\t"))
-                        self.rows[row.key] = row
+        self.read()
+
+    def read(self):
+        if os.path.exists(self.path):
+            with open(self.path) as file:
+                rows = [Row(*line.rstrip("\n").split("\t")) for line in file if not line.startswith("#")]
+            self.rows = {row.key: row for row in rows}
 
     def add(self, row):
         """On the disk before anything else is done."""
-        self.rows[row.key] = row
-        with open(self.path + ".new", "w") as file:
-            file.write("# " + "\t".join(Row._fields) + "\n")
-            file.writelines("\t".join(each) + "\n" for each in self.rows.values())
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(self.path + ".new", self.path)
+        with open(self.path + ".lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            self.read()
+            self.rows[row.key] = row
+            with open(self.path + ".new", "w") as file:
+                file.write("# " + "\t".join(Row._fields) + "\n")
+                file.writelines("\t".join(self.rows[key]) + "\n" for key in sorted(self.rows))
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(self.path + ".new", self.path)
 
     def judged(self):
         return [row for row in self.rows.values() if row.verdict.split()[0] in (NOTICED, SURVIVED, OPEN)]
@@ -97,8 +104,10 @@ class Scratch:
             if os.path.exists(source):
                 self.copy(source, os.path.join(folder, name))
         self.stop_early()
-        self.environment = dict(os.environ, **AMOUNTS, BUILD="build", GICGEN_CACHE=os.path.join(folder, "cache"), LC_ALL="C")
-        os.makedirs(self.environment["GICGEN_CACHE"], mode=0o700, exist_ok=True)
+        self.environment = dict(os.environ, **AMOUNTS, BUILD="build", GICGEN_CACHE=os.path.join(folder, "cache"),
+                                WANTED=os.path.join(folder, "wanted"), LC_ALL="C")
+        for name in ("GICGEN_CACHE", "WANTED"):
+            os.makedirs(self.environment[name], mode=0o700, exist_ok=True)
         os.makedirs(self.path("equivalence"), exist_ok=True)
         if os.path.isdir("/usr/lib/ccache"):  # tests compile the same code again and again
             self.environment["PATH"] = "/usr/lib/ccache:" + self.environment["PATH"]
@@ -121,7 +130,7 @@ class Scratch:
 
     def stop_early(self):
         """A script of ours ends with its first failure."""
-        path = self.path("tests/checking.sh")
+        path = self.path("tests/lib/checking.sh")
         if os.path.exists(path):
             with open(path) as file:
                 text = file.read()
@@ -134,16 +143,19 @@ class Scratch:
 
         def limits():
             os.setsid()
-            if limit is not None:
-                resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 6))
+            resource.setrlimit(resource.RLIMIT_DATA, (MOST, MOST))
+            if limit is not None:  # later than what is looked at every second, which tells a hang
+                resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 5, int(limit) + 10))
         with open(self.path("output"), "w+", errors="replace") as output:
             process = subprocess.Popen(command, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                                        stdout=output, stderr=subprocess.STDOUT, preexec_fn=limits)
             begun, before, hang = time.time(), children_seconds(), False
             try:
                 while process.poll() is None and not hang:
-                    time.sleep(0.05)
-                    hang = limit is not None and (time.time() - begun > wall or group_seconds(process.pid) > limit)
+                    try:
+                        process.wait(1)
+                    except subprocess.TimeoutExpired:
+                        hang = limit is not None and (time.time() - begun > wall or group_seconds(process.pid) > limit)
             finally:  # with all that it left behind
                 try:
                     os.killpg(process.pid, signal.SIGKILL)
@@ -161,9 +173,9 @@ class Scratch:
 
     def programs(self, test):
         """What a test runs: make's targets."""
-        if not os.path.exists(self.path(f"tests/{test}.sh")):
+        if not os.path.exists(self.path(f"tests/system/{test}.sh")):
             return [f"build/check/{test}"]
-        script = f". tests/paths.sh; build=build; paths tests/{test}.sh"
+        script = f". tests/paths.sh; build=build; paths tests/system/{test}.sh"
         names = subprocess.run(["sh", "-c", script], cwd=self.folder, capture_output=True, text=True).stdout.split()
         ours = ("gicgen", "gicrun", "gicsweep", "gicbench")
         return ["build/" + os.path.basename(name) if os.path.basename(name) in ours
@@ -175,8 +187,8 @@ class Scratch:
         status, self.said = self.make(*programs) if programs else (0, "")
         if status:
             return "build"
-        script = os.path.exists(self.path(f"tests/{test}.sh"))
-        status, self.said = self.run(["sh", f"tests/{test}.sh", *programs] if script else programs, limit)
+        script = os.path.exists(self.path(f"tests/system/{test}.sh"))
+        status, self.said = self.run(["sh", f"tests/system/{test}.sh", *programs] if script else programs, limit)
         if status is None or -status in (signal.SIGXCPU, signal.SIGKILL):
             return "hang"
         counted = re.search(r"^[1-9]\d* passed, 0 failed$" if script else r"^\[       OK \]", self.said, re.M)
@@ -237,7 +249,8 @@ class Judge:
                 self.usual = {line.split()[0]: float(line.split()[1]) for line in file}
 
     def generated(self, folder):
-        """Code of all models in all ways, compiled: {name: (text, object)}; None where it does not compile."""
+        """Code of all models in all ways: {model and way: (text, path of its header, text of that)}; where gicgen refuses
+        them: (exit status, None, None)."""
         made = {}
         models = sorted(name for name in os.listdir(self.scratch.path("models")) if name.endswith(".veh"))
         out = self.scratch.path(folder)
@@ -248,10 +261,10 @@ class Judge:
                 name = os.path.join(out, f"{model[:-4]}{'_batch' if '--batch' in way else ''}.c")
                 status, _ = self.scratch.run(["build/gicgen", *way, "models/" + model, "-o", name], 60)
                 if status:
-                    made[model, i] = (str(status), None)
+                    made[model, i] = (str(status), None, None)
                     continue
-                with open(name) as file:
-                    made[model, i] = (file.read(), name)
+                with open(name) as file, open(name[:-1] + "h") as header:
+                    made[model, i] = (file.read(), name[:-1] + "h", header.read())
         return made
 
     def template_is_equivalent(self):
@@ -259,13 +272,14 @@ class Judge:
         new = self.generated("equivalence/new")
         changed = [key for key in self.base if self.base[key][0] != new[key][0]]
         for key in changed[:3]:
-            if not new[key][1]:
+            if not new[key][1] or not self.base[key][1]:
                 return False
             objects = []
-            for text in (self.base[key][0], new[key][0]):
-                name = os.path.join(os.path.dirname(new[key][1]), "code.c")
-                with open(name, "w") as file:
+            for text, header, declarations in (self.base[key], new[key]):
+                name = os.path.join(os.path.dirname(header), "code.c")
+                with open(name, "w") as file, open(header, "w") as other:
                     file.write(text)
+                    other.write(declarations)
                 status, said = self.scratch.run(["gcc", "-std=c99", "-O1", "-Iruntime", "-Wno-psabi", "-I" +
                                                  os.path.dirname(name), "-c", name, "-o", name[:-1] + "o"])
                 if status:
@@ -323,10 +337,14 @@ class Judge:
         verdict = SURVIVED
         for test, own in self.tests_for(name).items():
             known = test in self.usual
-            if known and not own and self.usual[test] > self.longest:
+            longest = self.longest * (OWN if own else 1)
+            if known and self.usual[test] > longest:
                 verdict = OPEN
                 continue
-            how = self.scratch.test(test, PATIENCE * self.usual[test] + self.grace if known else LONGEST)
+            how = self.scratch.test(test, PATIENCE * self.usual[test] + self.grace if known else min(LONGEST, longest))
+            if how == "hang" and not known and longest < LONGEST:  # perhaps it is just a long one
+                verdict, self.usual[test] = OPEN, LONGEST
+                continue
             if how:
                 return NOTICED + (" (hang)" if how == "hang" else ""), test
             if not known:
@@ -355,6 +373,8 @@ def main():
                         help="leave general tests that take more processor time for later: what none of the others notices is open")
     parser.add_argument("--grace", type=float, default=20, metavar="SECONDS",
                         help=f"of processor time, on top of {PATIENCE} times the usual, after which a test hangs (20)")
+    parser.add_argument("--part", default="1/1", metavar="K/N",
+                        help="of the draw, every N-th change from the K-th: for N runs at once, with a scratch folder each")
     parser.add_argument("--again", nargs="+", metavar="KEY", help="judge these rows of the journal once more; open, survived: all such")
     parser.add_argument("--table", action="store_true", help="print the journal as a table")
     parser.add_argument("--list", action="store_true", help="print the first changes of the draw, and judge none")
@@ -362,14 +382,15 @@ def main():
     journal = Journal(arguments.journal)
     if arguments.table:
         return table(journal)
-    names = [os.path.join(folder, name) for folder in ("generator", "runtime", "templates")
-             for name in sorted(os.listdir(os.path.join(arguments.root, folder)))]
+    names = sorted(os.path.relpath(os.path.join(place, name), arguments.root) for folder in ("generator", "runtime", "templates")
+                   for place, _, inside in os.walk(os.path.join(arguments.root, folder)) for name in inside)
     files = {}
     for name in names:
         if any(fnmatch.fnmatch(name, kind) for kind in KINDS) and fnmatch.fnmatch(name, arguments.only):
             with open(os.path.join(arguments.root, name)) as file:
                 files[name] = file.read()
-    drawn = sites.draw(files, arguments.seed)
+    part, parts = (int(number) for number in arguments.part.split("/"))
+    drawn = sites.draw(files, arguments.seed)[part - 1::parts]
     if arguments.list:
         for key, name, line, site in drawn[:arguments.count]:
             print(f"{key} {name}:{line}: {site.what}")
@@ -383,6 +404,7 @@ def main():
         if word in again:
             again += [row.key for row in journal.rows.values() if row.verdict == verdict]
     for key, name, line, site in drawn:
+        journal.read()
         if key not in again if again else key in journal.rows:
             continue
         if not again and len(journal.judged()) >= arguments.count:

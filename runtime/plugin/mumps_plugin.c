@@ -7,12 +7,12 @@
  * the default ones. Two fifths of what remains goes into bookkeeping that MUMPS 5.5 does at every call whatever the
  * settings: it adds up how large a file of its data would be. */
 #define _DEFAULT_SOURCE /* sigaltstack */
-#include "../mumps.h"
+#include "compare/mumps.h"
 
 #include <dmumps_c.h>
-#include <setjmp.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { JOB_OPEN = -1, JOB_CLOSE = -2, JOB_ANALYSE = 1, JOB_FACTOR_AND_SOLVE = 5 };
 enum { SYMMETRIC_INDEFINITE = 2, HOST_WORKS = 1, SEQUENTIAL = -987654 };
@@ -23,39 +23,41 @@ enum { NO_ROOM_FOR_INTEGERS = -8, NO_ROOM_FOR_NUMBERS = -9, SINGULAR = -10 };
 static const double LEAST_PIVOT = 1e-13;
 
 /* Numbered from 1, as in the manual. */
-#define ICNTL(i) icntl[(i)-1]
-#define CNTL(i) cntl[(i)-1]
-#define INFOG(i) infog[(i)-1]
+#define ICNTL(i) icntl[-1 + (i)]
+#define CNTL(i) cntl[-1 + (i)]
+#define INFOG(i) infog[-1 + (i)]
 
-/* Where this thread goes on if MUMPS cannot, null outside of it. On allocation failure MUMPS follows null pointers,
- * calls mpi_abort_, or recurses in Fortran's error handler until the stack overflows: so the handler of the signal
- * needs a stack of its own. Initial-exec: reading the pointer in a handler must not allocate. */
-static _Thread_local sigjmp_buf *way_out __attribute__((tls_model("initial-exec")));
-static _Thread_local char *stack_of_handler; /* stays as long as the thread */
-static struct sigaction handler_before;
+/* On allocation failure MUMPS follows null pointers, calls mpi_abort_, or recurses in Fortran's error handler until the
+ * stack overflows. It can do nothing then but end, and neither can the program whose engine it is part of: it ends with
+ * a message, from a signal handler with a stack of its own. By exit(), for the program removes its unfinished files
+ * then; what was interrupted may hold a lock that exit() waits for, so that an alarm ends the program after two
+ * seconds. */
+static volatile sig_atomic_t in_mumps, closing; /* closing: all results are there, the program's end comes early */
 
-static void fallen(int signal)
+static void give_up(int number)
 {
-    if (!way_out)
-        sigaction(signal, &handler_before, NULL); /* not in MUMPS: it falls again, as it would have */
-    else
-        siglongjmp(*way_out, 1);
+    static const char message[] = "gcp2: error: MUMPS gave up\n  remedy: is there memory enough?\n";
+    static const char late[] = "gcp2: MUMPS gave up after the last result, for want of memory\n";
+    if (!in_mumps) {
+        signal(number, SIG_DFL); /* it falls again, and ends the program */
+        return;
+    }
+    in_mumps = 0;
+    (void)!(closing ? write(STDERR_FILENO, late, sizeof late - 1) : write(STDERR_FILENO, message, sizeof message - 1));
+    sigset_t alarms;
+    sigemptyset(&alarms);
+    sigaddset(&alarms, SIGALRM);
+    signal(SIGALRM, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &alarms, NULL);
+    alarm(2);
+    exit(closing ? 0 : 1);
 }
 
-/* On the thread that is going to call MUMPS. False: no memory. */
-static bool watch_falls(void)
+static void watch_falls(void)
 {
-    enum { SIZE = 16384 };
-    struct sigaction action = {.sa_handler = fallen, .sa_flags = SA_ONSTACK}, now;
-    if (!stack_of_handler)
-        stack_of_handler = malloc(SIZE);
-    if (!stack_of_handler)
-        return false;
-    sigaltstack(&(stack_t){.ss_sp = stack_of_handler, .ss_size = SIZE}, NULL);
-    sigaction(SIGSEGV, NULL, &now);
-    if (now.sa_handler != fallen)
-        sigaction(SIGSEGV, &action, &handler_before);
-    return true;
+    static char stack_of_handler[16384];
+    sigaltstack(&(stack_t){.ss_sp = stack_of_handler, .ss_size = sizeof stack_of_handler}, NULL);
+    sigaction(SIGSEGV, &(struct sigaction){.sa_handler = give_up, .sa_flags = SA_ONSTACK}, NULL);
 }
 
 void mpi_abort_(const int *communicator, const int *code, int *error);
@@ -64,35 +66,20 @@ void mpi_abort_(const int *communicator, const int *code, int *error);
 void mpi_abort_(const int *communicator, const int *code, int *error)
 {
     (void)communicator, (void)code, (void)error;
-    siglongjmp(*way_out, 1);
+    give_up(SIGSEGV);
 }
 
-/* Call MUMPS. False if it could not go on: nothing can be asked of it any more. */
-static bool call(DMUMPS_STRUC_C *mumps, int job)
-{
-    sigjmp_buf here;
-    mumps->job = job;
-    if (sigsetjmp(here, 1)) {
-        way_out = NULL;
-        return false;
-    }
-    way_out = &here;
-    dmumps_c(mumps);
-    way_out = NULL;
-    return true;
-}
-
-/* Call MUMPS, with more room where that is missing. False if that failed; *error is what it says. */
+/* Call MUMPS, with more room where that is missing. False if that failed; error is what it says. */
 static bool run(DMUMPS_STRUC_C *mumps, int job, int error[2])
 {
-    error[0] = error[1] = 0;
-    bool whole = call(mumps, job);
-    while (whole && (mumps->INFOG(1) == NO_ROOM_FOR_INTEGERS || mumps->INFOG(1) == NO_ROOM_FOR_NUMBERS)) {
+    mumps->job = job;
+    in_mumps = 1;
+    for (dmumps_c(mumps); mumps->INFOG(1) == NO_ROOM_FOR_INTEGERS || mumps->INFOG(1) == NO_ROOM_FOR_NUMBERS;
+         dmumps_c(mumps)) {
         mumps->ICNTL(14) *= 2;
-        whole = call(mumps, job);
+        mumps->job = job;
     }
-    if (!whole)
-        return false;
+    in_mumps = 0;
     error[0] = mumps->INFOG(1);
     error[1] = mumps->INFOG(2);
     return error[0] >= 0 || error[0] == SINGULAR;
@@ -101,9 +88,10 @@ static bool run(DMUMPS_STRUC_C *mumps, int job, int error[2])
 static void *plugin_open(const MumpsSystem *system, int error[2])
 {
     error[0] = error[1] = 0;
-    DMUMPS_STRUC_C *mumps = watch_falls() ? calloc(1, sizeof *mumps) : NULL;
+    DMUMPS_STRUC_C *mumps = calloc(1, sizeof *mumps);
     if (!mumps)
         return NULL;
+    watch_falls();
     mumps->par = HOST_WORKS;
     mumps->sym = SYMMETRIC_INDEFINITE;
     mumps->comm_fortran = SEQUENTIAL;
@@ -144,7 +132,10 @@ static int plugin_solve(void *opened, int error[2])
 
 static void plugin_close(void *opened)
 {
-    call(opened, JOB_CLOSE); /* if that fails, results are there all the same */
+    int error[2];
+    closing = 1;
+    run(opened, JOB_CLOSE, error); /* if that fails, results are there all the same */
+    closing = 0;
     free(opened);
 }
 

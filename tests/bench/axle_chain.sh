@@ -66,7 +66,7 @@ printf '%6s %10s %8s %12s %8s %12s %8s %12s %8s\n' bodies 'gicgen [s]' ms/body o
     'rhs [ns]' /body
 [ $# -gt 0 ] || set -- 10 20 40 60
 for bodies in "$@"; do
-    sh "$root/tests/axle_chain.sh" "$bodies" >"$work/chain.veh" || exit 1
+    sh "$root/tests/lib/axle_chain.sh" "$bodies" >"$work/chain.veh" || exit 1
     generate=$(shortest "$gicgen" "$work/chain.veh" -o "$work/chain.c")
     operations=$(awk '/all together/ { print $4 + $5 + $6 + $7 + $8 }' "$work/chain.h")
     compile=$(shortest compile)

@@ -11,7 +11,7 @@ shift 2
 others() { awk '{ split($4, n, "/"); print n[1] - 1 }' /proc/loadavg 2>/dev/null || echo 0; }
 
 if [ "$what" = begin ]; then
-    echo "parts: $*; all of them took 15 minutes on a busy machine with QUICK=1, and take a multiple of that without" >&2
+    echo "parts: $*; all of them took 16 minutes on a busy machine with QUICK=1, and take a multiple of that without" >&2
     [ -s "$file" ] && for part in "$@"; do sed -n "s/^$part,\([0-9]*\),.*/$part took \1 s last time/p" "$file" >&2; done
     exit 0
 fi

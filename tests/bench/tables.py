@@ -167,6 +167,32 @@ def scenes(folder):
     return head, out, 'scenes'
 
 
+def precision(folder):
+    """A row a scene: AB3 and RK4 at its own step, and the least time for two errors. `below ..`: 0 in comparisons."""
+    out = []
+    for number in range(1, 100):
+        rows = table(folder, 'precision', 'precision%d.csv' % number)
+        if not rows:
+            break
+        good = [r for r in rows if r['CPU [ms]'][0] != '-']
+        step = rows[0]['step or tolerance'][0]
+
+        def at_step(way):
+            found = [r for r in good if r['way'][0].startswith(way) and r['step or tolerance'][0] == step]
+            return '%s m, %s ms' % (short(found[0]['error [m]'][0]), short(found[0]['CPU [ms]'][0])) if found else '-'
+
+        def least(most):
+            found = [r for r in good if float(r['error [m]'][0].replace('below ', '')) <= most]
+            best = min(found, key=lambda r: float(r['CPU [ms]'][0]), default=None)
+            return best and '%s, %s: %s ms' % (best['way'][0], best['step or tolerance'][0], short(best['CPU [ms]'][0])) or 'none'
+
+        dual = [r['way'][0] for r in rows if 'dual' in r['way'][0]][:1] or ['ab3, one rate']
+        out.append(['`%s`, %s' % (rows[0]['scene'][0].replace('.scene', ''), step), at_step(dual[0].split(' 1:')[0]),
+                    at_step('rk4'), least(1e-3), least(1e-5)])
+    head = ['scene, its step', 'AB3, dual rate', 'RK4', 'least time within 1 mm', 'within 0.01 mm']
+    return (head, out, 'precision') if out else None
+
+
 def parts(folder):
     name = os.path.join(folder, 'parts.csv')
     rows = table(folder, 'parts.csv') if os.path.exists(name) else None
@@ -176,7 +202,7 @@ def parts(folder):
     return ['part', 's', 'others at work'], out, None
 
 
-MAKERS = {f.__name__: f for f in (headline, drive, compare, start, rhs, batch, scenes, parts)}
+MAKERS = {f.__name__: f for f in (headline, drive, compare, start, rhs, batch, scenes, precision, parts)}
 
 
 def said(folder, where):

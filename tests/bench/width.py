@@ -5,7 +5,7 @@
 import os
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'animate'))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'data', 'animate'))
 from chromium import Browser, note  # noqa: E402
 
 # Cells that begin with a digit or a sign and have more than one line of text.

@@ -2,9 +2,17 @@
  * What each reader gets, and what must hold of what it makes of it: see fuzz.c. */
 #include "targets.h"
 
-#include "generate.h"
-#include "gicrun.h"
-#include "read.h"
+#include "base/base.h"
+#include "emit/emit.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "read/reader.h"
+#include "scene/scene.h"
+#include "sequence/sequence.h"
+#include "subset/subset.h"
+#include "vehicle/vehicle.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -126,7 +134,7 @@ static const Model *scene_model[2];
 static void prepare_scene(void)
 {
     static const char *const path[] = {"models/hmmwv_vehicle.veh", "models/quarter_car.veh"};
-    /* with no other models beside it, which would be read in child processes for messages (scene_fit.c) */
+    /* with no other models beside it, which would be read in child processes for messages (scene/fit.c) */
     static const Source alone = {.path = "/proc/self/model.veh"};
     for (int i = 0; i < 2; ++i) {
         const Sequence *sequence;
@@ -160,7 +168,8 @@ static void read_scene(const Bytes *input)
     check(scene->outputs > 0 && scene->duration > 0, "times of a scene");
     if (scene->road)
         check_road(scene->road);
-    double *value = pool_alloc(pool, sizeof *value * (size_t)(model->inputs + 1));
+    /* coordinates that the scene drives come after the inputs of the model, three numbers each */
+    double *value = pool_alloc(pool, sizeof *value * (size_t)(model->inputs + 3 * scene->driven + 1));
     for (double time = 0; time < 3; time += 0.3)
         scene_inputs((void *)(uintptr_t)scene, 0, time, value);
     scene_next_kink(scene, 0.5);

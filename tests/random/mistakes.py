@@ -2,7 +2,7 @@
 """mistakes.py GICGEN RANDOM_VEHICLE TIRE COUNT [KIND]: makes COUNT times one mistake in a random vehicle
 (random_vehicle --rich, tires like the file TIRE), of all kinds of broken.py or of one, and looks at the answer:
 exit status 1, one message at the line where the mistake stands, with the culprit's name and a remedy, and no
-output. A remedy that tests/remedies.py can apply as it is printed must end that message. Prints what is not so,
+output. A remedy that tests/tools/remedies.py can apply as it is printed must end that message. Prints what is not so,
 and how many kinds there were. KEEP=folder: files whose answer is wrong are left there."""
 import os
 import random
@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(__file__))
-sys.path.insert(1, os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(__file__))), "tools"))
 import broken  # noqa: E402
 import remedies  # noqa: E402
 

@@ -95,11 +95,11 @@ double subset_condition(const Solver *solver, const Subset *subset);
 double worst_condition(const Solver *solver);
 /* Magnitude of the determinant of the same Jacobian. */
 double subset_determinant(const Solver *solver, const Subset *subset);
-/* What is left across its axis, and on the right side, of the direction that tells an angle, of the angle for which that
- * is least: 1 at the design, 0 where it tells none. Rows are evaluated. */
+/* What is left across its axis, and on the right side, of the direction that tells an angle, of the angle for which
+ * that is least: 1 at the design, 0 where it tells none. Rows are evaluated. */
 double angles_told(const Solver *solver);
-/* Of way_condition and way_determinant (the least of angles_told, too): the present configuration is the design, as far as bodies stand relative to the
- * base; it is on the way. Rows are evaluated. */
+/* Of way_condition and way_determinant (the least of angles_told, too): the present configuration is the design, as far
+ * as bodies stand relative to the base; it is on the way. Rows are evaluated. */
 void begin_way(Solver *solver);
 void go_on(Solver *solver);
 

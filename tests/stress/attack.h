@@ -3,7 +3,12 @@
 #ifndef ATTACK_H
 #define ATTACK_H
 
-#include "engine.h"
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "run/engines.h"
+#include "subset/subset.h"
 
 #include <math.h>
 #include <stdlib.h>

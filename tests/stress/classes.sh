@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# classes.sh GICGEN GICRUN STATES REFERENCE_LONG AGREE: mechanisms of each class (tests/classes) on a table that turns on
+# classes.sh GICGEN GICRUN STATES REFERENCE_LONG AGREE: mechanisms of each class (tests/data/classes) on a table that turns on
 # the ground and on a base that moves, at 10,000 states (short: 100) of each, quarter, half and many turns among them: by
 # closed forms, by Newton's iterations and by the augmented form against extended precision, to what FORMAT.md section 14
 # promises. No state is refused whose condition is below 100 and whose determinant is above a twentieth of the design's.
@@ -40,7 +40,7 @@ judge() {
     echo "classes | $1 | $tried | $results | $((tried - results)) | $worst of all terms | ${found:-ok}"
     [ -z "$found" ] || failed=1
 }
-for file in "$(dirname "$0")"/../classes/*.veh; do
+for file in "$(dirname "$0")"/../data/classes/*.veh; do
     name=$(basename "$file" .veh)
     judge "$name" "$file" || failed=1
     moving "$file" >"$work/$name.veh"

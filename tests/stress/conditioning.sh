@@ -58,12 +58,12 @@ fast='for (k in c) if (k ~ /^omega/) $c[k] *= 500'
 # shellcheck disable=SC2016
 away='$c["r.x"] += 1e6; $c["r.y"] -= 1e6'
 for model in quarter_car hmmwv; do
-    accurate $model "as it is" 1e-12 ""
-    accurate $model "length 1 mm" 1e-10 "" length=3e-4
-    accurate $model "length 100 m" 1e-12 "" length=30
-    accurate $model "arms of 1e-8 their mass" 1e-12 "" "body=*a*r*m*:1e-8" "body=lca_*:1e-8"
-    accurate $model "wheels of 1e8 their mass" 1e-12 "" "body=wheel*:1e8"
-    accurate $model "springs of 1e9 N/m" 1e-12 "" stiffness=1e9
+    accurate "$model" "as it is" 1e-12 ""
+    accurate "$model" "length 1 mm" 1e-10 "" length=3e-4
+    accurate "$model" "length 100 m" 1e-12 "" length=30
+    accurate "$model" "arms of 1e-8 their mass" 1e-12 "" "body=*a*r*m*:1e-8" "body=lca_*:1e-8"
+    accurate "$model" "wheels of 1e8 their mass" 1e-12 "" "body=wheel*:1e8"
+    accurate "$model" "springs of 1e9 N/m" 1e-12 "" stiffness=1e9
 done
 accurate hmmwv "1e6 m from the origin" 1e-9 "$away"
 accurate hmmwv "turning at 1e3 rad/s" 1e-12 "$fast"

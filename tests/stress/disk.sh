@@ -94,9 +94,9 @@ for way in $WAYS; do
         old
         status=$(
             trap '' XFSZ
-            ulimit -f $size
+            ulimit -f "$size"
             writes place/old "$way" 2>/dev/null
-            echo $status
+            echo "$status"
         )
         # under the limit err itself can't be written to
         [ "$status" = 1 ] && echo 'error: ' >err
@@ -140,7 +140,7 @@ row "folders that can't be written"
 for signal in TERM INT KILL; do
     begin
     i=0
-    while [ $i -lt $times ]; do
+    while [ $i -lt "$times" ]; do
         i=$((i + 1))
         old
         # whoever runs this in the background may have had SIGINT ignored, which is inherited

@@ -4,8 +4,12 @@
  * must end in a status that leaves state, rate, time, history and results as they were, bit for bit, or in finite
  * results; and with the number taken back the instance must go on as one that never saw it. Prints a row of the table
  * of attacks. */
-#include "../../runtime/engine.h"
-#include "gic_road.h"
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "run/engines.h"
 
 #include <float.h>
 #include <limits.h>

@@ -8,7 +8,7 @@ entry=$1
 entry_batch=$2
 cd "$(dirname "$0")/../.." || exit 1
 engines=tcc
-models=$(echo models/*.veh tests/tuning/car.veh tests/tuning/hand.veh tests/laws/cart.veh tests/powertrain/rig.veh)
+models=$(echo models/*.veh tests/data/tuning/car.veh tests/data/tuning/hand.veh tests/data/laws/cart.veh tests/data/powertrain/rig.veh)
 many=models/quarter_car.veh
 # of the engines that compile or run for long, few models
 some="gcp1 lanes"
@@ -16,7 +16,7 @@ if [ "$STRESS" != short ]; then
     engines="tcc cc tape gic gcp1 gcp2 lanes"
     some=
     many="$many models/hmmwv.veh models/hmmwv14.veh models/five_link.veh models/solid_axle.veh models/trailing_arm.veh"
-    many="$many tests/tuning/car.veh"
+    many="$many tests/data/tuning/car.veh"
 fi
 found=0
 for engine in $engines; do

@@ -3,6 +3,10 @@
 #ifndef FOLLOW_H
 #define FOLLOW_H
 
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+
 #include "attack.h"
 
 /* An engine's model with the instances that follow. */

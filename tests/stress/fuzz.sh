@@ -23,10 +23,10 @@ trap 'rm -rf "$work"' EXIT
 seeds() {
     case $1 in
     veh)
-        ls models/*.veh models/parts/*.veh tests/bad/*.veh tests/laws/*.veh tests/elements/*.veh
+        ls models/*.veh models/parts/*.veh tests/data/mistakes/*.veh tests/data/laws/*.veh tests/data/elements/*.veh
         ls "$work"/random/*.veh
         ;;
-    tir) ls models/tires/*.tir tests/tires/*.tir ;;
+    tir) ls models/tires/*.tir tests/data/tires/*.tir ;;
     scene) ls models/scenes/*.scene ;;
     esac
     ls -d tests/fuzz/seeds/"$1"/*

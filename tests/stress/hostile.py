@@ -64,7 +64,7 @@ veh("many_anchors", "x: [" + many(1001, "&a# 1, ") + "1]", "more than 1000 ancho
 bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 9) + "]\n" for i in range(1, 20))
 veh("alias_bomb", "gicgen: 1\n" + bomb, "aliases written out")
 veh("alias_tables", HEAD + "tables:\n  t0_l: &t {x: [%s], y: [%s]}\n" % (",".join(map(str, range(10000))), "1," * 9999 + "1") + "".join(f"  t{i}_l: *t\n" for i in range(1, 5000)), "aliases written out")
-veh("alias_cycle", "x: &a [1, *a]", "stands inside the value it names")
+veh("alias_cycle", "x: &a [1, *a]", "is inside the value it names")
 
 # formulas
 veh("formula_sum", HEAD + LAW % "+".join(["w"] * 1000000), "more than 10000 operations")

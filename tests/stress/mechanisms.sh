@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG GICSWEEP SINGLE: random mechanisms with numbers that people write
-# against quad precision (tests/mechanisms.sh), 200,000 (short: 20) of them from the seed 10,001 on, in parts of 200 on
+# against quad precision (tests/lib/mechanisms.sh), 200,000 (short: 20) of them from the seed 10,001 on, in parts of 200 on
 # all processors; one in 400 goes through a C compiler, which takes longer than all else. That takes hours: after SECONDS_EACH (6000) no new part is begun, and the next call goes on with those
 # that are missing. What parts found stays in $BUILD/stress/mechanisms/; remove that folder to begin anew.
 if [ "$STRESS" = short ]; then all=${MECHANISMS:-20} part=10; else all=${MECHANISMS:-200000} part=200; fi
@@ -18,7 +18,7 @@ worker() {
     first=10001
     while [ $first -le $((10000 + all)) ] && [ "$(date +%s)" -lt $until ]; do
         if [ ! -f "$folder/$first" ] && mkdir "$folder/$first.begun" 2>/dev/null; then
-            FIRST=$first LAST=$((first + part - 1)) sh "$here/../mechanisms.sh" "$@" >"$folder/$first.begun/found" 2>&1 &&
+            FIRST=$first LAST=$((first + part - 1)) sh "$here/../lib/mechanisms.sh" "$@" >"$folder/$first.begun/found" 2>&1 &&
                 mv "$folder/$first.begun/found" "$folder/$first"
             rm -rf "$folder/$first.begun"
         fi

@@ -140,7 +140,7 @@ attack "gicgen --graph" "$gicgen" --graph results.dot "$models/hmmwv_tires.veh"
 engines="tape gic tcc gcp2"
 [ "$STRESS" = short ] || engines="$engines gcp1"
 for engine in $engines; do
-    attack "gicrun $engine" "$gicrun" -q --engine $engine "$models/hmmwv_tires.veh" short.scene -o results.csv
+    attack "gicrun $engine" "$gicrun" -q --engine "$engine" "$models/hmmwv_tires.veh" short.scene -o results.csv
 done
 attack "gicrun --equilibrium" "$gicrun" -q --engine tape --equilibrium "$models/hmmwv_tires.veh" -o results.csv
 attack "gicrun --modes" "$gicrun" -q --engine tape --modes "$models/quarter_car.veh" -o results.csv

@@ -13,6 +13,14 @@
  * difference of accelerations; results that are no numbers, refusals after which the last state is not found again;
  * kept states that small pieces lead away from, as generated code and as gic go, and those that either does not reach.
  */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "subset/subset.h"
+#include "vehicle/vehicle.h"
+
 #include "follow.h"
 
 static const char usage[] = "usage: near_singular MODEL --count N --seed S --keep K -o FILE [--recovery WAY]\n";

@@ -73,7 +73,7 @@ sweep solid_axle axle '' 'heavy axle' --engine tcc
 if [ "$STRESS" != short ]; then
     sweep trailing_arm 'arm*' '' 'heavy arms, in lanes' --engine cc --lanes 4
     sweep solid_axle axle '' 'heavy axle, interpreted' --engine tape
-    # masses that differ by more are refused by gicgen (tests/test_pivots.sh)
+    # masses that differ by more are refused by gicgen (tests/system/test_pivots.sh)
     all_powers=$powers powers='0 1 2 3 4 5 6'
     sweep trailing_arm 'arm*' '' 'heavy arms, augmented' --engine tcc --solve augmented
     sweep solid_axle axle '' 'heavy axle, augmented' --engine tcc --solve augmented

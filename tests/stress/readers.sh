@@ -38,6 +38,7 @@ for reader in veh scene; do
     while IFS='|' read -r _ file expected says; do
         start=$(date +%s%N)
         (
+            # shellcheck disable=SC3045  # dash and bash have it
             ulimit -v 3000000
             if [ $reader = veh ]; then
                 exec timeout 60 "$gicgen" --dump-model "$file"

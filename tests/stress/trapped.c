@@ -2,7 +2,16 @@
  * trapped MODEL SCENE SECONDS: the beginning of a scene by generated code, with outputs, poses and self-tests every ten
  * steps, while invalid operations, divisions by zero and overflows end the program. */
 #define _GNU_SOURCE
-#include "../../runtime/gicrun.h"
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "run/engines.h"
+#include "run/run.h"
+#include "run/variable_step.h"
+#include "scene/scene.h"
+#include "subset/subset.h"
 
 #include <fenv.h>
 #include <stdio.h>

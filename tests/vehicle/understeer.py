@@ -5,7 +5,7 @@
 #
 # An axle of static load W takes W a / g of a steady bend with the lateral acceleration a; its two tires, of stiffness C
 # together, run there at a slip angle of (W / C) a / g. The front axle's less the rear axle's is the understeer, in rad
-# a g. Loads are those of `gicrun --equilibrium`; stiffnesses are differences of the force as tests/tires/pac2002.py has
+# a g. Loads are those of `gicrun --equilibrium`; stiffnesses are differences of the force as tests/data/tires/pac2002.py has
 # it, which shares nothing with the generator.
 import csv
 import math
@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 gicrun, models, work = sys.argv[1:]
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'tires'))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'data', 'tires'))
 import pac2002  # noqa: E402
 
 GRAVITY, WHEELBASE, RACK_PER_ANGLE, CHASSIS_MASS, OUTPUT_STEP = 9.81, 3.302, -0.142, 2086.52, 0.06

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * For attacks on compilers, built with a model's code: -DMODEL=hmmwv -DHEADER='"hmmwv.h"'. Reads states as `gicrun
- * --eval` does, on standard input, and prints the columns of it that tests/agree.c compares: accelerations and poses.
- * In either precision, and without anything of ours but the code on trial. */
+ * --eval` does, on standard input, and prints the columns of it that tests/tools/agree.c compares: accelerations and
+ * poses. In either precision, and without anything of ours but the code on trial. */
 #include HEADER
 
 #include <stdio.h>

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * emit: blocks and templates become C. */
+#ifndef EMIT_EMIT_H
+#define EMIT_EMIT_H
+
+#include "base/base.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "vehicle/vehicle.h"
+
+/* ---- block_text.c: blocks as C text */
+
+/* Constants of a class in the order of their slots in k[]. */
+typedef struct Constants {
+    int count;
+    Ex *e;
+} Constants;
+
+/* How the text looks. No style changes the order of operations: results are the same to the last bit. */
+typedef struct Style {
+    int leaves;           /* in one expression at most, a function's name counted as one: also bounds its nesting */
+    bool doubles;         /* numbers are plain: 0.5; else of either type: R(0.5) */
+    bool whole_self_test; /* else it measures constraints alone */
+    bool lanes; /* numbers are vectors with one vehicle a lane: a check that fails concerns its lanes, and goes on */
+    int width;  /* with `lanes`: they are vectors of so many, with one subset a lane; 0: with one vehicle a lane */
+    const int *known_stride; /* [knowns] with a width: numbers from one number of a known to the next, each a row of it;
+                              * negative: one body is the known of all lanes */
+    bool lane_constants;     /* with `lanes`: constants of members are vectors too, not only numbers of all lanes */
+    const struct Naming *naming; /* indices as enumerators, and temporaries with names; NULL: numbers alone */
+    const char *prefix;          /* of the names of functions and tables that the file defines; NULL: none */
+} Style;
+
+extern const Style style_readable, style_direct, style_lanes;
+
+/* The type of a number. */
+const char *style_real(const Style *style);
+
+/* The statements of a block, each line led by `indent` spaces: temporaries in depth-first order from the results, or as
+ * expression/schedule.c orders them, checks as soon as their values are there, stores at the end (a target may be read
+ * before). Constants met on the way get slots. */
+void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
+/* What its checks are about, as far as they are, in order: {status, subset, number of the state}, */
+void emit_abouts(Text *out, const Block *block, int indent);
+
+/* ---- template.c: fixed text with insertion points */
+
+/* Files built into the program: templates and the freestanding runtime. Ends with name NULL. */
+typedef struct Embedded {
+    const char *name, *bytes;
+    size_t size;
+} Embedded;
+
+extern const Embedded embedded[];
+
+/* Where a template's line is nothing but `@name@` in a comment (of C or of HTML), `write` prints what belongs there,
+ * with that line's indent. */
+typedef struct Insertion {
+    const char *name;
+    void (*write)(void *context, Text *out, int indent);
+} Insertion;
+
+/* The insertion points of some templates. */
+typedef struct Insertions {
+    const char *const *template;      /* their names; ends with NULL */
+    const Insertion *point;           /* ends with name NULL */
+    const struct Insertions *general; /* serves the names that `point` does not have; NULL: an error */
+} Insertions;
+
+/* Expand the template `name` (from the folder `templates`, or built in where that is NULL): every word PREFIX becomes
+ * `prefix`, UPPER the same in capitals, CLASS becomes `class`. Ends with a message at the line of an unknown point. */
+void template_expand(Pool *pool, Text *out, const char *templates, const char *name, const char *prefix,
+                     const char *class, const Insertions *points, void *context);
+/* Check all templates of some tables, the list of which ends with NULL: every point of a template is known, and every
+ * point of a table stands in one of its templates. Ends with a message otherwise. */
+void templates_check(Pool *pool, const char *templates, const Insertions *const *points);
+
+/* ---- model_file.c: all of it */
+
+/* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
+ * above. */
+void generate(Pool *pool, const Formulation *f, const Style *style, const char *templates, const char *header, Text *c,
+              Text *h);
+
+/* ---- batch.c: many vehicles at once */
+
+/* So many vehicles, `lanes` of them in each vector. */
+typedef struct Batch {
+    int vehicles, lanes;
+} Batch;
+
+/* What the model has that can't be done in lanes, NULL: nothing. */
+const char *batch_missing(const Formulation *formulation);
+/* The C for many vehicles, and its header, which includes `model_header`, that of one vehicle. */
+void generate_batch(Pool *pool, const Formulation *formulation, const Batch *batch, const char *templates,
+                    const char *model_header, const char *header, Text *c, Text *h);
+
+/* ---- example.c: a program to start from */
+
+/* A C program of less than 60 lines that includes `header` and runs the model for two seconds. */
+void example_write(Pool *pool, const Model *model, const char *templates, const char *header, Text *out);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ * What generated files say about the one scene that they are for. */
+#include "base/base.h"
+#include "emit/emit.h"
+#include "emit/emit_private.h"
+#include "model/model.h"
+#include "specialize/specialize.h"
+#include "vehicle/vehicle.h"
+
+#include <string.h>
+
+/* Conditions on geometric parameters stand in front of assumptions. */
+static int first_assumption(const Generation *g)
+{
+    return g->model->tuning ? g->model->tuning->conditions : 0;
+}
+
+int conditions(const Generation *g)
+{
+    return first_assumption(g) + (g->formulation->narrowing ? g->formulation->narrowing->assumptions : 0);
+}
+
+void write_assumption_texts(Generation *g, Text *out)
+{
+    const Narrowing *narrowing = g->formulation->narrowing;
+    for (int i = 0; narrowing && i < narrowing->assumptions; ++i)
+        line(out, 4, "%s,", quoted(g->pool, narrowing->assumption[i].text));
+}
+
+void write_narrowing(Generation *g, Text *out)
+{
+    const Narrowing *narrowing = g->formulation->narrowing;
+    if (!narrowing)
+        return;
+    text_print(out,
+               " * For the scene %s alone. Other calls end with GIC_ERROR_ASSUMPTION; this is taken for granted:\n",
+               narrowing->facts->scene);
+    for (int i = 0; i < narrowing->assumptions; ++i)
+        text_print(out, " *   %s\n", narrowing->assumption[i].text);
+    text_print(out, " *\n");
+    if (!narrowing->account)
+        return;
+    text_print(out, " * What that saves, one after the other: operations of a right-hand side and of outputs.\n");
+    for (int i = 0; i < narrowing->account->rows; ++i) {
+        const AccountRow *row = &narrowing->account->row[i];
+        text_print(out, " *   %-48s %6d %6d  %s\n", row->what, count_sum(row->rhs), count_sum(row->outputs), row->why);
+    }
+    text_print(out, " *\n");
+}
+
+static const char *const state_name[] = {[ABOUT_STATE] = "y", [ABOUT_FAST] = "fast"};
+
+typedef struct Checks {
+    const Generation *g;
+    AssumptionAbout about;
+} Checks;
+
+static void write_checks(void *context, Text *out, int indent)
+{
+    const Checks *checks = context;
+    const Narrowing *narrowing = checks->g->formulation->narrowing;
+    for (int i = 0; i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == checks->about) {
+            line(out, indent, "if (%s)", narrowing->assumption[i].broken);
+            line(out, indent + 4, "broken = %d;", first_assumption(checks->g) + i);
+        }
+}
+
+static const Insertion assumption_point[] = {{"checks", write_checks}, {NULL, NULL}};
+
+const Insertions assumption_points = {(const char *const[]){"assume.c.in", "assume_state.c.in", NULL}, assumption_point,
+                                      NULL};
+
+/* Does anything that is taken for granted concern that? */
+static bool assumes(const Generation *g, AssumptionAbout about)
+{
+    const Narrowing *narrowing = g->formulation->narrowing;
+    for (int i = 0; narrowing && i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == about)
+            return true;
+    return false;
+}
+
+/* The road of two sides, and its assumption's place among the texts. */
+static void write_across(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const Narrowing *narrowing = g->formulation->narrowing;
+    for (int i = 0; i < narrowing->assumptions; ++i)
+        if (narrowing->assumption[i].about == ABOUT_ROAD)
+            line(out, indent, "((%s *)self)->head.condition = %d;", g->model->name, first_assumption(g) + i);
+}
+
+static const Insertion road_point[] = {{"condition", write_across}, {NULL, NULL}};
+
+const Insertions road_points = {(const char *const[]){"road_across.c.in", "road.c.in", NULL}, road_point, NULL};
+
+void write_road(Generation *g, Text *out)
+{
+    const char *name = assumes(g, ABOUT_ROAD) ? "road_across.c.in" : "road.c.in";
+    template_expand(g->pool, out, g->templates, name, g->model->name, NULL, &road_points, g);
+}
+
+const char *friction_template(const Generation *g)
+{
+    return assumes(g, ABOUT_ROAD) ? "friction_across.c.in" : "friction.c.in";
+}
+
+void write_assumptions(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    Checks checks = {g, ABOUT_CALLER};
+    if (assumes(g, ABOUT_CALLER))
+        template_expand(g->pool, out, g->templates, "assume.c.in", g->model->name, NULL, &assumption_points, &checks);
+    for (checks.about = ABOUT_STATE; checks.about <= ABOUT_FAST; ++checks.about)
+        if (assumes(g, checks.about))
+            template_expand(g->pool, out, g->templates, "assume_state.c.in", g->model->name, state_name[checks.about],
+                            &assumption_points, &checks);
+}
+
+void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about)
+{
+    if (!assumes(g, about))
+        return;
+    const char *name = state_name[about];
+    if (about == ABOUT_CALLER)
+        line(out, indent, "if (%s_assume(self) != GIC_OK)", g->model->name);
+    else
+        line(out, indent, "if (%s_assume_%s(self, %s) != GIC_OK)", g->model->name, name, name);
+    line(out, indent + 4, "return self->head.status;");
+}
+
+static void write_image(Text *out, int indent, const char *array, int at, int of, double sign)
+{
+    line(out, indent, "%s[%d] = %s%s[%d];", array, at, sign < 0 ? "-" : "", array, of);
+}
+
+void write_images(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const Model *model = g->model;
+    for (int w = 0; w < model->wheels; ++w) {
+        if (!narrowing_wheel_image(g->formulation->narrowing, w))
+            continue;
+        const int leader = g->formulation->narrowing->wheel[w], at = GRIP_NUMBERS * wheel_rolling(model, w);
+        const int of = GRIP_NUMBERS * wheel_rolling(model, leader), link = LINK_NUMBERS * wheel_rolling(model, w);
+        line(out, indent, "if (status == GIC_OK) { /* %s is the image of %s */", model->wheel[w].name,
+             model->wheel[leader].name);
+        for (int i = 0; i < wheel_fast_states(&model->wheel[w]); ++i)
+            write_image(out, indent + 4, "rate", model->wheel[w].fast + i, model->wheel[leader].fast + i,
+                        wheel_fast_sign(i));
+        for (int i = 0; i < GRIP_NUMBERS; ++i)
+            if (i != GRIP_POINT + 1)
+                write_image(out, indent + 4, "grip", at + i, of + i, wheel_grip_sign(i));
+        line(out, indent + 4, "grip[%d] = link[%d] + link[%d] - grip[%d];", at + GRIP_POINT + 1, link + LINK_C + 1,
+             LINK_NUMBERS * wheel_rolling(model, leader) + LINK_C + 1, of + GRIP_POINT + 1);
+        line(out, indent, "}");
+    }
+}
+
+void write_condition(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const char *also = g->formulation->narrowing ? " || self->head.status == GIC_ERROR_ASSUMPTION" : "";
+    line(out, indent,
+         "const int32_t condition = self->head.status == GIC_ERROR_GEOMETRY%s ? self->head.condition : -1;", also);
+}

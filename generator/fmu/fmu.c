@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: MIT
+ * An FMU: description, sources, binaries, page, picture and licence in one archive. */
+#include "fmu/fmu.h"
+#include "emit/emit.h"
+#include "engine/engine.h"
+#include "fmu/fmu_private.h"
+#include "host/host.h"
+#include "report/report.h"
+#include "sequence/sequence.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What scenes have that an FMU can't start with. Inputs, drivers and the time they take are the importer's. */
+static void check_scene(const Scene *scene)
+{
+    const Place at = {scene->source, 0, 0};
+    if (scene->equilibrium)
+        diag_fail(at, "let `gicrun --equilibrium` find it and write the values under `initial`",
+                  "an FMU can't start in static equilibrium by itself yet");
+    if (scene->road)
+        diag_fail(at, "leave out `road`: the FMU's road is flat at z = 0", "an FMU can't have a road of its own yet");
+    if (scene->rest)
+        diag_fail(at, "leave out `sleep`", "a vehicle in an FMU never sleeps");
+}
+
+static const char *embedded_text(const char *name, size_t *size)
+{
+    for (const Embedded *file = embedded; file->name; ++file)
+        if (!strcmp(file->name, name)) {
+            *size = file->size;
+            return file->bytes;
+        }
+    fprintf(stderr, "gicgen: error: '%s' is not built in\n", name);
+    exit(1);
+}
+
+static void add_text(Members *members, const char *name, const Text *text)
+{
+    member_add(members, name, text->s, text->size);
+}
+
+static void add_embedded(Members *members, const char *folder, const char *name)
+{
+    size_t size;
+    const char *bytes = embedded_text(name, &size);
+    member_add(members, pool_print(members->pool, "%s%s", folder, name), bytes, size);
+}
+
+/* The drawing as PNG, where Graphviz is there. */
+static void add_picture(Members *members, int version, const Formulation *f)
+{
+    Pool *pool = members->pool;
+    Text dot = {.pool = pool};
+    char *const argv[] = {"dot", "-Tpng", NULL};
+    const char *said;
+    FILE *output = tmpfile();
+    graph_draw(&dot, f->model, f->sequence);
+    if (!output)
+        return;
+    if (process_run_into(pool, argv, dot.s, fileno(output), &said) == 0) {
+        Text png = {.pool = pool};
+        char buffer[1 << 14];
+        rewind(output);
+        for (size_t n; (n = fread(buffer, 1, sizeof buffer, output)) > 0;)
+            text_add(&png, buffer, n);
+        if (png.size)
+            add_text(members, version == 2 ? "model.png" : "terminalsAndIcons/icon.png", &png);
+    }
+    fclose(output);
+}
+
+/* Everything but binaries. The token follows from all that the description and the C files have. */
+static void add_files(Members *members, int version, const Formulation *f, const Scene *scene, const char *templates,
+                      const char *path)
+{
+    Pool *pool = members->pool;
+    const char *name = f->model->name, *api = version == 2 ? "fmi2" : "fmi3";
+    const char *c_name = pool_print(pool, "%s.c", name), *api_name = pool_print(pool, "%s.c", api);
+    const char *const source[] = {c_name, "gic_runtime.c", "fmu_core.c", "fmu_road.c", api_name, NULL};
+    Text c = {.pool = pool}, h = {.pool = pool}, xml = {.pool = pool}, header = {.pool = pool}, page = {.pool = pool};
+    const Dependence *rate = dependences_of_rates(pool, f);
+    Description d = {pool,   f,    variables_make(pool, f, scene),        experiment_of(scene),          "",
+                     source, rate, dependences_of_outputs(pool, f, rate), dependences_of_places(pool, f)};
+    void (*const describe)(Text *, const Description *) = version == 2 ? describe_2 : describe_3;
+    generate(pool, f, &style_readable, templates, pool_print(pool, "%s.h", name), &c, &h);
+    Text draft = {.pool = pool};
+    describe(&draft, &d);
+    write_model_header(&draft, &d);
+    const uint64_t code = text_hash(c.s, c.size), description = text_hash(draft.s, draft.size);
+    d.token = pool_print(pool, "{%08x-%04x-%04x-%04x-%012llx}", (unsigned)(code >> 32), (unsigned)(code >> 16) & 0xffff,
+                         (unsigned)code & 0xffff, (unsigned)(description >> 48),
+                         (unsigned long long)description & 0xffffffffffff);
+    describe(&xml, &d);
+    write_model_header(&header, &d);
+    const CodeMemory memory = code_memory(pool, f->model->name, &c, &h);
+    report_print(&page, path, templates, f, &c, &memory);
+    add_text(members, "modelDescription.xml", &xml);
+    add_text(members, "documentation/index.html", &page);
+    add_text(members, pool_print(pool, "sources/%s.c", name), &c);
+    add_text(members, pool_print(pool, "sources/%s.h", name), &h);
+    add_text(members, "sources/fmu_model.h", &header);
+    static const char *const fixed[] = {"gic_runtime.c", "gic_runtime.h", "fmu_core.c", "fmu_core.h", "fmu_road.c"};
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
+        add_embedded(members, "sources/", fixed[i]);
+    add_embedded(members, "sources/", api_name);
+    add_embedded(members, "sources/", pool_print(pool, "%s_api.h", api));
+    add_embedded(members, "documentation/licenses/", "LICENSE");
+    if (version == 3) {
+        Text build = {.pool = pool}, terminals = {.pool = pool};
+        describe_build(&build, &d);
+        describe_terminals(&terminals, d.variables);
+        add_text(members, "sources/buildDescription.xml", &build);
+        add_text(members, "terminalsAndIcons/terminalsAndIcons.xml", &terminals);
+    }
+}
+
+void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene, const char *templates,
+               const char *path)
+{
+    Members members = {.pool = pool};
+    char *folder = pool_print(pool, "%s/gicgen-XXXXXX", temporary_folder());
+    const char *failure = NULL, *bytes = NULL;
+    size_t size = 0;
+    if (scene)
+        check_scene(scene);
+    file_check(path);
+    add_files(&members, version, f, scene, templates, path);
+    interrupt_hold(); /* or the folder would stay */
+    if (!mkdtemp(folder))
+        diag_fail(program_place(), "set TMPDIR to a folder that can be written", "no folder can be made in %s: %s",
+                  temporary_folder(), strerror(errno));
+    add_picture(&members, version, f);
+    failure = binaries_add(&members, version, f->model->name, folder, path);
+    if (!failure)
+        bytes = archive_bytes(&members, folder, &size, &failure);
+    rmdir(folder);
+    interrupt_release();
+    if (failure)
+        diag_fail(program_place(), "set CC to a C99 compiler", "%s", failure);
+    file_write(path, bytes, size);
+}

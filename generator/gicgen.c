@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: MIT
+ * gicgen: the command line. */
+#include "base/base.h"
+#include "emit/emit.h"
+#include "engine/engine.h"
+#include "host/host.h"
+#include "fmu/fmu.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "report/report.h"
+#include "scene/scene.h"
+#include "sequence/sequence.h"
+#include "specialize/specialize.h"
+#include "subset/subset.h"
+#include "validate/validate.h"
+#include "vehicle/effort.h"
+#include "vehicle/vehicle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
+    "       gicgen --batch N MODEL.veh [-o FILE.c]\n"
+    "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
+    "                                         compiled beside <model>.c\n"
+    "       gicgen --scene FILE.scene MODEL.veh [-o FILE.c]\n"
+    "                                         write code for that scene alone, with nothing that it doesn't need\n"
+    "       gicgen --fmu 2|3 MODEL.veh [--scene FILE.scene] [-o FILE.fmu]\n"
+    "                                         write a unit of FMI 2.0 or 3.0 for other simulators (default: "
+    "<model>.fmu)\n"
+    "       gicgen --main MODEL.veh           print a C program that calls <model>.h, to start from\n"
+    "       gicgen --sequence MODEL.veh       print the computational sequence\n"
+    "       gicgen --graph FILE MODEL.veh     draw bodies, joints and stages: FILE.svg (needs Graphviz) or FILE.dot\n"
+    "       gicgen --report FILE.html MODEL.veh\n"
+    "                                         write a page about the code: sequence, operations, memory, signals\n"
+    "       gicgen --dump-model MODEL.veh     print the resolved model as JSON\n"
+    "       gicgen --list-keys                all keys of a model file\n"
+    "       gicgen --schema                   the same as a JSON Schema for editors\n"
+    "\n"
+    "options:\n"
+    "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
+    "  --lanes W        alike parts of the vehicle side by side in vectors of up to W numbers, a power of 2 up to 16;\n"
+    "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
+    "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
+    "                   chains, or augmented, with all multipliers\n"
+    "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
+    "  --scene FILE     also with --report: what the scene saves, and why; with --fmu: what the unit starts with\n"
+    "  --templates DIR  take templates from DIR instead of the built-in ones\n"
+    "  -h, --help       this text\n"
+    "  --version        the version\n"
+    "\n"
+    "MODEL.veh is described in models/FORMAT.md, FILE.scene in models/SCENE.md; `-` reads standard input.\n";
+
+typedef enum Task {
+    TASK_GENERATE,
+    TASK_BATCH,
+    TASK_FMU,
+    TASK_MAIN,
+    TASK_SEQUENCE,
+    TASK_GRAPH,
+    TASK_REPORT,
+    TASK_DUMP
+} Task;
+
+typedef struct Options {
+    Task task;
+    Solve solve;
+    Recovery recovery;
+    Batch batch;
+    int fmi;                                               /* version of an FMU */
+    const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
+    bool formed, recovered;                                /* are `solve` and `recovery` given? */
+} Options;
+
+static _Noreturn void usage_error(const char *message, const char *word)
+{
+    fprintf(stderr, "gicgen: error: %s%s%s\n%s", message, word ? ": " : "", word ? word : "", usage);
+    exit(2);
+}
+
+/* Print the tables of keys; needs no model. */
+static void print_tables(bool schema)
+{
+    Pool *pool = pool_new();
+    Text text = {.pool = pool};
+    (schema ? schema_print : keys_print)(&text);
+    file_write("-", text.s, text.size);
+    pool_free(pool);
+}
+
+/* A whole number between 1 and `most`. */
+static int whole_argument(const char *option, const char *word, int most)
+{
+    char *end;
+    long value = strtol(word, &end, 10);
+    if (end == word || *end || value < 1 || value > most)
+        usage_error(option, word);
+    return (int)value;
+}
+
+static void read_batch(void *options, char *word)
+{
+    ((Options *)options)->batch.vehicles =
+        whole_argument("--batch takes a number of vehicles up to 65536, not", word, 65536);
+}
+
+static void read_lanes(void *options, char *word)
+{
+    ((Options *)options)->batch.lanes = lanes_of(word);
+    if (!((Options *)options)->batch.lanes)
+        usage_error("--lanes takes 2, 4, 8 or 16, not", word);
+}
+
+static void read_solve(void *options, char *form)
+{
+    ((Options *)options)->formed = true;
+    ((Options *)options)->solve = solve_of(form);
+    if (((Options *)options)->solve == SOLVES)
+        usage_error("--solve takes auto, reduced, articulated or augmented, not", form);
+}
+
+static void read_recovery(void *options, char *way)
+{
+    ((Options *)options)->recovered = true;
+    ((Options *)options)->recovery = recovery_of(way);
+    if (((Options *)options)->recovery == RECOVERIES)
+        usage_error("--recovery takes auto, newton or closed, not", way);
+}
+
+static void read_fmu(void *options, char *word)
+{
+    if (strcmp(word, "2") && strcmp(word, "3"))
+        usage_error("--fmu takes 2 or 3, the version of FMI, not", word);
+    ((Options *)options)->fmi = word[0] - '0';
+}
+
+static Options read_options(int count, char **word)
+{
+    Options options = {.task = TASK_GENERATE};
+    bool keys = false, schema = false, main_program = false, sequence = false, dump = false;
+    const char *graph = NULL, *report = NULL;
+    const Option option[] = {
+        {NULL, 'o', .text = &options.output},
+        {"list-keys", .on = &keys},
+        {"schema", .on = &schema},
+        {"batch", .read = read_batch},
+        {"fmu", .read = read_fmu},
+        {"lanes", .read = read_lanes},
+        {"solve", .read = read_solve},
+        {"recovery", .read = read_recovery},
+        {"scene", .text = &options.scene},
+        {"templates", .text = &options.templates},
+        {"main", .on = &main_program},
+        {"sequence", .on = &sequence},
+        {"dump-model", .on = &dump},
+        {"graph", .text = &graph},
+        {"report", .text = &report},
+    };
+    const int first = options_read("gicgen", usage, count, word, option, (int)(sizeof option / sizeof *option),
+                                   &options, usage_error);
+    if (keys || schema) {
+        print_tables(schema);
+        exit(0);
+    }
+    const bool asked[] = {[TASK_BATCH] = options.batch.vehicles,
+                          [TASK_FMU] = options.fmi,
+                          [TASK_MAIN] = main_program,
+                          [TASK_SEQUENCE] = sequence,
+                          [TASK_GRAPH] = graph,
+                          [TASK_REPORT] = report,
+                          [TASK_DUMP] = dump};
+    for (Task task = TASK_BATCH; task <= TASK_DUMP; ++task)
+        if (asked[task] && options.task != TASK_GENERATE)
+            usage_error(
+                "only one of --batch, --fmu, --main, --sequence, --graph, --report and --dump-model can be asked for",
+                NULL);
+        else if (asked[task])
+            options.task = task;
+    options.page = graph ? graph : report;
+    if (count > first + 1)
+        usage_error("more than one model given", word[first + 1]);
+    options.model = word[first];
+    if (!options.model)
+        usage_error("no model given", NULL);
+    const bool fmu = options.task == TASK_FMU;
+    if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT && !fmu)
+        usage_error("--scene is for code, --report and --fmu", NULL);
+    const bool code = options.task == TASK_GENERATE || options.task == TASK_BATCH || fmu;
+    if (options.output && options.page)
+        usage_error("--graph and --report name their file themselves, without -o", options.output);
+    if ((options.formed || options.recovered) && !code && options.task != TASK_REPORT)
+        usage_error(options.formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
+    if (options.batch.lanes && (!code || fmu))
+        usage_error("--lanes is for code", NULL);
+    if (options.batch.lanes && options.scene)
+        usage_error("--lanes and --scene are not for the same code: leave one out", NULL);
+    if (options.task == TASK_BATCH && !options.batch.lanes)
+        options.batch.lanes = 4;
+    return options;
+}
+
+/* A scene: the model as the file has it, and facts about the scene; NULL: no scene. */
+typedef struct Setting {
+    const Model *drawn;
+    const Facts *facts;
+    const Validation *validation;
+    const Scene *scene;
+} Setting;
+
+static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
+                                         const Options *options, const Setting *setting)
+{
+    if (!setting->facts || formulation_chains(pool, model, sequence, options->solve))
+        return formulate(pool, model, sequence, options->solve, options->recovery);
+    return formulate_explained(pool, setting->drawn, model, sequence, options->solve, options->recovery,
+                               setting->facts);
+}
+
+/* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
+static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
+                       const Setting *setting)
+{
+    Text c = {.pool = pool}, h = {.pool = pool};
+    bool batch = options->task == TASK_BATCH;
+    const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
+    if (strcmp(path, "-") && !path_ends(path, ".c"))
+        usage_error("the generated file must end in .c", path);
+    const char *header = pool_print(pool, "%.*sh", (int)strlen(path) - 1, path);
+    const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
+    const bool told = effort_tell(pool, model, sequence, options->solve);
+    const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
+    if (!batch && options->batch.lanes)
+        formulation = formulation_lanes(pool, formulation, options->batch.lanes);
+    effort_step(told, "its formulas are made; they are compared with an independent solution next");
+    formulation_validate(pool, formulation, setting->validation);
+    effort_step(told, "they agree; the C is written next");
+    name = strcmp(path, "-") ? name : NULL;
+    if (batch && batch_missing(formulation))
+        diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
+                  "code for many vehicles at once can't have %s yet", batch_missing(formulation));
+    if (batch)
+        generate_batch(pool, formulation, &options->batch, options->templates, pool_print(pool, "%s.h", model->name),
+                       name, &c, &h);
+    else
+        generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
+    if (!strcmp(path, "-")) {
+        text_add(&h, c.s, c.size);
+        file_write(path, h.s, h.size);
+        return;
+    }
+    file_write_both(header, &h, path, &c);
+}
+
+static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
+                      const Setting *setting)
+{
+    const char *path = options->output ? options->output : pool_print(pool, "%s.fmu", model->name);
+    if (!path_ends(path, ".fmu"))
+        usage_error("the name of an FMU must end in .fmu", path);
+    const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
+    formulation_validate(pool, formulation, NULL);
+    fmu_write(pool, options->fmi, formulation, setting->scene, options->templates, path);
+}
+
+static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
+{
+    Text dot = {.pool = pool};
+    graph_draw(&dot, model, sequence);
+    if (path_ends(options->page, ".svg"))
+        picture_write(pool, options->page, &dot);
+    else if (path_ends(options->page, ".dot") || !strcmp(options->page, "-"))
+        file_write(options->page, dot.s, dot.size);
+    else
+        usage_error("the picture's name must end in .svg or .dot", options->page);
+}
+
+static void write_report(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
+                         const Setting *setting)
+{
+    Text c = {.pool = pool}, h = {.pool = pool}, page = {.pool = pool};
+    if (strcmp(options->page, "-") && !path_ends(options->page, ".html"))
+        usage_error("the report's name must end in .html", options->page);
+    const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
+    formulation_validate(pool, formulation, setting->validation);
+    generate(pool, formulation, &style_readable, options->templates, NULL, &c, &h);
+    const CodeMemory code = code_memory(pool, model->name, &c, &h);
+    report_print(&page, options->page, options->templates, formulation, &c, &code);
+    file_write(options->page, page.s, page.size);
+}
+
+/* Refuse outputs that are inputs: the code and its header, or a page. */
+static void check_outputs(Pool *pool, const Options *options, const Source *input)
+{
+    const char *output = options->page ? options->page : options->output;
+    if (!output)
+        return;
+    source_keep(input, output);
+    if (path_ends(output, ".c"))
+        source_keep(input, pool_print(pool, "%.*sh", (int)strlen(output) - 1, output));
+}
+
+int main(int count, char **word)
+{
+    Options options = read_options(count, word);
+    Pool *pool = pool_new();
+    const Model *model = model_read(pool, options.model);
+    Setting setting = {.drawn = model};
+    check_outputs(pool, &options, model->source);
+    if (options.scene) {
+        const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
+        check_outputs(pool, &options, scene->source);
+        model = scene_rig(pool, model, &scene);
+        setting.scene = scene;
+        if (options.task != TASK_FMU) {
+            setting.facts = scene_facts(pool, model, scene, options.scene, false);
+            setting.validation = scene_validation(pool, model, scene);
+        }
+    }
+    const Sequence *sequence = sequence_find(pool, model);
+    model = model_assemble(pool, model, sequence);
+    Text text = {.pool = pool};
+    switch (options.task) {
+    case TASK_GENERATE:
+    case TASK_BATCH: write_code(pool, model, sequence, &options, &setting); break;
+    case TASK_FMU: write_fmu(pool, model, sequence, &options, &setting); break;
+    case TASK_GRAPH: write_graph(pool, model, sequence, &options); break;
+    case TASK_REPORT: write_report(pool, model, sequence, &options, &setting); break;
+    case TASK_MAIN:
+    case TASK_SEQUENCE:
+    case TASK_DUMP:
+        if (options.task == TASK_MAIN)
+            example_write(pool, model, options.templates, pool_print(pool, "%s.h", model->name), &text);
+        else if (options.task == TASK_DUMP)
+            model_dump(&text, model, sequence);
+        else
+            sequence_print(&text, model, sequence);
+        file_write(options.output ? options.output : "-", text.s, text.size);
+        break;
+    }
+    pool_free(pool);
+    return 0;
+}

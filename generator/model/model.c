@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * Functions of the model alone: names of its types, and properties of its parts. */
+#include "model/model.h"
+
+bool force_is_spring(const Force *force)
+{
+    return force->type == FORCE_COORDINATE || force->type == FORCE_POINTS || force->type == FORCE_AXIS;
+}
+
+bool force_is_stop(const Force *force)
+{
+    return force->type == FORCE_COORDINATE_STOP || force->type == FORCE_POINTS_STOP || force->type == FORCE_AXIS_STOP;
+}
+
+bool force_is_law(const Force *force)
+{
+    return force->type == FORCE_COORDINATE_LAW || force->type == FORCE_POINTS_LAW || force->type == FORCE_AXIS_LAW;
+}
+
+bool force_is_torque(const Force *force)
+{
+    return force->type == FORCE_AXIS || force->type == FORCE_AXIS_LAW || force->type == FORCE_AXIS_STOP;
+}
+
+int wheel_fast_states(const Wheel *wheel)
+{
+    return wheel->tire < 0 ? 0 : wheel->brake ? FAST_MOST : FAST_BRAKE;
+}
+
+const char *const powertrain_fast_name[POWERTRAIN_FAST] = {"engine.speed", "transmission.age"};
+
+const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE] = {"transmission.gear", "transmission.before"};
+
+int model_discretes(const Model *model)
+{
+    return model->free_base + (model->powertrain ? POWERTRAIN_DISCRETE : 0);
+}
+
+bool wheel_is_driven(const Model *model, int wheel)
+{
+    const Powertrain *powertrain = model->powertrain;
+    for (int i = 0; powertrain && i < powertrain->differentials; ++i)
+        if (powertrain->differential[i].wheel[0] == wheel || powertrain->differential[i].wheel[1] == wheel)
+            return true;
+    return model->wheel[wheel].drive;
+}
+
+const char *const joint_type_name[JOINT_TYPES] = {
+    [JOINT_REVOLUTE] = "revolute",           [JOINT_SPHERICAL] = "spherical",
+    [JOINT_PRISMATIC] = "prismatic",         [JOINT_CYLINDRICAL] = "cylindrical",
+    [JOINT_UNIVERSAL] = "universal",         [JOINT_FIXED] = "fixed",
+    [JOINT_DISTANCE] = "distance",           [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
+    [JOINT_POINT_ON_LINE] = "point_on_line", [JOINT_POINT_IN_PLANE] = "point_in_plane",
+    [JOINT_PARALLEL] = "parallel",           [JOINT_PERPENDICULAR] = "perpendicular",
+};
+
+const int joint_equations[JOINT_TYPES] = {
+    [JOINT_REVOLUTE] = 5,      [JOINT_SPHERICAL] = 3,      [JOINT_PRISMATIC] = 5, [JOINT_CYLINDRICAL] = 4,
+    [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 6,          [JOINT_DISTANCE] = 1,  [JOINT_REVOLUTE_SPHERICAL] = 2,
+    [JOINT_POINT_ON_LINE] = 2, [JOINT_POINT_IN_PLANE] = 1, [JOINT_PARALLEL] = 2,  [JOINT_PERPENDICULAR] = 1,
+};
+
+const char *const coordinate_type_name[COORDINATE_TYPES] = {
+    [COORDINATE_LENGTH] = "length",
+    [COORDINATE_TRANSLATION] = "translation",
+    [COORDINATE_ANGLE] = "angle",
+};
+
+const char *const base_state_name[BASE_STATES] = {"r.x", "r.y", "r.z", "e0",      "e1",      "e2",     "e3",
+                                                  "v.x", "v.y", "v.z", "omega.x", "omega.y", "omega.z"};
+
+const char *const output_type_name[OUTPUT_TYPES] = {
+    [OUTPUT_POSITION] = "position",
+    [OUTPUT_VELOCITY] = "velocity",
+    [OUTPUT_ACCELERATION] = "acceleration",
+    [OUTPUT_ORIENTATION] = "orientation",
+    [OUTPUT_ROLL_PITCH_YAW] = "roll_pitch_yaw",
+    [OUTPUT_ANGULAR_VELOCITY] = "angular_velocity",
+    [OUTPUT_COORDINATE] = "coordinate",
+    [OUTPUT_FORCE] = "force",
+    [OUTPUT_DRIVE_FORCE] = "drive_force",
+    [OUTPUT_REACTION] = "reaction",
+    [OUTPUT_WHEEL] = "wheel",
+    [OUTPUT_TIRE] = "tire",
+    [OUTPUT_CONTACT] = "contact",
+    [OUTPUT_POWERTRAIN] = "powertrain",
+    [OUTPUT_ENERGY] = "energy",
+};
+
+int wheel_rolling(const Model *model, int wheel)
+{
+    int before = 0;
+    for (int i = 0; i < wheel; ++i)
+        before += model->wheel[i].tire >= 0;
+    return before;
+}
+
+const char *model_massless(const Model *model)
+{
+    for (int b = model->free_base ? 0 : 1; b < model->bodies; ++b)
+        if (model->body[b].mass == 0 && !tuned_number(model, &model->body[b].mass))
+            return model->body[b].name;
+    return NULL;
+}
+
+static bool is_wanted(const Model *model, OutputType type, int index)
+{
+    bool wanted = false;
+    for (int i = 0; i < model->outputs; ++i)
+        wanted = wanted || (model->output[i].type == type && model->output[i].index == index);
+    return wanted;
+}
+
+bool reaction_wanted(const Model *model, int joint)
+{
+    return is_wanted(model, OUTPUT_REACTION, joint);
+}
+
+bool drive_wanted(const Model *model, int coordinate)
+{
+    return is_wanted(model, OUTPUT_DRIVE_FORCE, coordinate);
+}

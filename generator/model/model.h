@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * model: the contents of a `.veh` file with all references resolved; formulas; numbers that follow tunable
+ * parameters. */
+#ifndef MODEL_MODEL_H
+#define MODEL_MODEL_H
+
+#include "base/base.h"
+#include "expression/expression.h"
+
+/* ---- formula.c: formulas of force laws, as FORMAT.md section 6 defines them */
+
+typedef enum LawOp {
+    LAW_NUMBER,    /* number */
+    LAW_PARAMETER, /* index */
+    LAW_INPUT,     /* index */
+    LAW_VALUE,     /* of coordinate index */
+    LAW_RATE,
+    LAW_TIME,
+    LAW_LOCAL, /* index among the local names, such as `length`, that the formula's place offers */
+    LAW_TABLE, /* index, arg[0] */
+    LAW_CALL   /* op `call` of the expression graph with arguments */
+} LawOp;
+
+typedef struct Law {
+    LawOp op;
+    int call; /* an Op */
+    double number;
+    int index;
+    const struct Law *arg[3];
+    const char *name; /* as written, for the dump */
+    int size;         /* nodes in it, those of its parameters counted at each use */
+} Law;
+
+/* The meaning of the names in a formula. */
+typedef struct LawNames {
+    const struct Model *model; /* coordinates, inputs, parameters, tables */
+    const char *const *local;  /* local names of this formula, or NULL */
+    int locals;
+    bool hide;          /* local names hide equal names of the model; else a formula that uses such a name is refused */
+    bool constant;      /* only numbers and parameters are allowed */
+    const char *remedy; /* the remedy if another name is used */
+} LawNames;
+
+/* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
+const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
+/* True if the value of the law follows a tunable parameter. */
+bool law_is_tunable(const Law *law, const struct Model *model);
+/* Value at set-up, with parameters and inputs as in the file; the law has no local names. */
+double law_number(const Law *law, const struct Model *model);
+
+enum { BODY_BASE = 0, BODY_GROUND = -1 };
+
+typedef enum ShapeType { SHAPE_BOX, SHAPE_CYLINDER, SHAPE_MESH, SHAPE_TYPES } ShapeType;
+
+/* How a body is drawn; own frame. No part of the mechanics. */
+typedef struct BodyShape {
+    Place at;
+    ShapeType type;
+    double size[3];        /* edges of a box, m; 0: from the inertia */
+    double radius, length; /* of a cylinder, m; 0: from the inertia */
+    bool along, placed;    /* axis and center are given; else they follow from the inertia and the centre of mass */
+    double axis[3], center[3];
+    const char *file; /* of a mesh, the path as written */
+    int corners, triangles;
+    double (*corner)[3];
+    int (*triangle)[3]; /* anticlockwise from outside */
+} BodyShape;
+
+typedef struct Body {
+    const char *name;
+    Place at;
+    double mass, com[3] /* own frame */;
+    double inertia[6]; /* xx yy zz xy xz yz, own axes, about com; less the spin inertia of the wheels that it carries */
+    double position[3], euler[4]; /* body frame at design, model frame */
+    const BodyShape *shape;       /* NULL: the model gives none */
+} Body;
+
+typedef enum JointType {
+    JOINT_REVOLUTE,
+    JOINT_SPHERICAL,
+    JOINT_PRISMATIC,
+    JOINT_CYLINDRICAL,
+    JOINT_UNIVERSAL,
+    JOINT_FIXED,
+    JOINT_DISTANCE,
+    JOINT_REVOLUTE_SPHERICAL,
+    JOINT_POINT_ON_LINE,
+    JOINT_POINT_IN_PLANE,
+    JOINT_PARALLEL,
+    JOINT_PERPENDICULAR,
+    JOINT_TYPES
+} JointType;
+
+typedef struct Joint {
+    const char *name;
+    Place at;
+    JointType type;
+    int body[2];
+    double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
+    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
+    double length, offset; /* as in the joint's equations, if the type has them */
+    bool drawn;            /* length and offset are those of the drawing, so that the joint fits without assembly */
+} Joint;
+
+typedef enum CoordinateType {
+    COORDINATE_LENGTH,
+    COORDINATE_TRANSLATION,
+    COORDINATE_ANGLE,
+    COORDINATE_TYPES
+} CoordinateType;
+
+typedef struct Coordinate {
+    const char *name;
+    Place at;
+    CoordinateType type;
+    int body[2];
+    double point[2][3], axis[3] /* frame of body[0] */;
+    double reference[2][3]; /* angle: e_1 in the frame of body[0], f_1 in that of body[1] */
+    double design, initial, offset, range[2];
+    bool driven;
+    int input; /* driven: index of its value in inputs; rate and acceleration follow */
+} Coordinate;
+
+typedef struct Input {
+    const char *name, *unit;
+    double initial;
+} Input;
+
+typedef struct Parameter {
+    const char *name, *unit;
+    Place at;
+    double value;
+    bool tunable;
+    int index;      /* tunable: index among tunable parameters */
+    const Law *law; /* formula of tunable parameters; NULL: none */
+    bool geometric; /* tunable and used by points, axes, masses and so on: it acts at set-up only */
+} Parameter;
+
+/* An external force and torque on a body, supplied at run time. */
+typedef struct Port {
+    const char *name;
+    Place at;
+    int body, in;
+    double point[3];
+} Port;
+
+/* Three laws in three places: along a coordinate, between points, about an axis. */
+typedef enum ForceType {
+    FORCE_COORDINATE, /* spring and damper */
+    FORCE_POINTS,
+    FORCE_AXIS,
+    FORCE_COORDINATE_LAW, /* a formula */
+    FORCE_POINTS_LAW,
+    FORCE_AXIS_LAW,
+    FORCE_COORDINATE_STOP, /* one-sided contact */
+    FORCE_POINTS_STOP,
+    FORCE_AXIS_STOP,
+    FORCE_LOAD, /* force and torque on a body */
+    FORCE_TYPES
+} ForceType;
+
+typedef struct Force {
+    const char *name;
+    Place at;
+    ForceType type;
+    int coordinate; /* along a coordinate, else -1 */
+    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD: the body, and the body in whose frame it is
+                     * given */
+    double point[2][3];
+    double axis[3], reference[2][3];              /* as in Coordinate */
+    const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
+    const struct Law *low, *high, *fade;          /* of a stop: the same; NULL for an end that it does not have */
+    int table;                                    /* in place of stiffness; -1: none */
+    const struct Law *law[6]; /* [0]: generalised force, tension or torque; FORCE_LOAD: force, torque, NULL: 0 */
+} Force;
+
+bool force_is_spring(const Force *force);
+bool force_is_stop(const Force *force);
+bool force_is_law(const Force *force);
+/* True for elements about an axis. */
+bool force_is_torque(const Force *force);
+
+enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
+
+typedef enum TireType { TIRE_PAC2002, TIRE_TMEASY, TIRE_TYPES } TireType;
+typedef enum TireSide { SIDE_LEFT, SIDE_RIGHT, SIDE_SYMMETRIC } TireSide;
+
+/* SI units. */
+typedef struct Tire {
+    const char *name;
+    Place at;
+    TireType type;
+    TireSide side; /* the side that the data belong to */
+    int mode;      /* PAC2002: 0 to 4 */
+    double radius; /* R, unloaded */
+    double width;  /* for pictures only; 0: unknown */
+    double stiffness, damping, bottom_stiffness, bottom /* k, c, k_b, rho_b */;
+    double low_speed;     /* v_low */
+    double relaxation[2]; /* sigma_x, sigma_y if given or constant; 0: from number[] */
+    const double *number; /* [PAC_COUNT] or [TMEASY_COUNT], tire_numbers.h */
+} Tire;
+
+/* A contact with the road: with a tire it spins, without it is a vertical spring and damper. */
+typedef struct Wheel {
+    const char *name;
+    Place at;
+    int body;
+    double center[3];                        /* frame of body */
+    double radius, stiffness, damping, fade; /* with a tire: those of the tire; fade is the wheel's own */
+    int tire;                                /* -1: none; then the members below are unused */
+    double axis[3];                          /* s, frame of body */
+    double spin_inertia;                     /* already subtracted from the inertia of body */
+    bool mirrored;                           /* mounted on the side other than the tire's own */
+    const struct Law *drive, *brake;         /* NULL: none; local 0: spin */
+    int drive_body;
+    double windup;
+    int fast; /* index of its first fast state among the model's: spin, slip_x, slip_y and, with a brake, brake */
+} Wheel;
+
+enum { FAST_SPIN, FAST_SLIP_X, FAST_SLIP_Y, FAST_BRAKE, FAST_MOST };
+
+/* 3 or 4; 0 without a tire. */
+int wheel_fast_states(const Wheel *wheel);
+
+/* Passes the torque at its input to one or two outputs, each a wheel or another differential. */
+typedef struct Differential {
+    const char *name;
+    Place at;
+    int outputs;
+    int wheel[2], differential[2]; /* each output is one of the two; the other is -1 */
+    double ratio, split, inertia;
+    const struct Law *lock; /* NULL: none */
+} Differential;
+
+typedef struct Powertrain {
+    Place at;
+    double inertia, idle, limit;         /* of the engine; idle, limit: 0: none */
+    const struct Law *throttle, *torque; /* torque: local 0 speed, 1 throttle */
+    int capacity, multiplication;        /* tables of the converter */
+    int forward, reverse;                /* gears */
+    double *gear;                        /* [reverse + 1 + forward] ratios of gears -reverse to forward; neutral: 0 */
+    const struct Law *selector;          /* NULL: forward */
+    const struct Law **up, **down;       /* [forward - 1] */
+    double latency, duration, turbine;   /* s, s, inertia */
+    int differentials;                   /* each stands after those that it drives; the last one is the root */
+    Differential *differential;
+    int fast;       /* index of its first fast state among the model's */
+    int start_gear; /* at set-up */
+} Powertrain;
+
+enum { POWERTRAIN_SPEED, POWERTRAIN_AGE, POWERTRAIN_FAST };       /* fast states, rad/s and s */
+enum { POWERTRAIN_GEAR, POWERTRAIN_BEFORE, POWERTRAIN_DISCRETE }; /* discrete states, after that of the base */
+
+extern const char *const powertrain_fast_name[POWERTRAIN_FAST];
+extern const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE];
+/* Time since the last shift at set-up, s: long enough for any shift to be over. */
+#define POWERTRAIN_FIRST_AGE 100.0
+
+typedef enum OutputType {
+    OUTPUT_POSITION,
+    OUTPUT_VELOCITY,
+    OUTPUT_ACCELERATION,
+    OUTPUT_ORIENTATION,
+    OUTPUT_ROLL_PITCH_YAW,
+    OUTPUT_ANGULAR_VELOCITY,
+    OUTPUT_COORDINATE,
+    OUTPUT_FORCE,
+    OUTPUT_DRIVE_FORCE,
+    OUTPUT_REACTION,
+    OUTPUT_WHEEL,
+    OUTPUT_TIRE,
+    OUTPUT_CONTACT,
+    OUTPUT_POWERTRAIN,
+    OUTPUT_ENERGY,
+    OUTPUT_TYPES
+} OutputType;
+
+enum { OUTPUT_MAX_COMPONENTS = 12 };
+
+typedef struct Output {
+    const char *name;
+    Place at;
+    OutputType type;
+    int body;                                     /* if the type has one */
+    double point[3];                              /* frame of body */
+    int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
+    int index;                                    /* coordinate, force element, joint or wheel */
+    int count;                                    /* components */
+    const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
+    const char *unit[OUTPUT_MAX_COMPONENTS];
+    bool hidden; /* made for pages of results: scenes can not name it and results do not show it */
+} Output;
+
+typedef struct Model {
+    const Source *source;
+    const char *name, *description;
+    double gravity[3];
+    bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
+    int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
+    int parameters, tunables, tables, ports, tires, fast_states;
+    Body *body;
+    Joint *joint;
+    Coordinate *coordinate;
+    Force *force;
+    Tire *tire;
+    Wheel *wheel;
+    Powertrain *powertrain; /* NULL: none */
+    Input *input;
+    Output *output;
+    Parameter *parameter;
+    Table *table;
+    Port *port;
+    struct Tuning *tuning; /* tunable.c; NULL: only numbers of force laws are tunable */
+    const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
+} Model;
+
+/* Number of discrete states: one of a free base, and those of a powertrain. */
+int model_discretes(const Model *model);
+/* True if the wheel has a `drive` or the powertrain drives it. */
+bool wheel_is_driven(const Model *model, int wheel);
+
+extern const char *const joint_type_name[JOINT_TYPES]; /* as in the file: "revolute" */
+extern const int joint_equations[JOINT_TYPES];         /* FORMAT.md section 4 */
+extern const char *const coordinate_type_name[COORDINATE_TYPES];
+extern const char *const output_type_name[OUTPUT_TYPES];
+
+/* States of a free base, as FORMAT.md section 10 names them: pose, then twist. */
+enum { BASE_STATES = 13 };
+extern const char *const base_state_name[BASE_STATES];
+
+/* A law as an expression; tunable parameters are p[i]. The first form takes a law of numbers, parameters and tables;
+ * the second makes the operation at the top of a law (not an input, coordinate, time or local name) with these
+ * arguments. */
+Ex law_expression(Dag *dag, const Model *model, const Law *law);
+Ex law_top(Dag *dag, const Model *model, const Law *law, const Ex arg[3]);
+
+/* ---- tunable.c: numbers that follow tunable parameters */
+
+/* A number that must be greater than 0 (`zero`: at least 0) for all values of the parameters. */
+typedef struct Condition {
+    Ex value;
+    bool zero;
+    const char *text; /* "mass of body 'arm' must be greater than zero" */
+} Condition;
+
+typedef struct TunedNumber {
+    const double *at;
+    Ex formula;
+} TunedNumber;
+
+/* A Model has its numbers for the parameter values of the file. For other values set-up evaluates these formulas, which
+ * are nodes of a graph of their own, found by the address of the number in the Model. Inputs of the graph: p[i], the
+ * tunable parameters; `rest`, the remaining share of the way from the drawing to the given lengths. */
+typedef struct Tuning {
+    Dag *dag;
+    int numbers, conditions;
+    int late; /* conditions from this one on are checked by blocks of emitted code: on masses, on the assembly mode */
+    TunedNumber *number;
+    Condition *condition;
+    bool assembles; /* some length differs from the drawing's: formulas depend on `rest` */
+} Tuning;
+
+/* Conditions from Tuning.late on. Their formula is the literal 1, since numbers alone do not decide them. */
+enum { LATE_MASSES, LATE_MODE, LATE_CONDITIONS };
+
+Tuning *tuning_new(Pool *pool);
+/* The formula of a number of the model; 0 if it follows no parameter. The second function returns a literal in place of
+ * 0. */
+Ex tuned_number(const Model *model, const double *at);
+Ex tuned_or_fixed(const Model *model, const double *at);
+/* The formula of the difference of the numbers at a and b; 0 if it follows no parameter. */
+Ex tuned_difference(const Model *model, const double *a, const double *b);
+/* Set the formulas of `count` numbers, replacing earlier ones; a formula that is 0 or a literal is removed. */
+void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
+/* Give `count` copies of numbers the formulas of the originals. */
+void tuning_copy(const Model *model, const double *to, const double *from, int count);
+void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);
+/* Call after reading: determines which parameters are geometric. A model without geometric ones gets no tuning. */
+void tuning_close(Model *model);
+
+/* Numbers that emitted code keeps in derived[], as formulas of a Tuning: geometric parameters first. */
+typedef struct Derived {
+    int count;
+    Ex *formula;
+} Derived;
+
+/* True if an output asks for the reaction of this joint; for the drive force of this coordinate. */
+bool reaction_wanted(const Model *model, int joint);
+bool drive_wanted(const Model *model, int coordinate);
+
+/* The name of a body without mass, ground excepted; NULL: there is none. */
+const char *model_massless(const Model *model);
+
+/* The number of wheels with tires before this one. */
+int wheel_rolling(const Model *model, int wheel);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * read: from a `.veh` file to its model. */
+#ifndef READ_READ_H
+#define READ_READ_H
+
+#include "base/base.h"
+#include "model/model.h"
+
+extern const char *const shape_type_name[SHAPE_TYPES];
+
+/* schema.c: a JSON Schema of `.veh` files for editors, and all keys as a table for people; both are made from the
+ * reader's tables. */
+void schema_print(Text *out);
+void keys_print(Text *out);
+
+/* Read and resolve a `.veh` file. Any mistake ends in diag_fail. */
+const Model *model_read(Pool *pool, const char *path);
+/* A copy of the model with hidden outputs of each wheel: of type wheel, and with a tire also tire and contact, unless
+ * it has them. */
+const Model *model_watch_wheels(Pool *pool, const Model *model);
+
+#endif

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT
+ * Pictures by gnuplot: curves over time, one panel a unit, and panels of one signal over another. */
+#include "base/base.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Pixels: size of the picture; height of a panel over time, largest height of one with equal scales; margins. */
+enum { WIDTH = 900, TALL = 230, TALLEST = 460, LEFT = 104, RIGHT = 28, HEAD = 30, FOOT = 62, TITLE = 46, ROW = 19 };
+
+/* Colours of Okabe and Ito, which the colour-blind can tell apart; further curves are dashed. The page of --animate
+ * uses the same. */
+static const char *const ink[] = {"#0072b2", "#d55e00", "#007d5c", "#a5457f", "#a66f00", "#3a8fc4", "#333333"};
+enum { INKS = sizeof ink / sizeof *ink };
+
+bool plot_known(const char *path)
+{
+    return path_ends(path, ".svg") || path_ends(path, ".png");
+}
+
+/* A character of a text in double quotes. All but letters are octal: backslashes and backquotes have a meaning there,
+ * and a digit after an octal number would be part of it. */
+static void plot_character(Text *text, char c)
+{
+    const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    text_print(text, letter ? "%c" : "\\%03o", (unsigned char)c);
+}
+
+/* In single quotes gnuplot takes all characters literally except quotes, which are doubled, and line ends. It writes
+ * `>` into an SVG unchanged, which is not valid XML after `]]`. */
+void plot_text(Text *text, const char *s)
+{
+    const char *c = s;
+    while ((unsigned char)*c >= ' ' && *c != '\'' && *c != '>')
+        ++c;
+    if (!*c) {
+        text_print(text, "'%s'", s);
+        return;
+    }
+    text_print(text, "\"");
+    for (c = s; *c; ++c) {
+        if (*c == '>' && c - s >= 2 && c[-1] == ']' && c[-2] == ']')
+            plot_character(text, ' ');
+        plot_character(text, *c);
+    }
+    text_print(text, "\"");
+}
+
+/* True if curve i is the first one of its unit. */
+static bool opens_panel(const Plot *plot, int i)
+{
+    for (int k = 0; k < i; ++k)
+        if (!strcmp(plot->signal[k].unit, plot->signal[i].unit))
+            return false;
+    return true;
+}
+
+static void data_block(Text *script, const Plot *plot)
+{
+    const int signals = plot->curves + 2 * plot->panels;
+    text_print(script, "$data << END\n");
+    for (int row = 0; row < plot->rows; ++row)
+        for (int k = 0; k <= signals; ++k)
+            text_print(script, "%.9g%c", plot->sample[row * (signals + 1) + k], k < signals ? ' ' : '\n');
+    text_print(script, "END\n");
+}
+
+/* ---- where panels are ---------------------------------------------------------------------------------------- */
+
+/* Pixels from the picture's upper left corner. scale: pixels of a unit on both axes, 0: each axis has its own scale. */
+typedef struct Frame {
+    int left, right, top, bottom;
+    double scale, low[2], high[2], tick;
+} Frame;
+
+static void place(Text *script, const Frame *frame, int height)
+{
+    text_print(script, "set lmargin at screen %.6f\nset rmargin at screen %.6f\n", (double)frame->left / WIDTH,
+               (double)frame->right / WIDTH);
+    text_print(script, "set tmargin at screen %.6f\nset bmargin at screen %.6f\n", 1 - (double)frame->top / height,
+               1 - (double)frame->bottom / height);
+    text_print(script, "set key at screen %.6f, screen %.6f\n", (double)frame->left / WIDTH,
+               1 - (double)(frame->top - 5) / height);
+}
+
+/* Columns and rows of a legend of `names` names. Characters are some 8 pixels wide. */
+static int legend_columns(size_t longest)
+{
+    const int columns = (WIDTH - LEFT - RIGHT) / (int)(8 * longest + 56);
+    return columns > 1 ? columns : 1;
+}
+
+static int legend_rows(const Plot *plot, int first, int *columns)
+{
+    size_t longest = 0;
+    int names = 0;
+    for (int i = first; i < plot->curves; ++i)
+        if (!strcmp(plot->signal[i].unit, plot->signal[first].unit)) {
+            const size_t length = strlen(plot->signal[i].name);
+            longest = length > longest ? length : longest;
+            ++names;
+        }
+    *columns = legend_columns(longest);
+    return (names + *columns - 1) / *columns;
+}
+
+/* ---- panels -------------------------------------------------------------------------------------------------- */
+
+static void panel(Text *script, const Plot *plot, int first, bool last)
+{
+    int columns;
+    legend_rows(plot, first, &columns);
+    text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
+    plot_text(script, quantity_text(script->pool, plot->signal[first].unit));
+    text_print(script, "\nset key maxcols %d\nplot ", columns);
+    for (int i = first, drawn = 0; i < plot->curves; ++i) {
+        if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
+            continue;
+        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 linecolor rgb '%s' dashtype %d title ",
+                   drawn ? ", " : "", i + 2, ink[drawn % INKS], drawn / INKS % 5 + 1);
+        plot_text(script, plot->signal[i].name);
+        ++drawn;
+    }
+    text_print(script, "\n");
+}
+
+static void axis_label(Text *script, char axis, const gic_signal *signal)
+{
+    text_print(script, "set %clabel ", axis);
+    plot_text(script, pool_print(script->pool, "%s [%s]", signal->name, signal->unit));
+    text_print(script, "\n");
+}
+
+/* The least and the largest value of a signal. */
+static void limits(const Plot *plot, int signal, double *low, double *high)
+{
+    const int row = plot->curves + 2 * plot->panels + 1;
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int i = 0; i < plot->rows; ++i) {
+        *low = fmin(*low, plot->sample[i * row + signal + 1]);
+        *high = fmax(*high, plot->sample[i * row + signal + 1]);
+    }
+}
+
+/* 1, 2 or 5 times a power of ten: the smallest that is not below x. */
+static double round_up(double x)
+{
+    const double ten = pow(10, floor(log10(x))), over = x / ten;
+    return ten * (over <= 1 ? 1 : over <= 2 ? 2 : over <= 5 ? 5 : 10);
+}
+
+/* If both axes are lengths and neither extent is too small, the plane has the shape of the curve, with equal scales and
+ * ticks. */
+static Frame frame_over(const Plot *plot, int panel, int top)
+{
+    const int x = plot->curves + 2 * panel, y = x + 1, wide = WIDTH - LEFT - RIGHT;
+    const double most = 10, narrowest = 70; /* pixels between ticks: room for numbers side by side */
+    Frame frame = {.left = LEFT, .right = WIDTH - RIGHT, .top = top + HEAD, .bottom = top + HEAD + TALL};
+    limits(plot, x, &frame.low[0], &frame.high[0]);
+    limits(plot, y, &frame.low[1], &frame.high[1]);
+    const double across = frame.high[0] - frame.low[0], up = frame.high[1] - frame.low[1];
+    if (strcmp(plot->signal[x].unit, plot->signal[y].unit) || !(across <= most * up && up <= most * across))
+        return frame;
+    for (int k = 0; k < 2; ++k) { /* keep lines off the edge */
+        frame.low[k] -= 0.04 * fmax(across, up);
+        frame.high[k] += 0.04 * fmax(across, up);
+    }
+    const double size[2] = {frame.high[0] - frame.low[0], frame.high[1] - frame.low[1]};
+    frame.scale = fmin(wide / size[0], TALLEST / size[1]);
+    frame.tick = round_up(narrowest / frame.scale);
+    frame.right = LEFT + (int)(frame.scale * size[0]);
+    frame.bottom = frame.top + (int)(frame.scale * size[1]);
+    return frame;
+}
+
+static void panel_over(Text *script, const Plot *plot, int panel, const Frame *frame)
+{
+    const int x = plot->curves + 2 * panel, y = x + 1;
+    axis_label(script, 'x', &plot->signal[x]);
+    axis_label(script, 'y', &plot->signal[y]);
+    for (int k = 0; k < 2 && frame->scale > 0; ++k)
+        text_print(script, "set %crange [%.9g:%.9g]\nset %ctics %.9g\n", "xy"[k], frame -> low[k], frame -> high[k],
+                   "xy"[k], frame -> tick);
+    if (!(frame->scale > 0))
+        text_print(script, "set autoscale\nset xtics autofreq\nset ytics autofreq\n");
+    text_print(script, "set key maxcols 1\nplot $data using %d:%d with lines linewidth 1.5 linecolor rgb '%s' title ",
+               x + 2, y + 2, ink[0]);
+    plot_text(script, pool_print(script->pool, "%s over %s", plot->signal[y].name, plot->signal[x].name));
+    text_print(script, "\n");
+}
+
+/* ---- the picture --------------------------------------------------------------------------------------------- */
+
+/* Place the panels, those over time first; returns the picture's height. */
+static int arrange(const Plot *plot, Frame *frame)
+{
+    int top = TITLE, panels = 0;
+    for (int i = 0; i < plot->curves; ++i) {
+        if (!opens_panel(plot, i))
+            continue;
+        int columns;
+        const int plane = top + HEAD + ROW * (legend_rows(plot, i, &columns) - 1);
+        frame[panels++] = (Frame){.left = LEFT, .right = WIDTH - RIGHT, .top = plane, .bottom = plane + TALL};
+        top = plane + TALL + FOOT;
+    }
+    for (int i = 0; i < plot->panels; ++i) {
+        frame[panels] = frame_over(plot, i, top);
+        top = frame[panels++].bottom + FOOT;
+    }
+    return top;
+}
+
+static void style(Text *script, const Plot *plot, const char *path, int height)
+{
+    text_print(script, "set encoding utf8\nset terminal %s size %d,%d noenhanced\n",
+               path_ends(path, ".svg") ? "svg background 'white' font 'sans-serif,13'" : "pngcairo font 'sans,10'",
+               WIDTH, height);
+    text_print(script, "set grid back linetype 1 linewidth 0.5 linecolor rgb '#d5dce2'\n"
+                       "set border 3 linewidth 0.8 linecolor rgb '#5c6873'\n"
+                       "set tics nomirror out scale 0.5 textcolor rgb '#1f2933'\n"
+                       "set offsets graph 0, graph 0, graph 0.05, graph 0.05\n"
+                       "set key left bottom Left reverse horizontal samplen 2 spacing 1.1\n"
+                       "set multiplot\nset label 1 ");
+    plot_text(script, plot->title);
+    text_print(script, " at screen %.6f, screen %.6f left font ',%d'\n", (double)LEFT / WIDTH, 1 - 24.0 / height,
+               path_ends(path, ".svg") ? 17 : 13);
+}
+
+static const char *plot_script(Pool *pool, const Plot *plot, const char *path)
+{
+    Text script = {.pool = pool};
+    Frame *frame = pool_alloc(pool, sizeof *frame * (size_t)(plot->curves + plot->panels + 1));
+    int over_time = 0, done = 0;
+    for (int i = 0; i < plot->curves; ++i)
+        over_time += opens_panel(plot, i);
+    const int height = arrange(plot, frame);
+    data_block(&script, plot);
+    style(&script, plot, path, height);
+    for (int i = 0; i < plot->curves; ++i)
+        if (opens_panel(plot, i)) {
+            place(&script, &frame[done], height);
+            panel(&script, plot, i, done == over_time - 1);
+            text_print(&script, done++ ? "" : "unset label 1\n");
+        }
+    for (int i = 0; i < plot->panels; ++i, ++done) {
+        place(&script, &frame[done], height);
+        panel_over(&script, plot, i, &frame[done]);
+        text_print(&script, done ? "" : "unset label 1\n");
+    }
+    text_print(&script, "unset multiplot\n");
+    return script.s;
+}
+
+/* gnuplot does not report a full disk: check that the file ends as a picture does, in </svg> or in the chunk IEND of a
+ * PNG. */
+static bool is_whole(const char *path)
+{
+    enum { END = 12 }; /* bytes of an IEND: length, name, checksum */
+    char end[END + 1] = "";
+    FILE *file = fopen(path, "rb");
+    const bool read = file && !fseek(file, -END, SEEK_END) && fread(end, 1, END, file) == END;
+    if (file)
+        fclose(file);
+    return read && (strstr(end, "</svg>") || !memcmp(end + 4, "IEND", 4));
+}
+
+int gnuplot_run(Pool *pool, const char *script, const char *path, const char **said)
+{
+    char *const argv[] = {"gnuplot", "-", NULL};
+    char *temporary;
+    interrupt_hold();
+    FILE *file = temporary_open(pool, path, &temporary);
+    if (!file) {
+        *said = strerror(errno);
+        interrupt_release();
+        return PLOT_NO_FILE;
+    }
+    /* gnuplot does not open the file itself: its name may have become a link */
+    int status = process_run_into(pool, argv, script, fileno(file), said);
+    fclose(file);
+    if (!status && !is_whole(temporary)) {
+        *said = pool_print(pool, "%sgnuplot left half a picture\n", *said);
+        status = 1;
+    }
+    if (!status && rename(temporary, path)) {
+        *said = pool_print(pool, "%s\n", strerror(errno));
+        status = 1;
+    }
+    if (status)
+        unlink(temporary);
+    interrupt_release();
+    return status;
+}
+
+static _Noreturn void gnuplot_missing(const char *said)
+{
+    diag_fail(program_place(), "install it (Debian: apt-get install gnuplot-nox), or run without --plot",
+              "no picture: gnuplot can't be started: %s", said);
+}
+
+void plot_check(Pool *pool)
+{
+    char *const argv[] = {"gnuplot", "--version", NULL};
+    const char *said = "";
+    interrupt_hold();
+    const int status = process_run(pool, argv, "", &said);
+    interrupt_release();
+    if (status == PROCESS_NOT_STARTED)
+        gnuplot_missing(said);
+}
+
+void plot_write(Pool *pool, const Plot *plot, const char *path)
+{
+    const char *said = "";
+    const int status = gnuplot_run(pool, plot_script(pool, plot, path), path, &said);
+    if (status == PLOT_NO_FILE)
+        diag_fail(program_place(), "is the folder still there?", "can't create %s: %s", path, said);
+    if (status == PROCESS_NOT_STARTED)
+        gnuplot_missing(said);
+    if (status) {
+        fputs(said, stderr);
+        diag_fail(program_place(), "gnuplot's messages are above; is there room on the disk?",
+                  "no picture: %s could not be drawn", path);
+    }
+}

@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: MIT
+ * The page of --animate: poses of all bodies, wheels and curves at the frames, as JSON in a page without other
+ * files. The scripts that show them are templates/animate*.in. */
+#include "base/base.h"
+#include "emit/emit.h"
+#include "engine/engine.h"
+#include "gic_road.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "model/model.h"
+#include "run/animate.h"
+#include "run/run.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Frames: 50 a second; more in a run so short that it would have less than FEWEST, fewer in one so long that it would
+ * have more than MOST. FEWEST: smooth at a tenth of the speed; MOST: 3 MB for two minutes of the HMMWV. */
+enum { FEWEST = 600, MOST = 6000 };
+
+static const double frame_rate = 50;
+
+enum { POSE = 7, WHEEL_CHANNELS = 7 }; /* angle, force, contact */
+
+/* Indices in output[] of a wheel's outputs, -1: none. */
+typedef struct WheelOutputs {
+    int wheel, tire, contact; /* fz, deflection, its rate, height; fx, fy, ...; x, y, z */
+} WheelOutputs;
+
+struct Animation {
+    Pool *pool;
+    const Model *model;
+    const Scene *scene;
+    const char *scene_path;
+    Shapes shapes;
+    int64_t times, every; /* output times so far; one in `every` is a frame */
+    int frames, channels;
+    int wheels, curves; /* index of their first channels, after those of the bodies */
+    WheelOutputs *told; /* [wheels] */
+    double *spin;       /* [wheels] spins of wheels with tires at the frame before, rad/s */
+    double *value;      /* [frames][channels] */
+};
+
+/* Index of the first component of an output about a wheel; -1: none. */
+static int wheel_output(const Model *model, OutputType type, int wheel)
+{
+    int at = 0;
+    for (int i = 0; i < model->outputs; at += model->output[i++].count)
+        if (model->output[i].type == type && model->output[i].index == wheel)
+            return at;
+    return -1;
+}
+
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path)
+{
+    Animation *a = pool_alloc(pool, sizeof *a);
+    const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
+    *a = (Animation){.pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
+    a->shapes = shapes_of(pool, model, scene);
+    a->every = (int64_t)fmax(ceil((double)scene->outputs / most), 1);
+    a->wheels = POSE * model->bodies;
+    a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
+    a->channels = a->curves + scene->curves;
+    a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
+    for (int w = 0; w < model->wheels; ++w)
+        a->told[w] = (WheelOutputs){wheel_output(model, OUTPUT_WHEEL, w), wheel_output(model, OUTPUT_TIRE, w),
+                                    wheel_output(model, OUTPUT_CONTACT, w)};
+    a->spin = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->spin);
+    a->value = pool_alloc(pool, (size_t)(scene->outputs / a->every + 1) * (size_t)a->channels * sizeof *a->value);
+    return a;
+}
+
+/* ---- frames ------------------------------------------------------------------------------------------------------ */
+
+/* p and -p are the same orientation; take the one near the frame before, since frames are interpolated. */
+static void keep_sign(double *pose, const double *before)
+{
+    double product = 0;
+    for (int i = 3; i < POSE; ++i)
+        product += pose[i] * before[i];
+    for (int i = 3; i < POSE && product < 0; ++i)
+        pose[i] = -pose[i];
+}
+
+static const double *pose_of(const double *frame, int body)
+{
+    return frame + POSE * body;
+}
+
+static void pose_point(const double *pose, const double s[3], double out[3])
+{
+    double A[9];
+    mat_from_euler(pose + 3, A);
+    apply3(A, s, out);
+    for (int i = 0; i < 3; ++i)
+        out[i] += pose[i];
+}
+
+/* The angle of a wheel without tire: the way of its centre along the road since the frame before, divided by its
+ * radius. */
+static double rolled(const Animation *a, int w, const double *frame, const double *before)
+{
+    const Wheel *wheel = &a->model->wheel[w];
+    const double up[3] = {0, 0, 1};
+    double A[9], axis[3], ahead[3], now[3], then[3];
+    mat_from_euler(pose_of(frame, wheel->body) + 3, A);
+    apply3(A, a->shapes.axis[w], axis);
+    cross3(axis, up, ahead);
+    pose_point(pose_of(frame, wheel->body), a->shapes.center[w], now);
+    pose_point(pose_of(before, wheel->body), a->shapes.center[w], then);
+    for (int i = 0; i < 3; ++i)
+        now[i] -= then[i];
+    return dot3(now, ahead) / fmax(norm3(ahead), 1e-9) / wheel->radius;
+}
+
+/* The angle that the body of a wheel has turned about the wheel's axis since the frame before. */
+static double carried(const Animation *a, int w, const double *frame, const double *before)
+{
+    const int body = a->model->wheel[w].body;
+    const double *p = pose_of(before, body) + 3, *q = pose_of(frame, body) + 3;
+    double turn[3]; /* vector part of the quaternion from p to q, frame of the body */
+    cross3(q + 1, p + 1, turn);
+    for (int i = 0; i < 3; ++i)
+        turn[i] += p[0] * q[1 + i] - q[0] * p[1 + i];
+    return 2 * asin(fmin(fmax(dot3(turn, a->shapes.axis[w]), -1), 1));
+}
+
+/* The angle of a wheel that spins, against the body that carries it, since the frame before. */
+static double spun(const Animation *a, int w, const double *frame, const double *before, double spin)
+{
+    const double step = (double)a->every * a->scene->output_step;
+    return (a->spin[w] + spin) / 2 * step - carried(a, w, frame, before);
+}
+
+/* Force on the tire in the world, from the outputs: along the contact axes (models/TIRES.md section 3). */
+static void tire_force(const Animation *a, int w, const double *output, const double *frame, const double contact[3],
+                       double force[3])
+{
+    const WheelOutputs *told = &a->told[w];
+    const gic_road *road = a->scene->road;
+    double h[3] = {0}, A[9], s[3], ahead[3], left[3];
+    if (road)
+        road->height(road, 0, 0, contact[0], contact[1], h);
+    const double norm = sqrt(1 + h[1] * h[1] + h[2] * h[2]);
+    const double normal[3] = {-h[1] / norm, -h[2] / norm, 1 / norm};
+    mat_from_euler(pose_of(frame, a->model->wheel[w].body) + 3, A);
+    apply3(A, a->shapes.axis[w], s);
+    cross3(s, normal, ahead);
+    const double length = fmax(norm3(ahead), 1e-6);
+    for (int i = 0; i < 3; ++i)
+        ahead[i] /= length;
+    cross3(normal, ahead, left);
+    for (int i = 0; i < 3; ++i) {
+        force[i] = told->wheel >= 0 ? output[told->wheel] * normal[i] : 0;
+        if (told->tire >= 0)
+            force[i] += output[told->tire] * ahead[i] + output[told->tire + 1] * left[i];
+    }
+}
+
+/* spin: of a wheel with a tire, rad/s; else 0. */
+static void set_wheel(const Animation *a, int w, const double *output, double spin, double *frame, const double *before)
+{
+    const Wheel *wheel = &a->model->wheel[w];
+    const WheelOutputs *told = &a->told[w];
+    double *channel = frame + a->wheels + WHEEL_CHANNELS * w, *force = channel + 1, *contact = channel + 4;
+    channel[0] = before ? before[a->wheels + WHEEL_CHANNELS * w] : 0;
+    if (before)
+        channel[0] += wheel->tire >= 0 ? spun(a, w, frame, before, spin) : rolled(a, w, frame, before);
+    a->spin[w] = spin;
+    pose_point(pose_of(frame, wheel->body), a->shapes.center[w], contact);
+    if (told->wheel >= 0)
+        contact[2] = output[told->wheel + 3];
+    if (told->contact >= 0)
+        memcpy(contact, output + told->contact, 3 * sizeof *contact);
+    if (wheel->tire >= 0)
+        tire_force(a, w, output, frame, contact, force);
+    else if (told->wheel >= 0)
+        force[2] = output[told->wheel];
+}
+
+int animation_frame(Animation *a, const gic_model *code, gic_head *self)
+{
+    if (a->times++ % a->every)
+        return GIC_OK;
+    const double *output = instance_array(self, code->output_offset);
+    const double *fast = (const double *)instance_array(self, code->state_offset) + code->slow_count;
+    double *frame = a->value + (size_t)a->frames * (size_t)a->channels;
+    const double *before = a->frames ? frame - a->channels : NULL;
+    const int status = code->poses(self, frame);
+    if (status != GIC_OK)
+        return status;
+    for (int b = 0; before && b < a->model->bodies; ++b)
+        keep_sign(frame + POSE * b, before + POSE * b);
+    for (int w = 0; w < a->model->wheels; ++w)
+        set_wheel(a, w, output, a->model->wheel[w].tire >= 0 ? fast[a->model->wheel[w].fast] : 0, frame, before);
+    for (int i = 0; i < a->scene->curves; ++i)
+        frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
+    ++a->frames;
+    return GIC_OK;
+}
+
+/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+
+/* '<' could end the script in HTML. */
+static void json_text(Text *out, const char *s)
+{
+    text_print(out, "\"");
+    for (; s && *s; ++s)
+        if (*s == '"' || *s == '\\')
+            text_print(out, "\\%c", *s);
+        else if ((unsigned char)*s < ' ' || *s == '<')
+            text_print(out, "\\u%04x", (unsigned)*s);
+        else
+            text_add(out, s, 1);
+    text_print(out, "\"");
+}
+
+static void json_vector(Text *out, const char *key, const double v[3])
+{
+    text_print(out, "\"%s\":[%.6g,%.6g,%.6g]", key, v[0], v[1], v[2]);
+}
+
+static void json_key(Text *out, const char *key, const char *value)
+{
+    text_print(out, "\"%s\":", key);
+    json_text(out, value);
+    text_print(out, ",");
+}
+
+/* A power of ten, 1e-5 to 1e-4 of x. */
+static double unit_for(double x)
+{
+    return x > 0 ? pow(10, floor(log10(x)) - 4) : 1;
+}
+
+static double channel_unit(const Animation *a, int c, double length)
+{
+    if (c < a->wheels)
+        return c % POSE < 3 ? length : 1e-5;
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS == 0)
+        return 1e-3;
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 3)
+        return length;
+    double most = 0;
+    for (int k = 0; k < a->frames; ++k)
+        most = fmax(most, fabs(a->value[(size_t)k * (size_t)a->channels + (size_t)c]));
+    return unit_for(most);
+}
+
+/* Second differences of smooth motion are short numbers. */
+static void json_channel(const Animation *a, int c, double unit, Text *out)
+{
+    int64_t value = 0, step = 0;
+    bool still = true;
+    text_print(out, "{\"unit\":%.9g,\"values\":[", unit);
+    for (int k = 1; k < a->frames; ++k)
+        still = still &&
+                llround(a->value[(size_t)k * (size_t)a->channels + (size_t)c] / unit) == llround(a->value[c] / unit);
+    for (int k = 0; k < (still ? 1 : a->frames); ++k) {
+        const int64_t now = llround(a->value[(size_t)k * (size_t)a->channels + (size_t)c] / unit), change = now - value;
+        text_print(out, "%s%lld", k ? "," : "", (long long)(k > 1 ? change - step : change));
+        step = k ? change : 0;
+        value = now;
+    }
+    text_print(out, "]}");
+}
+
+static void json_bodies(const Animation *a, Text *out)
+{
+    text_print(out, "\"bodies\":[");
+    for (int b = 0; b < a->model->bodies; ++b) {
+        const Shape *shape = &a->shapes.body[b];
+        text_print(out, "%s\n{", b ? "," : "");
+        json_key(out, "name", a->model->body[b].name);
+        text_print(out, "\"motion\":%d,\"mass\":%.6g,", POSE * b, a->model->body[b].mass);
+        json_vector(out, "com", shape->com);
+        text_print(out, ",");
+        json_vector(out, "box", shape->box);
+        text_print(out, ",");
+        json_look(out, shape);
+        text_print(out, ",\"points\":[");
+        for (int i = 0; i < shape->points; ++i)
+            text_print(out, "%s[%.6g,%.6g,%.6g]", i ? "," : "", shape->point[i].x[0], shape->point[i].x[1],
+                       shape->point[i].x[2]);
+        text_print(out, "]}");
+    }
+    text_print(out, "],\n");
+}
+
+static void json_lines(const Animation *a, Text *out)
+{
+    text_print(out, "\"lines\":[");
+    for (int i = 0; i < a->shapes.lines; ++i) {
+        const Line *line = &a->shapes.line[i];
+        text_print(out, "%s\n{", i ? "," : "");
+        json_key(out, "name", line->name);
+        json_key(out, "kind", line->kind);
+        text_print(out, "\"a\":%d,\"b\":%d,", line->body[0], line->body[1]);
+        json_vector(out, "p", line->point[0]);
+        text_print(out, ",");
+        json_vector(out, "q", line->point[1]);
+        text_print(out, "}");
+    }
+    text_print(out, "],\n");
+}
+
+static void json_wheels(const Animation *a, Text *out)
+{
+    text_print(out, "\"wheels\":[");
+    for (int w = 0; w < a->model->wheels; ++w) {
+        const Wheel *wheel = &a->model->wheel[w];
+        const int angle = a->wheels + WHEEL_CHANNELS * w;
+        text_print(out, "%s\n{", w ? "," : "");
+        json_key(out, "name", wheel->name);
+        text_print(out, "\"body\":%d,\"radius\":%.6g,\"width\":%.6g,\"angle\":%d,", wheel->body, wheel->radius,
+                   a->shapes.width[w], angle);
+        json_vector(out, "center", a->shapes.center[w]);
+        text_print(out, ",");
+        json_vector(out, "axis", a->shapes.axis[w]);
+        if (a->told[w].wheel >= 0 || a->told[w].tire >= 0)
+            text_print(out, ",\"force\":[%d,%d,%d],\"contact\":[%d,%d,%d]", angle + 1, angle + 2, angle + 3, angle + 4,
+                       angle + 5, angle + 6);
+        text_print(out, "}");
+    }
+    text_print(out, "],\n");
+}
+
+/* The curves of the scene's `plot`. */
+static void json_curves(const Animation *a, Text *out)
+{
+    text_print(out, "\"curves\":[");
+    for (int k = 0; k < a->scene->curves; ++k) {
+        const gic_signal *signal = &a->scene->signal[a->scene->curve[k]];
+        text_print(out, "%s\n{", k ? "," : "");
+        json_key(out, "name", signal->name);
+        json_key(out, "unit", signal->unit);
+        json_key(out, "quantity", unit_quantity(signal->unit));
+        text_print(out, "\"values\":%d}", a->curves + k);
+    }
+    text_print(out, "],\n");
+}
+
+/* ---- the page ---------------------------------------------------------------------------------------------------- */
+
+/* Size of the vehicle at the start, or of all moving bodies on a fixed base; and the lowest height of any point at any
+ * frame. */
+static double extent(const Animation *a, double *lowest)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, x[3];
+    *lowest = INFINITY;
+    for (int k = 0; k < a->frames; ++k)
+        for (int b = 0; b < a->model->bodies; ++b)
+            for (int i = 0; i < a->shapes.body[b].points; ++i) {
+                const double *frame = a->value + (size_t)k * (size_t)a->channels;
+                pose_point(pose_of(frame, b), a->shapes.body[b].point[i].x, x);
+                *lowest = fmin(*lowest, x[2]);
+                for (int c = 0; c < 3 && (!k || !a->model->free_base); ++c) {
+                    low[c] = fmin(low[c], x[c]);
+                    high[c] = fmax(high[c], x[c]);
+                }
+            }
+    double size = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    for (int w = 0; w < a->model->wheels; ++w)
+        size = fmax(size, 4 * a->model->wheel[w].radius);
+    return size > 0 ? size : 1;
+}
+
+/* The path of the base over the frames, along which the road is drawn; of a fixed base the middle of the other bodies.
+ */
+static double *way_of(const Animation *a)
+{
+    double *way = pool_alloc(a->pool, (size_t)a->frames * 2 * sizeof *way);
+    for (int k = 0; k < a->frames; ++k)
+        for (int i = 0; i < 2; ++i) {
+            const double *frame = a->value + (size_t)k * (size_t)a->channels;
+            const int others = a->model->bodies - 1;
+            if (a->model->free_base)
+                way[2 * k + i] = frame[i];
+            for (int b = 1; b <= others && !a->model->free_base; ++b)
+                way[2 * k + i] += pose_of(frame, b)[i] / others;
+        }
+    return way;
+}
+
+static void json_run(const Animation *a, Text *out)
+{
+    double lowest, ahead[3], A[9];
+    const double size = extent(a, &lowest), length = unit_for(size);
+    const char *slash = strrchr(a->scene_path, '/');
+    text_print(out, "{");
+    json_key(out, "model", a->model->name);
+    json_key(out, "description", a->model->description);
+    json_key(out, "scene", slash ? slash + 1 : a->scene_path);
+    mat_from_euler(a->model->body[BODY_BASE].euler, A);
+    apply3_transposed(A, (const double[]){1, 0, 0}, ahead);
+    json_vector(out, "ahead", ahead);
+    text_print(out, ",\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
+               a->model->free_base ? "true" : "false", size, a->frames, (double)a->every * a->scene->output_step);
+    json_bodies(a, out);
+    json_lines(a, out);
+    json_wheels(a, out);
+    json_curves(a, out);
+    json_course(out, a->scene);
+    text_print(out, ",\n");
+    text_print(out, "\"road\":");
+    const gic_road_plane below = {.head = {.height = gic_plane_height}, .z0 = lowest - 0.05 * size};
+    const gic_road_plane level = {.head = {.height = gic_plane_height}};
+    road_tiles(out,
+               !a->model->wheels ? &below.head
+               : a->scene->road  ? a->scene->road
+                                 : &level.head,
+               size, way_of(a), a->frames);
+    text_print(out, ",\n\"channels\":[");
+    for (int c = 0; c < a->channels; ++c) {
+        text_print(out, c ? ",\n" : "\n");
+        json_channel(a, c, channel_unit(a, c, length), out);
+    }
+    text_print(out, "]}\n");
+}
+
+static void write_data(void *context, Text *out, int indent)
+{
+    (void)indent;
+    json_run(context, out);
+}
+
+static const Insertions page_points;
+
+static void write_part(const Animation *a, const char *name, Text *out)
+{
+    template_expand(a->pool, out, NULL, name, a->model->name, NULL, &page_points, NULL);
+}
+
+static void write_motion(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_motion.js.in", out);
+}
+
+static void write_mesh(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_mesh.js.in", out);
+}
+
+static void write_view(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_view.js.in", out);
+}
+
+static void write_curves(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_curves.js.in", out);
+}
+
+static void write_save(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_save.js.in", out);
+}
+
+static void write_page(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, "animate_page.js.in", out);
+}
+
+static const Insertion page_point[] = {
+    {"data", write_data},     {"motion", write_motion}, {"mesh", write_mesh}, {"view", write_view},
+    {"curves", write_curves}, {"save", write_save},     {"page", write_page}, {NULL, NULL}};
+
+static const Insertions page_points = {
+    (const char *const[]){"animate.html.in", "animate_motion.js.in", "animate_mesh.js.in", "animate_view.js.in",
+                          "animate_curves.js.in", "animate_save.js.in", "animate_page.js.in", NULL},
+    page_point, NULL};
+
+void animation_write(Animation *a, const char *path)
+{
+    Text page = {.pool = a->pool};
+    templates_check(a->pool, NULL, (const Insertions *const[]){&page_points, NULL});
+    template_expand(a->pool, &page, NULL, "animate.html.in", a->model->name, NULL, &page_points, a);
+    file_write(path, page.s, page.size);
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Shared by the files of gicrun --animate. Poses are 7 numbers, FORMAT.md section 1. */
+#ifndef RUN_ANIMATE_H
+#define RUN_ANIMATE_H
+
+#include "base/base.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "scene/scene.h"
+
+/* ---- animate_shape.c: how a model looks, from nothing but its points, axes and masses --------------------------- */
+
+typedef struct Point {
+    double x[3];
+} Point;
+
+/* How a body is drawn: as a frame of bars about its points (the base of a vehicle); as points only (ground); as the
+ * hull of its points; as a transparent box with its points (heavy bodies of a vehicle, bodies of one point); by the
+ * `shape` of the model. */
+typedef enum Look { LOOK_FRAME, LOOK_POINTS, LOOK_HULL, LOOK_GLASS, LOOK_BOX, LOOK_CYLINDER, LOOK_MESH, LOOKS } Look;
+
+extern const char *const look_name[LOOKS];
+
+/* Body frame: points of joints, springs and wheels, and the centre of mass. box: edges of the solid box with the body's
+ * mass and moments of inertia. */
+typedef struct Shape {
+    Point *point;
+    int points;
+    double com[3], box[3];
+    Look look;
+    double middle[3], axis[3], size[3]; /* of a box: edges along x, y, z; of a cylinder: radius, length */
+    const BodyShape *mesh;
+} Shape;
+
+/* A line from a point of a body to one of another (BODY_GROUND: world). kind: "link", "spring" or "damper". */
+typedef struct Line {
+    const char *name, *kind;
+    int body[2];
+    double point[2][3];
+} Line;
+
+typedef struct Shapes {
+    Shape *body; /* [bodies] */
+    Line *line;
+    int lines;
+    double (*center)[3], (*axis)[3], *width; /* [wheels] frame of the body that carries it; m */
+} Shapes;
+
+/* With the scene's values of parameters. */
+Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene);
+
+/* ---- animate_look.c: which shape a body has ---------------------------------------------------------------------- */
+
+/* Call after points, boxes and wheels of all bodies are set; the second function prints the JSON of one. */
+void looks_choose(Pool *pool, const Model *model, Shapes *shapes);
+void json_look(Text *out, const Shape *shape);
+
+/* ---- animate_course.c: what stands and is painted on the road -----------------------------------------------------
+ */
+
+/* JSON: cones, edges of lanes and the driver's path of a scene. */
+void json_course(Text *out, const Scene *scene);
+
+/* ---- animate_road.c: the road along a way ------------------------------------------------------------------------ */
+
+/* JSON: heights of the road, and its friction where it is not 1, in square tiles near `way`, [count][x, y]. size: of
+ * the vehicle, m. */
+void road_tiles(Text *out, const gic_road *road, double size, const double *way, int count);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * The engines by name. */
+#include "base/base.h"
+#include "compare/compare.h"
+#include "compare/mumps.h"
+#include "engine/engine.h"
+#include "model/model.h"
+#include "run/engines.h"
+#include "tape/tape.h"
+
+#include <string.h>
+#include <sys/resource.h>
+
+typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
+
+const char *const engine_name[] = {"auto", "tcc", "cc", "gic", "gcp1", "gcp2", "tape", NULL};
+
+static Open *const engine_opener[] = {engine_auto, engine_tcc,  engine_cc,  engine_gic,
+                                      engine_gcp1, engine_gcp2, engine_tape};
+
+static int engine_index(const char *name)
+{
+    for (int i = 0; engine_name[i]; ++i)
+        if (!strcmp(engine_name[i], name))
+            return i;
+    return -1;
+}
+
+bool engine_known(const char *name)
+{
+    return engine_index(name) >= 0;
+}
+
+bool engine_generates(const char *name)
+{
+    Open *const open = engine_opener[engine_index(name)];
+    return open != engine_gic && open != engine_gcp1 && open != engine_gcp2;
+}
+
+const char *engine_missing(Pool *pool, const char *name)
+{
+    const char *why;
+    return engine_opener[engine_index(name)] != engine_gcp2 || mumps_load(pool, &why) ? NULL : MUMPS_PACKAGES;
+}
+
+const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options)
+{
+    return engine_opener[engine_index(name)](pool, model, options);
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT
+ * gicrun: generate, compile and run a model. This file: the command line. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "host/host.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "run/engines.h"
+#include "run/linearize.h"
+#include "run/run.h"
+#include "run/stability_watch.h"
+#include "scene/scene.h"
+#include "subset/subset.h"
+#include "vehicle/vehicle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
+    "              [--animate page.html]\n"
+    "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
+    "\n"
+    "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
+    "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
+    "moves about there.\n"
+    "\n"
+    "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
+    "                     picture or a page is asked for)\n"
+    "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
+    "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
+    "                     moves along its road\n"
+    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
+    "                     a scene gives the road only\n"
+    "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
+    "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
+    "                     wheel loads; -o: the state as a row that --eval reads\n"
+    "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
+    "                     the scene's velocities; -o: the same as CSV\n"
+    "      --integrator NAME\n"
+    "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
+    "                     of the scene's\n"
+    "      --tolerance NUMBER\n"
+    "                     of variable steps instead of the scene's\n"
+    "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
+    "                     compiled in this process, and in a run of more than a moment by\n"
+    "                     the C compiler too, whose code takes over; tcc, the first of them;\n"
+    "                     cc, the second; tape, formulas for any scene interpreted; with\n"
+    "                     --general all four give the same digits, and only cc needs a\n"
+    "                     compiler. gic, gcp1, gcp2: the paper's methods interpreted\n"
+    "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
+    "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
+    "                     is one; auto (default), whichever takes fewer operations\n"
+    "      --general      generated code as for any scene; without it a run has code for its scene\n"
+    "                     alone, which leaves out what that doesn't need\n"
+    "      --lanes W      with --engine cc, by gcc or clang: wheels, and other parts that are\n"
+    "                     alike, side by side in vectors of up to W numbers: 2, 4, 8 or 16\n"
+    "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, after ours, in one word\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "What the compiler made is kept for the next run, in $GICGEN_CACHE (default: gicgen in\n"
+    "$XDG_CACHE_HOME or ~/.cache), at most $GICGEN_CACHE_SIZE megabytes (default: 64); an\n"
+    "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
+    "\n"
+    "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
+    "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
+    "2 wrong usage.\n";
+
+static void read_tolerance(void *request, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || !tolerance_known(value))
+        usage_fail("gicrun", "--tolerance must be a number between 1e-13 and 0.1, unlike", word);
+    ((Request *)request)->tolerance = value;
+}
+
+static void read_engine(void *request, char *name)
+{
+    ((Request *)request)->engine = name;
+    if (engine_known(name))
+        return;
+    fprintf(stderr, "gicrun: error: there is no engine '%s'\n  remedy: one of", name);
+    for (int i = 0; engine_name[i]; ++i)
+        fprintf(stderr, "%s %s", i ? "," : "", engine_name[i]);
+    fputs("\n", stderr);
+    exit(2);
+}
+
+static void read_solve(void *request, char *form)
+{
+    ((Request *)request)->solve = solve_of(form);
+    if (((Request *)request)->solve == SOLVES)
+        usage_fail("gicrun", "--solve takes auto, reduced, articulated or augmented, not", form);
+}
+
+static void read_recovery(void *request, char *way)
+{
+    ((Request *)request)->recovery = recovery_of(way);
+    if (((Request *)request)->recovery == RECOVERIES)
+        usage_fail("gicrun", "--recovery takes auto, newton or closed, not", way);
+}
+
+static void read_lanes(void *request, char *word)
+{
+    ((Request *)request)->lanes = lanes_of(word);
+    if (!((Request *)request)->lanes)
+        usage_fail("gicrun", "--lanes takes 2, 4, 8 or 16, not", word);
+}
+
+static Request read_command_line(int count, char **word)
+{
+    Request request = {.engine = engine_name[0], .compiler = compiler_default(), .flags = ""};
+    const Option option[] = {
+        {"output", 'o', .text = &request.results},
+        {"plot", .text = &request.picture},
+        {"animate", .text = &request.page},
+        {"eval", .text = &request.states},
+        {"equilibrium", .on = &request.rests},
+        {"modes", .on = &request.modes},
+        {"integrator", .text = &request.integrator},
+        {"tolerance", .read = read_tolerance},
+        {"engine", .read = read_engine},
+        {"solve", .read = read_solve},
+        {"recovery", .read = read_recovery},
+        {"general", .on = &request.general},
+        {"lanes", .read = read_lanes},
+        {"cc", .text = &request.compiler},
+        {"cflags", .text = &request.flags},
+        {"quiet", 'q', .on = &request.quiet},
+    };
+    const int first =
+        options_read("gicrun", help, count, word, option, (int)(sizeof option / sizeof *option), &request, NULL);
+    const int files = count - first;
+    if (files < 1)
+        usage_fail("gicrun", "no model given", NULL);
+    if (request.rests + request.modes + (request.states != NULL) > 1)
+        usage_fail("gicrun", "one of --eval, --equilibrium and --modes, please", NULL);
+    const bool runs = !request.states && !request.rests && !request.modes;
+    if (files < 2 && runs)
+        usage_fail("gicrun", "no scene given", NULL);
+    if (files > 2)
+        usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
+    request.model = word[first];
+    request.scene = files > 1 ? word[first + 1] : NULL;
+    if (!strcmp(request.model, "-"))
+        usage_fail("gicrun", "the model must be a file", NULL);
+    if (request.lanes && strcmp(request.engine, "cc") != 0)
+        usage_fail("gicrun", "--lanes goes with --engine cc, not with", request.engine);
+    if (request.integrator && integrator_method(request.integrator) < 0)
+        usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
+    if (request.picture && !runs)
+        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium or --modes", NULL);
+    if (request.picture && !plot_known(request.picture))
+        usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
+    if (request.page && !runs)
+        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium or --modes", NULL);
+    if (request.page && !path_ends(request.page, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", request.page);
+    if (!request.results && !request.picture && !request.page && (runs || request.states))
+        request.results = "-";
+    return request;
+}
+
+/* The reports on the static equilibrium. */
+static void analyse(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request)
+{
+    const Equilibrium *found = equilibrium_find(pool, model, scene, request->solve);
+    if (request->rests)
+        equilibrium_report(pool, engine, scene, request, found);
+    else
+        modes_report(pool, scene, request, found);
+}
+
+/* Refuse outputs that are inputs of the run. */
+static void check_outputs(const Request *request, const Model *model, const Scene *scene)
+{
+    const char *const output[] = {request->results, request->picture, request->page};
+    const Source states = {.path = request->states ? request->states : "-"};
+    for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
+        if (!output[i])
+            continue;
+        file_check(output[i]);
+        source_keep(model->source, output[i]);
+        source_keep(&states, output[i]);
+        if (scene)
+            source_keep(scene->source, output[i]);
+    }
+}
+
+int main(int count, char **word)
+{
+    const Request request = read_command_line(count, word);
+    Pool *pool = pool_new();
+    const Model *model = model_read(pool, request.model);
+    if (request.page) /* the page shows forces of all wheels as arrows */
+        model = model_watch_wheels(pool, model);
+    const Scene *scene =
+        request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
+    check_outputs(&request, model, scene);
+    if (request.picture)
+        plot_check(pool);
+    model = scene_rig(pool, model, &scene);
+    const bool runs = !request.states && !request.rests && !request.modes;
+    if (runs)
+        scene = equilibrium_start(pool, model, scene, request.solve);
+    const bool drawn = request.picture;
+    const Engine *engine =
+        engine_open(pool, request.engine, model,
+                    &(EngineOptions){.solve = request.solve,
+                                     .recovery = request.recovery,
+                                     .lanes = request.lanes,
+                                     .compiler = request.compiler,
+                                     .flags = request.flags,
+                                     /* a page shows whatever outputs tell; lanes are for code for all scenes */
+                                     .facts = runs && !request.general && !request.page && !request.lanes
+                                                  ? scene_facts(pool, model, scene, request.scene, drawn)
+                                                  : NULL,
+                                     .validation = runs ? scene_validation(pool, model, scene) : NULL,
+                                     .quiet = request.quiet});
+    if (request.states)
+        evaluate(pool, engine, scene, &request);
+    else if (request.rests || request.modes)
+        analyse(pool, model, scene, engine, &request);
+    else
+        simulate(pool, engine, model, scene_narrow(pool, scene, model, engine),
+                 request.page ? animation_new(pool, model, scene, request.scene) : NULL,
+                 step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
+    engine_close(engine);
+    pool_free(pool);
+    return 0;
+}

@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: MIT
+ * dz/dt = f + A z: the right-hand side of the engine `tape` in dual numbers, one direction after the other.
+ *
+ * The dependent coordinates q solve Phi(q, x) = 0 by Newton's iteration q1 = q0 - J(q0)^-1 Phi(q0, x). At a solution q0
+ * one correction in dual numbers has the exact derivative, whatever derivative q0 came with, for
+ * dq1 = dq0 - J^-1 (J dq0 + Phi_x dx) = -J^-1 Phi_x dx (implicit function theorem). A second one then finds that of the
+ * velocity Jacobian S, which depends on q. So a recovered configuration takes two corrections, and nothing is
+ * iterated. Where q has a closed form, that is all it takes.
+ *
+ * A parked vehicle stands on kinks: |V| of a tire's slip at V = 0. There the derivative is the mean of both sides, the
+ * limit of central differences, so that it does not depend on the sign of what is zero but for rounding. One-sided
+ * derivatives obey the chain rule through kinks, means do not (|V| times a condition on V); so both are played. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "run/linearize.h"
+#include "sequence/sequence.h"
+#include "subset/subset.h"
+#include "tape/engine_tape.h"
+#include "tape/record.h"
+#include "vehicle/vehicle.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Share of a number's unit within which a state counts as being at a kink. Rounding leaves 1e-15, an equilibrium 1e-12.
+ */
+static const double at_kink = 1e-9;
+
+/* ---- in Euler parameters: the right-hand side along dy -------------------------------------------------- */
+
+/* The dependent Euler parameter follows from the other three; dy: [states]. */
+static int orient(const Instance *self, const double *y, const double *dy, double e[4], double de[4])
+{
+    const gic_model *code = &tape_of(self)->code;
+    int32_t dependent;
+    int64_t switches = 0;
+    memcpy(e, (const double[4]){1, 0, 0, 0}, 4 * sizeof *e);
+    memset(de, 0, 4 * sizeof *de);
+    if (!code->free_base)
+        return GIC_OK;
+    memcpy(&dependent, (const char *)self + code->discrete_offset, sizeof dependent);
+    const int status = gic_orientation(y + 3, &dependent, &switches, e);
+    if (status != GIC_OK)
+        return status;
+    memcpy(de, dy + 3, 4 * sizeof *de);
+    de[dependent] = 0;
+    for (int i = 0; i < 4; ++i)
+        if (i != dependent)
+            de[dependent] -= e[i] * de[i] / e[dependent];
+    return GIC_OK;
+}
+
+/* Addresses of the numbers that a subset's blocks read and write, in an instance or in its derivatives. */
+static void link_subset(Instance *self, TapeLinks *links, int s, double *q, double *step)
+{
+    const TapeEngine *engine = tape_of(self);
+    const Plan *plan = engine->formulation->plan;
+    const Subset *subset = &plan->sequence->subset[s];
+    const Layout *layout = engine->class[subset->class].layout;
+    double *all = tape_start(self), *start = all + plan->start_offset[s];
+    const double *xd = tape_array(self, engine->xd_offset);
+    tape_link(self, links, subset);
+    links->array[CLASS_q] = q;
+    links->array[CLASS_s] = start + layout->start_S;
+    links->array[CLASS_f] = start + layout->start_factors;
+    links->array[CLASS_start] = start;
+    links->array[CLASS_motion] = tape_array(self, engine->motion_offset) + plan->motion_offset[subset->body[0]];
+    links->array[CLASS_inertia] = tape_array(self, engine->inertia_offset) + plan->inertia_offset[s];
+    links->array[CLASS_step] = step;
+    links->array[CLASS_reach] = step + 1;
+    if (!engine->class[subset->class].closed)
+        memcpy(q, start, 7 * (size_t)subset->bodies * sizeof *q);
+    for (int j = 0; j < subset->deps; ++j) {
+        links->x[j] = all[subset->dep[j]];
+        links->rate[j] = xd[subset->dep[j]];
+        links->change[j] = 0;
+    }
+}
+
+/* Derivatives of all subsets; the configuration in `value` is recovered already. y, dy: the state and its change. */
+static int recover(const Linear *linear, const double *y, const double *dy, double near, int *kinks)
+{
+    const TapeEngine *engine = linear->engine;
+    const Sequence *sequence = engine->formulation->sequence;
+    const TapeWorld none = {.near = near, .kinks = kinks};
+    TapeLinks value = linear->value_links, slope = linear->slope_links;
+    double step[2], dstep[2];
+    if (engine->code.free_base) {
+        memcpy(value.turn, y + linear->places + 4, sizeof value.turn);
+        memcpy(slope.turn, dy + linear->places + 4, sizeof slope.turn);
+    }
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        link_subset(linear->value, &value, s, engine->q, step);
+        link_subset(linear->slope, &slope, s, linear->q, dstep);
+        const int corrections = engine->class[subset->class].closed ? 1 : 2;
+        for (int i = 0; i < corrections; ++i) {
+            const int status = tape_play_dual(engine->class[subset->class].solve, engine->member[s], value.array,
+                                              slope.array, &none, engine->frame, linear->frame);
+            if (status != GIC_OK)
+                return status;
+        }
+    }
+    return GIC_OK;
+}
+
+/* Coordinates and their rates, in derivatives of an instance. */
+static void scatter(const Linear *linear, const double *dy)
+{
+    const TapeEngine *engine = linear->engine;
+    const Plan *plan = engine->formulation->plan;
+    double *dx = tape_array(linear->slope, engine->x_offset), *dxd = tape_array(linear->slope, engine->xd_offset);
+    double *start = tape_start(linear->slope);
+    for (int w = 0; w < plan->model->coordinates; ++w) {
+        if (plan->coordinate_state[w] < 0)
+            continue;
+        dx[w] = start[w] = dy[plan->coordinate_state[w]];
+        dxd[w] = dy[plan->coordinate_rate[w]];
+    }
+}
+
+/* drate: derivative of the state's rate along dy, both [states], one-sided where `kinks` are met; linear->rate: the
+ * rate on that side. `self` has just been evaluated at its state. near: share of dy within which kinks are met. */
+static int rate_to_side(const Linear *linear, const Instance *self, const double *dy, double near, double *drate,
+                        int *kinks)
+{
+    const TapeEngine *engine = linear->engine;
+    const gic_model *code = &engine->code;
+    const double time = gic_time(self), dtime = 0;
+    double e[4], de[4], *array[WHOLE_COUNT], *slope[WHOLE_COUNT];
+    memcpy(linear->value, self, code->size);
+    memset(linear->slope, 0, code->size);
+    linear->slope->context = engine;
+    linear->slope->head.flip = self->head.flip;
+    const double *y = tape_array(linear->value, code->state_offset);
+    int status = orient(self, y, dy, e, de);
+    if (status != GIC_OK)
+        return status;
+    scatter(linear, dy);
+    status = recover(linear, y, dy, near, kinks);
+    if (status != GIC_OK)
+        return status;
+    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head, near, kinks};
+    tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
+    tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
+    if (engine->wheel)
+        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
+    if (status == GIC_OK)
+        status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    return status;
+}
+
+/* True if the rate jumps: the difference between both sides is more than slopes can make of their distance. */
+static bool is_jump(int states, double near, const double *const rate[2], const double *const drate[2])
+{
+    for (int i = 0; i < states; ++i) {
+        const double between = near * (fabs(drate[0][i]) + fabs(drate[1][i]));
+        if (fabs(rate[0][i] - rate[1][i]) > equilibrium_limit * (1 + fabs(rate[0][i])) + 2 * between)
+            return true;
+    }
+    return false;
+}
+
+/* linear->drate: derivative of the state's rate along linear->dy; at kinks the mean of both sides. *jump: set where the
+ * rate itself is another one on the other side. */
+static int rate_along(const Linear *linear, const Instance *self, double near, bool *jump)
+{
+    const int states = linear->engine->code.slow_count + linear->engine->code.fast_count;
+    double other_rate[states + 1], other[states + 1];
+    int kinks = 0;
+    int status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
+    if (status != GIC_OK || !kinks)
+        return status;
+    memcpy(other_rate, linear->rate, (size_t)states * sizeof *other);
+    memcpy(other, linear->drate, (size_t)states * sizeof *other);
+    for (int i = 0; i < states; ++i)
+        linear->dy[i] = -linear->dy[i];
+    status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
+    *jump = *jump || is_jump(states, near, (const double *const[]){linear->rate, other_rate},
+                             (const double *const[]){linear->drate, other});
+    for (int i = 0; i < states; ++i)
+        linear->drate[i] = (other[i] - linear->drate[i]) / 2;
+    return status;
+}
+
+/* ---- in small motions ----------------------------------------------------------------------------------- */
+
+/* Indices of a free base's numbers in the state, and of its places and rates among small motions. */
+enum { POSITION = 0, PARAMETERS = 3, DISPLACEMENT = 0, ROTATION = 3, BASE_PLACES = 6 };
+
+static const double *base_velocity(const Linear *linear, const double *y)
+{
+    return y + linear->places + 1;
+}
+
+static const double *base_turn(const Linear *linear, const double *y)
+{
+    return y + linear->places + 4;
+}
+
+/* dp = G(p)^T theta / 2: the change of Euler parameters by a small rotation about the body's own axes. */
+static void parameters_turned(const double p[4], const double theta[3], double dp[4])
+{
+    double c[3];
+    cross3(p + 1, theta, c);
+    dp[0] = -dot3(p + 1, theta) / 2;
+    for (int i = 0; i < 3; ++i)
+        dp[i + 1] = (p[0] * theta[i] + c[i]) / 2;
+}
+
+/* dy: the change of the state that belongs to small motions z [count]. With the rotation R to the world, velocity
+ * v = R u changes by R (du + theta x u). */
+static void state_change(const Linear *linear, const double *y, const double *z, double *dy)
+{
+    const gic_model *code = &linear->engine->code;
+    const int base = code->free_base ? BASE_PLACES : 0, places = linear->places, extra = code->free_base;
+    memcpy(dy + base + extra, z + base, (size_t)(places - base) * sizeof *dy);
+    memcpy(dy + places + extra + base, z + places + base, (size_t)(linear->count - places - base) * sizeof *dy);
+    if (!code->free_base)
+        return;
+    double R[9], u[3], du[3];
+    mat_from_euler(y + PARAMETERS, R);
+    apply3(R, z + DISPLACEMENT, dy + POSITION);
+    parameters_turned(y + PARAMETERS, z + ROTATION, dy + PARAMETERS);
+    apply3_transposed(R, base_velocity(linear, y), u);
+    cross3(z + ROTATION, u, du);
+    for (int i = 0; i < 3; ++i)
+        du[i] += z[places + i];
+    apply3(R, du, dy + places + 1);
+    memcpy(dy + places + 4, z + places + 3, 3 * sizeof *dy);
+}
+
+/* The rate f of small motions' places and velocities, [count], from the state's rate. */
+static void motion_rate(const Linear *linear, const double *y, const double *rate, double *f)
+{
+    const gic_model *code = &linear->engine->code;
+    const int base = code->free_base ? BASE_PLACES : 0, places = linear->places, extra = code->free_base;
+    memcpy(f + base, rate + base + extra, (size_t)(places - base) * sizeof *f);
+    memcpy(f + places + base, rate + places + extra + base, (size_t)(linear->count - places - base) * sizeof *f);
+    if (!code->free_base)
+        return;
+    double R[9], u[3], c[3];
+    const double *turn = base_turn(linear, y);
+    mat_from_euler(y + PARAMETERS, R);
+    apply3_transposed(R, base_velocity(linear, y), u);
+    memcpy(f + DISPLACEMENT, u, sizeof u);
+    memcpy(f + ROTATION, turn, 3 * sizeof *f);
+    apply3_transposed(R, rate + places + 1, f + places);
+    cross3(turn, u, c);
+    for (int i = 0; i < 3; ++i)
+        f[places + i] -= c[i];
+    memcpy(f + places + 3, rate + places + 4, 3 * sizeof *f);
+}
+
+/* And its change along z. In the frame of the base, which turns with omega and is turned by theta:
+ *     rho' = du + theta x u - omega x rho          theta' = d omega - omega x theta
+ *     du'  = R^T dv' - theta x R^T v' - d omega x u - omega x du */
+static void motion_rate_change(const Linear *linear, const double *y, const double *rate, const double *z,
+                               const double *drate, double *df)
+{
+    const gic_model *code = &linear->engine->code;
+    const int base = code->free_base ? BASE_PLACES : 0, places = linear->places, extra = code->free_base;
+    memcpy(df + base, drate + base + extra, (size_t)(places - base) * sizeof *df);
+    memcpy(df + places + base, drate + places + extra + base, (size_t)(linear->count - places - base) * sizeof *df);
+    if (!code->free_base)
+        return;
+    double R[9], u[3], a[3], c[5][3];
+    const double *omega = base_turn(linear, y), *theta = z + ROTATION, *du = z + places, *domega = z + places + 3;
+    mat_from_euler(y + PARAMETERS, R);
+    apply3_transposed(R, base_velocity(linear, y), u);
+    apply3_transposed(R, rate + places + 1, a);
+    apply3_transposed(R, drate + places + 1, df + places);
+    memcpy(df + places + 3, drate + places + 4, 3 * sizeof *df);
+    cross3(theta, u, c[0]);
+    cross3(omega, z + DISPLACEMENT, c[1]);
+    for (int i = 0; i < 3; ++i)
+        df[DISPLACEMENT + i] = du[i] + c[0][i] - c[1][i];
+    cross3(omega, theta, c[0]);
+    for (int i = 0; i < 3; ++i)
+        df[ROTATION + i] = domega[i] - c[0][i];
+    cross3(theta, a, c[0]);
+    cross3(domega, u, c[1]);
+    cross3(omega, du, c[2]);
+    for (int i = 0; i < 3; ++i)
+        df[places + i] -= c[0][i] + c[1][i] + c[2][i];
+}
+
+int linearize(const Linear *linear, Instance *self, double *f, double *A)
+{
+    const gic_model *code = &linear->engine->code;
+    const double *y = tape_array(self, code->state_offset);
+    const int count = linear->count;
+    double z[count + 1], column[count + 1];
+    int status = code->rhs(self, gic_time(self), y, linear->evaluated);
+    if (status != GIC_OK)
+        return status;
+    motion_rate(linear, y, linear->evaluated, f);
+    memset(z, 0, sizeof z);
+    for (int j = 0; j < count; ++j) {
+        linear->jumps[j] = false;
+        z[j] = 1;
+        state_change(linear, y, z, linear->dy);
+        status = rate_along(linear, self, at_kink * linear->reach[j], &linear->jumps[j]);
+        if (status != GIC_OK)
+            return self->head.status = status;
+        motion_rate_change(linear, y, linear->evaluated, z, linear->drate, column);
+        for (int i = 0; i < count; ++i)
+            A[i * count + j] = column[i];
+        z[j] = 0;
+    }
+    return gic_finite(A, count * count) ? GIC_OK : GIC_ERROR_RESULT;
+}
+
+void linear_move(const Linear *linear, Instance *self, const double *z)
+{
+    const gic_model *code = &linear->engine->code;
+    const int base = code->free_base ? BASE_PLACES : 0;
+    double *y = tape_array(self, code->state_offset);
+    for (int i = base; i < linear->places; ++i)
+        y[i + code->free_base] += z[i];
+    for (int i = 2 * linear->places; i < linear->count; ++i)
+        y[i + code->free_base] += z[i];
+    if (!code->free_base)
+        return;
+    double R[9], dr[3], p[4], axis[3], c[3];
+    mat_from_euler(y + PARAMETERS, R);
+    apply3(R, z + DISPLACEMENT, dr);
+    for (int i = 0; i < 3; ++i)
+        y[POSITION + i] += dr[i];
+    const double angle = norm3(z + ROTATION), share = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    memcpy(p, y + PARAMETERS, sizeof p);
+    for (int i = 0; i < 3; ++i)
+        axis[i] = share * z[ROTATION + i];
+    cross3(p + 1, axis, c);
+    y[PARAMETERS] = p[0] * cos(angle / 2) - dot3(p + 1, axis);
+    for (int i = 0; i < 3; ++i)
+        y[PARAMETERS + 1 + i] = p[0] * axis[i] + p[i + 1] * cos(angle / 2) + c[i];
+    code->settle(self, y);
+}
+
+/* ---- opening -------------------------------------------------------------------------------------------- */
+
+static void add_number(Pool *pool, Linear *linear, const char *name, double reach, double piece)
+{
+    int same = linear->count, also = linear->count;
+    *POOL_PUSH(pool, linear->name, same) = name;
+    *POOL_PUSH(pool, linear->piece, also) = piece;
+    *POOL_PUSH(pool, linear->reach, linear->count) = reach;
+}
+
+/* Units of wheels' fast states, which come first: 1 rad/s, slips of 0.1, the windup of a slipping brake. */
+static void describe_wheels(Linear *linear)
+{
+    static const double reach[FAST_MOST] = {
+        [FAST_SPIN] = 1, [FAST_SLIP_X] = 0.1, [FAST_SLIP_Y] = 0.1, [FAST_BRAKE] = 1};
+    const Model *model = linear->engine->formulation->model;
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; model->wheel[i].tire >= 0 && k < wheel_fast_states(&model->wheel[i]); ++k) {
+            const int number = 2 * linear->places + linear->of_wheels++;
+            linear->reach[number] = reach[k];
+            linear->slips[number] = k == FAST_SLIP_X || k == FAST_SLIP_Y;
+        }
+}
+
+/* A coordinate's name, or `coordinate/name` if it is also that of a displacement of the base. */
+static const char *place_name(Pool *pool, const char *name, const char *const base[], int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(name, base[i]))
+            return pool_print(pool, "coordinate/%s", name);
+    return name;
+}
+
+/* Names of places, also used for their rates, and of fast states; the last fast state of a powertrain is a clock and is
+ * left out. */
+static void name_numbers(Pool *pool, Linear *linear)
+{
+    static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    const double small = 0.1;
+    const TapeEngine *engine = linear->engine;
+    const gic_model *code = &engine->code;
+    linear->clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
+    for (int half = 0; half < 2; ++half) {
+        for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
+            add_number(pool, linear, base[i], small, small);
+        for (int c = 0; c < code->coordinate_count; ++c)
+            if (code->coordinate_state[c] >= 0)
+                add_number(pool, linear,
+                           place_name(pool, code->coordinate[c].name, base, code->free_base ? BASE_PLACES : 0), small,
+                           engine->piece[c]);
+        linear->places = half ? linear->places : linear->count;
+    }
+    for (int i = 0; i < code->fast_count - linear->clocks; ++i)
+        add_number(pool, linear, code->state[code->slow_count + i].name, 1, 1);
+    linear->slips = pool_alloc(pool, (size_t)linear->count + 1);
+    linear->jumps = pool_alloc(pool, (size_t)linear->count + 1);
+    describe_wheels(linear);
+}
+
+Linear *linear_open(Pool *pool, const Engine *engine)
+{
+    const TapeEngine *tape = engine->context;
+    const Formulation *f = tape->formulation;
+    Linear *linear = pool_alloc(pool, sizeof *linear);
+    int bodies = 0;
+    for (int c = 0; c < f->sequence->classes; ++c)
+        bodies = tape->class[c].layout->bodies > bodies ? tape->class[c].layout->bodies : bodies;
+    *linear = (Linear){.engine = tape, .value_links = tape_links_new(pool, f), .slope_links = tape_links_new(pool, f)};
+    name_numbers(pool, linear);
+    const size_t states = (size_t)(tape->code.slow_count + tape->code.fast_count + 1);
+    linear->value = (Instance *)(void *)instance_new(pool, engine);
+    linear->slope = (Instance *)(void *)instance_new(pool, engine);
+    linear->frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof(double));
+    linear->q = pool_alloc(pool, (size_t)(7 * bodies + 1) * sizeof(double));
+    linear->dy = pool_alloc(pool, states * sizeof(double));
+    linear->evaluated = pool_alloc(pool, states * sizeof(double));
+    linear->rate = pool_alloc(pool, states * sizeof(double));
+    linear->drate = pool_alloc(pool, states * sizeof(double));
+    return linear;
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Small motions about a state, from exact derivatives of the expression graph: the tape of the engine `tape` played in
+ * dual numbers. Static equilibrium and eigenvalues, which are made of them. */
+#ifndef RUN_LINEARIZE_H
+#define RUN_LINEARIZE_H
+
+#include "base/base.h"
+#include "engine/engine.h"
+#include "model/model.h"
+#include "run/run.h"
+#include "scene/scene.h"
+#include "subset/subset.h"
+#include "tape/engine_tape.h"
+
+/* Small motions z of a model: `places` first, then their rates, then fast states. Places: of a free base displacements
+ * x y z along the base's own axes (m) and small rotations roll pitch yaw about them (rad), then the free coordinates.
+ * Rates: velocity of the base's origin in its own axes, angular velocity, rates of the coordinates. That is a minimal
+ * set, in which the Euler parameters have no redundant direction, and steady turning on a plane is a steady state. */
+typedef struct Linear {
+    const TapeEngine *engine;
+    int places, count;       /* count: 2 places and fast states */
+    bool *slips;             /* [count] true for the slip of a tire */
+    bool *jumps;             /* [count] set by linearize(): a rate jumps where this number passes its value */
+    int of_wheels;           /* number of fast states that belong to wheels; they come first */
+    int clocks;              /* number of fast states after them that only count time: the time since a shift */
+    const char **name;       /* [count] */
+    double *reach;           /* [count] units for comparison: 0.1 m, 0.1 rad, 0.1 m/s, 0.1 rad/s; 1 rad/s for spins, 0.1
+                              * for slips. Equal on the left and right sides */
+    double *piece;           /* [places] a small change: 0.1, or the change of a coordinate by which no body turns by
+                              * more than 0.1 rad */
+    Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
+    TapeLinks value_links, slope_links;
+    double *frame, *q, *dy, *evaluated, *rate, *drate; /* work */
+} Linear;
+
+/* linearize.c: `engine` is the engine tape. */
+Linear *linear_open(Pool *pool, const Engine *engine);
+/* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:
+ * [count][count]; where the state is at a kink but for 1e-9 of the reach, the mean of both sides. Returns a status,
+ * which the instance then has. */
+int linearize(const Linear *linear, Instance *self, double *f, double *A);
+/* The instance's state moved by places and fast states of z [count], exactly also where they are not small; velocities
+ * stay. */
+void linear_move(const Linear *linear, Instance *self, const double *z);
+
+/* ---- equilibrium.c: static equilibrium ------------------------------------------------------------------ */
+
+/* Accelerations (m/s^2, rad/s^2) and rates of fast states below which nothing moves. */
+extern const double equilibrium_limit;
+
+typedef struct Equilibrium {
+    const Model *model; /* the user's, and behind its outputs force elements and wheels */
+    const Engine *engine;
+    const Linear *linear;
+    Instance *self;  /* at rest, inputs as they are at time 0, driven coordinates standing still there */
+    double *f, *A;   /* linearize() there */
+    double residual; /* largest of the accelerations */
+    int steps;
+    bool locked;         /* wheels and engine are held, since the scene starts in motion */
+    const char *neutral; /* places along which it may be moved and rests as well: "x, y, yaw"; NULL: none */
+} Equilibrium;
+
+/* The equilibrium that is reached from a scene's initial state, or without a scene from the model's, with inputs and
+ * road of the scene at time 0. Wheels are locked where the scene starts in motion, for what holds them at rest does not
+ * matter then. Ends in diag_fail where there is none. */
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+/* True if a scene starts at rest: all velocities at most 1e-9 m/s or rad/s. */
+bool equilibrium_stands(const Model *model, const Scene *scene);
+/* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
+int equilibrium_force(const Equilibrium *found, int force);
+int equilibrium_wheel(const Equilibrium *found, int wheel);
+/* The scene, but for places, which are those of the equilibrium; a `speed` is along the base there. */
+const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found);
+
+/* ---- equilibrium_report.c ------------------------------------------------------------------------------- */
+
+/* --equilibrium: tables, and with -o the state as a row that --eval reads. The residual by `engine` too, which must
+ * respect the limit. */
+void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
+                        const Equilibrium *found);
+
+/* ---- modes.c: eigenvalues ------------------------------------------------------------------------------- */
+
+/* A pair of complex eigenvalues (imaginary > 0), or a real one; 1/s. */
+typedef struct Mode {
+    double real, imaginary;
+    double *share; /* [places + fast states] of a place together with its rate, or of a fast state; sum 1 */
+} Mode;
+
+typedef struct Modes {
+    int count, zeros;    /* zeros: number of rigid-body eigenvalues (no stiffness, no drive), not among the modes */
+    Mode *mode;          /* slowest first */
+    const char *neutral; /* places (and their rates) that they belong to; NULL: none */
+} Modes;
+
+/* Of dz/dt = A z; NULL: the eigenvalues could not be found. */
+const Modes *modes_try(Pool *pool, const Linear *linear, const double *A);
+/* The same, which ends in diag_fail then. */
+const Modes *modes_find(Pool *pool, const Linear *linear, const double *A);
+/* Warns where a rate jumps as a number passes its value: the modes are not those of either side then. */
+void modes_warn_jumps(const Linear *linear, Place at);
+/* --modes: a table; or CSV with -o. About the equilibrium, with the scene's velocity. */
+void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found);
+
+#endif

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * run: the program gicrun: engines by name, scenes step by step, equilibrium, pages. */
+#ifndef RUN_RUN_H
+#define RUN_RUN_H
+
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "run/variable_step.h"
+#include "scene/scene.h"
+#include "subset/subset.h"
+
+/* ---- gicrun.c: the command line */
+
+/* The options of the command line. */
+typedef struct Request {
+    const char *model, *scene; /* paths; scene may be NULL with `states` */
+    const char *states;        /* --eval, or NULL */
+    bool rests, modes;         /* --equilibrium, --modes */
+    const char *results;       /* "-": standard output; NULL: none */
+    const char *picture;       /* --plot, or NULL */
+    const char *page;          /* --animate, or NULL */
+    const char *engine;        /* one of engine_name */
+    Solve solve;
+    Recovery recovery;
+    int lanes;              /* as in EngineOptions */
+    const char *compiler;   /* command, perhaps with options */
+    const char *flags;      /* more options of the compiler */
+    const char *integrator; /* replaces the scene's, or NULL */
+    double tolerance;       /* replaces the scene's, or 0 */
+    bool general;           /* code for any scene */
+    bool quiet;
+} Request;
+
+/* ---- animate.c: a page of HTML in which the model moves */
+
+typedef struct Animation Animation;
+
+/* Before a run of a scene, whose name the page shows. */
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path);
+/* At each output time, with outputs computed: keep what is seen where the time is one of a frame. Returns a status. */
+int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
+/* The page; exits with a message when it can't be written. */
+void animation_write(Animation *animation, const char *path);
+
+typedef struct StepWatch StepWatch; /* stability_watch.h */
+
+/* ---- simulate.c, evaluate.c */
+
+/* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
+int scene_start(const Engine *engine, const Scene *scene, gic_head *self);
+/* The present value of signal[i] of a scene, of an instance whose outputs are computed. */
+double scene_value(const gic_model *code, gic_head *self, int i);
+/* The part of it for fast states: wheels roll, except fast states that the scene (NULL: none) gives. Returns a status.
+ */
+int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
+/* One step of a scene, by the engine's code or faster one: a constant one, or where `variable` is given one towards
+ * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
+int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
+               double end);
+/* A part of that: one step, without driver and sleep. */
+int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
+/* Outputs at the present time, computed on a copy of the instance, so that how often someone looks leaves no trace in
+ * the results; those of a vehicle that sleeps stay. *slumber: 0 at first, and the same number from call to call. */
+int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber);
+/* equilibrium.c: the scene, or if it asks for it a scene that starts in static equilibrium. Ends in diag_fail if there
+ * is none. */
+const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+/* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. mechanism: what the engine
+ * was made for. A failure on the way keeps what was computed, with the last good state, and ends in diag_fail. */
+void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
+              StepWatch *watch, const Request *request);
+/* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
+void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
+
+#endif

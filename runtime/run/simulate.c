@@ -1,0 +1,593 @@
+/* SPDX-License-Identifier: MIT
+ * Run a scene: steps, results, progress, summary. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "model/model.h"
+#include "run/dead_centre.h"
+#include "run/engines.h"
+#include "run/run.h"
+#include "run/scene_events.h"
+#include "run/stability_watch.h"
+#include "run/variable_step.h"
+#include "scene/action.h"
+#include "scene/driver.h"
+#include "scene/scene.h"
+#include "scene/sleep.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    BATCH = 256,        /* steps between looks at the clock */
+    MOST_POINTS = 4000, /* of a curve in a picture */
+};
+
+static const double refresh = 0.1; /* s between lines of progress */
+
+/* A run in progress. Outputs are computed on a copy of the instance, so that how often someone looks leaves no trace in
+ * the results. */
+typedef struct Run {
+    Pool *pool;
+    const Engine *engine;
+    const gic_model *model; /* the engine's code, later maybe faster code */
+    const Scene *scene;
+    const Request *request;
+    gic_head *self, *copy;
+    Variable *variable; /* NULL: constant steps */
+    int64_t steps;
+    Csv csv;
+    Plot plot;
+    const int *drawn;     /* indices of the picture's signals among the scene's */
+    Animation *animation; /* NULL: none */
+    StepWatch *watch;     /* NULL: none */
+    SceneEvents *events;  /* NULL: the scene has no conditions */
+    Outcome outcome;
+    bool ended;             /* by `until` */
+    int64_t samples, every; /* output times so far; one in `every` goes into the picture */
+    double constraint;      /* largest residual so far */
+    double integrating;     /* CPU seconds in steps */
+    double recorded;        /* time of the last row */
+    double looked;          /* clock at the last look */
+    int64_t slumber;        /* of scene_outputs */
+    bool shown, interrupted;
+} Run;
+
+/* Set the base and the free coordinates in the state: FORMAT.md section 10. Numbers that the scene does not give stay
+ * as set-up made them, since geometric parameters may have moved them. */
+static int set_state(const Engine *engine, const Scene *scene, gic_head *self)
+{
+    const gic_model *model = engine->code;
+    double state[engine->standard_count + 1];
+    const int status = engine_look(engine, self, state, NULL);
+    if (status != GIC_OK)
+        return status;
+    /* from a coordinate to its rate, past 7 and 6 numbers of the base */
+    const int half = (engine->standard_count - model->fast_count) / 2;
+    if (model->free_base) {
+        if (scene->placed)
+            memcpy(state, scene->position, sizeof scene->position);
+        memcpy(state + 3, scene->euler, sizeof scene->euler);
+        memcpy(state + half + 1, scene->velocity, sizeof scene->velocity);
+        memcpy(state + half + 4, scene->angular_velocity, sizeof scene->angular_velocity);
+    }
+    for (int i = 0; i < model->coordinate_count; ++i) {
+        int at = model->coordinate_state[i];
+        if (at < 0)
+            continue;
+        if (scene->given[i])
+            state[at] = scene->value[i];
+        state[at + half] = scene->rate[i];
+    }
+    return engine_enter(engine, self, state);
+}
+
+int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self)
+{
+    const int status = model->roll ? model->roll(self) : GIC_OK;
+    double *fast = instance_array(self, model->state_offset) + model->slow_count;
+    for (int i = 0; i < model->fast_count && scene; ++i)
+        if (!isnan(scene->fast[i]))
+            fast[i] = scene->fast[i];
+    int32_t *discrete = (int32_t *)(void *)((char *)self + model->discrete_offset);
+    for (int i = model->free_base; i < model->discrete_count && scene; ++i)
+        discrete[i] = scene->gear;
+    return status;
+}
+
+/* ---- output times --------------------------------------------------------------------------------------- */
+
+double scene_value(const gic_model *code, gic_head *self, int i)
+{
+    const bool input = i >= code->output_count;
+    return instance_array(self, input ? code->input_offset : code->output_offset)[input ? i - code->output_count : i];
+}
+
+/* How many marks a scene sets. */
+static int scene_marks(const Scene *scene)
+{
+    return scene->actions ? scene->actions->marks : 0;
+}
+
+static void write_header(Run *run)
+{
+    csv_name(&run->csv, "time", "s");
+    for (int i = 0; i < run->scene->columns; ++i) {
+        const gic_signal *signal = &run->scene->signal[run->scene->column[i]];
+        csv_name(&run->csv, signal->name, signal->unit);
+    }
+    for (int i = 0; scene_marks(run->scene) && i < run->scene->actions->count; ++i)
+        if (run->scene->actions->action[i].mark)
+            csv_name(&run->csv, pool_print(run->pool, "mark.%s", run->scene->actions->action[i].mark), "1");
+    csv_end_row(&run->csv);
+}
+
+/* The signals of a row of the picture, after the time. */
+static const int *drawn_signals(Pool *pool, const Scene *scene)
+{
+    int *drawn = pool_alloc(pool, sizeof *drawn * (size_t)(scene->curves + 2 * scene->panels + 1)), *next = drawn;
+    for (int i = 0; i < scene->curves; ++i)
+        *next++ = scene->curve[i];
+    for (int i = 0; i < 2 * scene->panels; ++i)
+        *next++ = scene->panel[i / 2][i % 2];
+    return drawn;
+}
+
+static void prepare_plot(Run *run)
+{
+    const Scene *scene = run->scene;
+    const char *slash = strrchr(run->request->scene, '/');
+    run->plot.title = pool_print(run->pool, "%s: %s", run->model->name, slash ? slash + 1 : run->request->scene);
+    run->plot.curves = scene->curves;
+    run->plot.panels = scene->panels;
+    run->drawn = drawn_signals(run->pool, scene);
+    const int drawn = scene->curves + 2 * scene->panels;
+    gic_signal *signal = pool_alloc(run->pool, sizeof *signal * (size_t)(drawn + 1));
+    for (int i = 0; i < drawn; ++i)
+        signal[i] = scene->signal[run->drawn[i]];
+    run->plot.signal = signal;
+    run->every = (scene->outputs + MOST_POINTS) / MOST_POINTS;
+    int64_t rows = scene->outputs / run->every + 1;
+    run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(drawn + 1));
+}
+
+int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber)
+{
+    const Sleep *rest = scene->rest;
+    const int64_t now = rest && rest->asleep ? rest->slumbers : 0;
+    const bool stay = now && now == *slumber;
+    *slumber = now;
+    if (stay)
+        return GIC_OK;
+    memcpy(copy, self, model->size);
+    copy->grown = -1;
+    copy->unchecked = 0; /* check the results that are shown */
+    return model->outputs(copy);
+}
+
+/* Compute outputs at an output time. */
+static int compute_outputs(Run *run)
+{
+    const int status = scene_outputs(run->model, run->scene, run->self, run->copy, &run->slumber);
+    return status == GIC_OK && run->animation ? animation_frame(run->animation, run->model, run->copy) : status;
+}
+
+/* What becomes of it, where the base's state can be seen without more ado. */
+static void look_at_vehicle(Run *run)
+{
+    if (run->model->free_base && run->model->wheel_count && !run->engine->leave)
+        outcome_look(&run->outcome, run->model, run->scene->road, gic_time(run->self),
+                     instance_array(run->self, run->model->state_offset));
+}
+
+static void record(Run *run)
+{
+    const Scene *scene = run->scene;
+    const double time = gic_time(run->self);
+    run->recorded = time;
+    look_at_vehicle(run);
+    if (run->csv.file) {
+        csv_time(&run->csv, time);
+        for (int i = 0; i < scene->columns; ++i)
+            csv_number(&run->csv, scene_value(run->model, run->copy, scene->column[i]));
+        for (int i = 0; scene_marks(scene) && i < scene->actions->count; ++i)
+            if (scene->actions->action[i].mark)
+                csv_number(&run->csv, scene->actions->action[i].done);
+        csv_end_row(&run->csv);
+    }
+    if (run->samples++ % run->every == 0) {
+        const int drawn = scene->curves + 2 * scene->panels;
+        double *sample = run->plot.sample + run->plot.rows++ * (drawn + 1);
+        *sample++ = time;
+        for (int i = 0; i < drawn; ++i)
+            *sample++ = scene_value(run->model, run->copy, run->drawn[i]);
+    }
+    run->constraint = fmax(run->constraint, run->copy->residual);
+}
+
+/* ---- for the person who waits --------------------------------------------------------------------------- */
+
+static void show_progress(Run *run)
+{
+    if (run->request->quiet || !isatty(STDERR_FILENO))
+        return;
+    double time = gic_time(run->self);
+    fprintf(stderr, "\r%5.1f %%  t = %.3f s  %.0f times real time\x1b[K", 100 * time / run->scene->duration, time,
+            time / fmax(run->integrating, 1e-9));
+    run->shown = true;
+}
+
+static void clear_progress(const Run *run)
+{
+    if (run->shown)
+        fputs("\r\x1b[K", stderr);
+}
+
+/* Print the work that was skipped, each kind if there was any. */
+static void summary_of_skips(const gic_head *head)
+{
+    const struct {
+        int64_t count;
+        const char *name, *what;
+    } skip[] = {
+        {head->kept_count, "recoveries reused", "subset solutions whose inputs had not changed"},
+        {head->air_count, "tires skipped", "evaluations of wheels in the air"},
+        {head->steady_count, "fast rates skipped", "evaluations while fast states changed steadily"},
+        {head->sleep_count, "steps asleep", "steps while the vehicle was at rest"},
+    };
+    for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)
+        if (skip[i].count)
+            fprintf(stderr, "  %-20s %lld %s\n", skip[i].name, (long long)skip[i].count, skip[i].what);
+}
+
+/* Print ranges and rates of inputs by their profiles: the demands on driven coordinates. */
+static void summary_of_inputs(const Run *run)
+{
+    const Scene *scene = run->scene;
+    for (int i = 0; i < scene->profiles; ++i) {
+        const Profile *profile = &scene->profile[i];
+        if (profile_is_constant(profile) || profile->begin != 0)
+            continue;
+        const ProfilePeaks peaks = profile_peaks(profile, scene->duration);
+        const bool none = !strcmp(profile->unit, "1");
+        const char *unit = none ? "1" : profile->unit;
+        fprintf(stderr, "  %-20s %.4g to %.4g%s%s, rate up to %.4g %s/s, acceleration up to %.4g %s/s^2\n",
+                pool_print(run->pool, "input %s", run->engine->code->input[profile->input].name), peaks.low, peaks.high,
+                none ? "" : " ", none ? "" : unit, peaks.rate, unit, peaks.acceleration, unit);
+    }
+}
+
+/* What happened on the way, and what became of the vehicle. */
+static void summary_of_events(const Run *run)
+{
+    const Actions *actions = run->scene->actions;
+    const Outcome *o = &run->outcome;
+    for (int i = 0; actions && i < actions->count; ++i) {
+        const Action *action = &actions->action[i];
+        if (action->done)
+            fprintf(stderr, "  %-20s %s at t = %.9g s%s%s\n", action->ends ? "ended" : "happened", action->text,
+                    action->time, action->mark ? ": " : "", action->mark ? action->mark : "");
+        else
+            fprintf(stderr, "  %-20s %s\n", "did not happen", action->text);
+    }
+    if (!isnan(o->tipped))
+        fprintf(stderr, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
+    if (!isnan(o->left))
+        fprintf(stderr, "  %-20s beyond the road's data from t = %.6g s on\n", "vehicle leaves road", o->left);
+    if (!isnan(o->rest) && o->moved)
+        fprintf(stderr, "  %-20s from t = %.6g s on\n", "vehicle at rest", o->rest);
+}
+
+static void summary(const Run *run, double total)
+{
+    const gic_head *head = run->self;
+    const Scene *scene = run->scene;
+    const double time = gic_time(head), solutions = (double)head->newton_count;
+    const char *results = run->request->results;
+    const char *integrator = integrator_name(scene->method);
+    const char *ratio = head->ratio > 1 ? pool_print(run->pool, ", ratio %d", head->ratio) : "";
+    const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
+                                    : pool_print(run->pool, "of %.6g s (%s%s)", scene->step, integrator, ratio);
+    fprintf(stderr, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
+            (long long)run->samples, results ? " in " : "",
+            !results               ? ""
+            : strcmp(results, "-") ? results
+                                   : "standard output");
+    fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
+    if (head->fast_count)
+        fprintf(stderr, "  fast rates           %lld\n", (long long)head->fast_count);
+    fprintf(stderr, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
+            (long long)head->correction_count, (long long)head->newton_count,
+            solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
+    summary_of_skips(head);
+    summary_of_inputs(run);
+    fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
+    fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
+    summary_of_events(run);
+    if (engine_remark(run->engine))
+        fprintf(stderr, "  compiled code        %s\n", engine_remark(run->engine));
+    fprintf(stderr, "  CPU time             %.3g s in steps, %.0f times real time; %.3g s with outputs\n",
+            run->integrating, time / fmax(run->integrating, 1e-9), total);
+}
+
+static const char *remedy_of(int status)
+{
+    switch (status) {
+    case GIC_ERROR_REACH:
+    case GIC_ERROR_NEWTON:
+        return "a step led to where the bodies don't reach, from the state in the last row of the results: try a "
+               "shorter "
+               "step, and check springs, stops and driven coordinates that allow such a motion";
+    case GIC_ERROR_SINGULAR:
+        return "the last row of the results is the last state that the coordinates determine: choose others that do, "
+               "or "
+               "stops that end the motion before";
+    case GIC_ERROR_RESULT:
+    case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
+    case GIC_ERROR_ORIENTATION: return "the base turns too far within a step, by more than 0.2 rad: try a shorter step";
+    case GIC_ERROR_UNSTABLE:
+        return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
+               "itself is unstable: gicrun --modes shows its eigenvalues";
+    case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
+    case GIC_ERROR_EVENTS: return "try a shorter step, or a longer `duration` of the transmission's shifts";
+    case GIC_ERROR_RESIDUAL:
+        return "results so far are suspect too; --engine gic shares no formulas with this code: please report model "
+               "and scene";
+    case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
+    default: return NULL;
+    }
+}
+
+static const char *remedy_at_start(int status)
+{
+    switch (status) {
+    case GIC_ERROR_ASSUMPTION:
+    case GIC_ERROR_RESIDUAL: return remedy_of(status);
+    case GIC_ERROR_RESULT:
+        return "does a formula divide by zero there, or take a root of a negative number? Are initial velocities or "
+               "loads too large?";
+    default: return "is the initial state one that the mechanism can reach from its design?";
+    }
+}
+
+/* ---- the run -------------------------------------------------------------------------------------------- */
+
+int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
+{
+    const gic_model *model = engine->code;
+    int status = model->setup_with(self, scene->parameter);
+    if (status != GIC_OK)
+        return status;
+    self->road = scene->road;
+    self->input_function = scene_inputs;
+    self->user = (void *)scene; /* only read */
+    if (scene->driver)
+        driver_start(scene->driver);
+    scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
+    status = set_state(engine, scene, self);
+    if (status == GIC_OK)
+        status = scene_set_fast(model, scene, self);
+    if (scene->rest)
+        sleep_start(scene->rest, model, self);
+    return status;
+}
+
+static void change_code(Run *run)
+{
+    const gic_model *faster = engine_faster(run->engine, run->self);
+    if (!faster)
+        return;
+    run->model = faster;
+    if (run->variable)
+        variable_change(run->variable, faster);
+}
+
+/* From time to time: check for a request to stop and for faster code, and print progress. */
+static void look_around(Run *run)
+{
+    double now = clock_seconds(CLOCK_MONOTONIC);
+    if (now - run->looked < refresh)
+        return;
+    run->looked = now;
+    run->interrupted = interrupt_arrived();
+    change_code(run);
+    show_progress(run);
+}
+
+/* Measurements for the driver; engines with another state need a right-hand side for them. */
+static int look(const Engine *engine, gic_head *self, Driver *driver)
+{
+    double state[engine->standard_count + 1], A[9], e[4];
+    const double *own = instance_array(self, engine->code->state_offset);
+    const int status = engine->leave ? engine_look(engine, self, state, NULL) : GIC_OK;
+    const double *y = engine->leave ? state : own;
+    const int half = (engine->standard_count - engine->code->fast_count) / 2;
+    const double norm = sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
+    if (status != GIC_OK)
+        return status;
+    for (int i = 0; i < 4; ++i)
+        e[i] = y[3 + i] / norm;
+    mat_from_euler(e, A);
+    Sight sight = {.yaw = atan2(A[3], A[0])};
+    memcpy(sight.position, y, sizeof sight.position);
+    memcpy(sight.velocity, y + half + 1, sizeof sight.velocity);
+    sight.yaw_rate = dot3(A + 6, y + half + 4); /* about the vertical */
+    driver_look(driver, gic_time(self), &sight);
+    return GIC_OK;
+}
+
+int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
+{
+    if (!variable && scene->method == GIC_AB3)
+        return gic_step_steady(model, self, scene->step, scene->ratio, scene->steady);
+    if (!variable)
+        return gic_step(model, self, scene->step, scene->method);
+    const double kink = scene_next_kink(scene, gic_time(self));
+    const double most = gic_time(self) + scene_longest_step(scene, gic_time(self));
+    const int status = variable_step(variable, self, fmin(fmin(kink, end), most));
+    if (status == GIC_OK && gic_time(self) >= kink)
+        variable_restart(variable);
+    return status;
+}
+
+int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
+               double end)
+{
+    if (scene->driver && driver_is_due(scene->driver, gic_time(self))) {
+        const int status = look(engine, self, scene->driver);
+        if (status != GIC_OK)
+            return status;
+    }
+    if (scene->rest && sleep_step(scene->rest, model, scene, self))
+        return GIC_OK;
+    const int status = scene_step_awake(model, scene, variable, self, end);
+    if (scene->rest && status == GIC_OK)
+        sleep_watch(scene->rest, model, self);
+    return status;
+}
+
+/* Steps up to the output time `end`. Returns the status of the last one. */
+static int advance(Run *run, double end)
+{
+    int status = GIC_OK;
+    int64_t left = run->scene->per_output; /* constant steps are counted, since their times differ from `end` by
+                                            * rounding */
+    while (status == GIC_OK && !run->interrupted && !run->ended &&
+           (run->variable ? gic_time(run->self) < end : left > 0)) {
+        double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+        for (int i = 0;
+             i < BATCH && status == GIC_OK && !run->ended && (run->variable ? gic_time(run->self) < end : left > 0);
+             ++i) {
+            status = run->events
+                         ? scene_events_step(run->events, run->model, run->variable, run->self, end, &run->ended)
+                         : scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
+            run->steps += status == GIC_OK;
+            if (run->watch && status == GIC_OK)
+                step_watch_step(run->watch, run->model, run->self, run->copy);
+            --left;
+        }
+        run->integrating += clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
+        look_around(run);
+    }
+    return status;
+}
+
+/* Returns the status that ended the run; *failed: the instance it is about. */
+static int run_all(Run *run, const gic_head **failed)
+{
+    record(run);
+    for (int64_t k = 0; k < run->scene->outputs && !run->ended; ++k) {
+        int status = advance(run, (double)(k + 1) * run->scene->output_step);
+        *failed = run->self;
+        if (status != GIC_OK || run->interrupted)
+            return status;
+        status = compute_outputs(run);
+        *failed = run->copy;
+        if (status != GIC_OK) {
+            /* a step from there fails too; its status tells whether it was too long */
+            const int next = run->variable ? status
+                                           : scene_step(run->engine, run->model, run->scene, NULL, run->self,
+                                                        (double)(k + 2) * run->scene->output_step);
+            if (next != GIC_ERROR_UNSTABLE)
+                return status;
+            *failed = run->self;
+            return next;
+        }
+        record(run);
+    }
+    return GIC_OK;
+}
+
+/* Record the last good state if it is not at an output time; it stays in the copy. If it has no outputs with the
+ * present inputs, the copy keeps the last output time. */
+static void record_last(Run *run)
+{
+    gic_head *before = instance_new(run->pool, run->engine);
+    memcpy(before, run->copy, run->model->size);
+    memcpy(run->copy, run->self, run->model->size);
+    run->copy->grown = -1;
+    if (run->model->outputs(run->copy) != GIC_OK)
+        memcpy(run->copy, before, run->model->size);
+    else if (gic_time(run->copy) > run->recorded)
+        record(run);
+}
+
+/* Text about the end of the run, and the remedy. */
+static const char *explain(Run *run, const Model *mechanism, const gic_head *failed, int status, const char **remedy)
+{
+    const char *said = instance_status(run->pool, run->engine->code, failed, status);
+    const int subset = failed->subset;
+    *remedy = remedy_of(status);
+    if (!run->scene->rest)
+        record_last(run);
+    if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)
+        return said;
+    const DeadCentre found = dead_centre_find(run->pool, mechanism, run->model, run->copy, subset);
+    if (!found.finding)
+        return said;
+    *remedy = pool_print(run->pool, "%s; the last row of the results is the last state", found.remedy);
+    return pool_print(run->pool, "%s: subset '%s'", found.finding, run->engine->code->subset_name[subset]);
+}
+
+void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
+              StepWatch *watch, const Request *request)
+{
+    const gic_model *model = engine->code;
+    const Place at = {scene->source, 0, 0};
+    Run run = {.pool = pool,
+               .engine = engine,
+               .model = model,
+               .scene = scene,
+               .request = request,
+               .animation = animation,
+               .watch = watch};
+    run.self = instance_new(pool, engine);
+    run.copy = instance_new(pool, engine);
+    int status = scene_start(engine, scene, run.self);
+    if (status != GIC_OK)
+        diag_fail(at, NULL, "the model can't be set up: %s", instance_status(pool, model, run.self, status));
+    if (scene->method >= METHOD_ADAMS && !(run.variable = variable_open(model, scene->method, scene->tolerance)))
+        diag_fail(program_place(), NULL, "no memory for the integrator");
+    status = compute_outputs(&run);
+    if (status != GIC_OK)
+        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+                  instance_status(pool, model, run.copy, status));
+    run.outcome = outcome_new();
+    run.events = scene_events_new(pool, engine, scene, run.self, &status);
+    if (status != GIC_OK)
+        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+                  instance_status(pool, model, run.self, status));
+    prepare_plot(&run);
+    interrupt_hold(); /* else the temporary file of the results would remain */
+    if (request->results) {
+        run.csv = csv_open(pool, request->results);
+        write_header(&run);
+    }
+
+    const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    run.looked = clock_seconds(CLOCK_MONOTONIC);
+    const gic_head *failed = run.self;
+    status = run_all(&run, &failed);
+    const char *remedy = NULL, *end = status != GIC_OK ? explain(&run, mechanism, failed, status, &remedy) : NULL;
+    engine_rest(engine);
+    clear_progress(&run);
+    if (request->results)
+        csv_close(&run.csv);
+    if (run.interrupted)
+        fprintf(stderr, "gicrun: interrupted at t = %.6g s; results up to there are kept\n", gic_time(run.self));
+    interrupt_release();
+    variable_close(run.variable);
+    if (!request->quiet)
+        summary(&run, clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before);
+    if (animation)
+        animation_write(animation, request->page);
+    if (request->picture)
+        plot_write(pool, &run.plot, request->picture);
+    if (end)
+        diag_fail(at, remedy, "the run ends at t = %.6g s: %s", gic_time(run.self), end);
+    const char *finding = watch && !run.interrupted ? step_watch_judge(watch, &remedy) : NULL;
+    if (finding)
+        diag_fail(at, remedy, "%s", finding);
+}

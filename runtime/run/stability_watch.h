@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Steps that are too long although none is refused: a motion that grows from step to step until tires or stops hold it
+ * (FORMAT.md section 14). A run with constant steps is watched as it goes, at no cost that is felt, and judged after
+ * it. */
+#ifndef RUN_STABILITY_WATCH_H
+#define RUN_STABILITY_WATCH_H
+
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "run/run.h"
+#include "scene/scene.h"
+
+typedef struct StepTheory StepTheory;
+
+/* What the runs of a model have in common: its equations for small motions, opened when first asked for. The model: for
+ * code for any scene, before scene_narrow(). */
+StepTheory *step_theory_new(Pool *pool, const Model *model);
+/* For a run of a scene, also before scene_narrow(), by an engine. NULL: nobody watches, for steps vary, or are too few
+ * for anything to be said. seldom: for runs of which instances are not at hand, few steps are looked at. */
+StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom);
+/* Call after each step of an instance, which is only read. code: the engine's, or faster one; copy: the instance on
+ * which outputs are computed (engines may keep factors for these two only); it is overwritten unless the vehicle
+ * sleeps. */
+void step_watch_step(StepWatch *watch, const gic_model *code, gic_head *self, gic_head *copy);
+/* How many steps, of a vehicle that does not sleep, lie before the one that step_watch_step() is for next;
+ * step_watch_pass tells that they are gone. */
+int64_t step_watch_idle(const StepWatch *watch);
+void step_watch_pass(StepWatch *watch, int64_t steps);
+/* After the run: what is wrong with it, with the time from which on it is, the quantity that moves and the longest
+ * step; *remedy: what to do about it. NULL: nothing. */
+const char *step_watch_judge(StepWatch *watch, const char **remedy);
+
+#endif

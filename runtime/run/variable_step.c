@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT
+ * Variable-step integration: GSL's steppers drive a model's right-hand side.
+ *
+ * All four Euler parameters of the base are integrated. The right-hand side recovers the dependent one from the other
+ * three and the stepper never sees the recovered value, so that a change of the dependent parameter, settled between
+ * steps, leaves the history of all four as smooth as it was. What the instance shows is the settled state. */
+#include "gic_runtime.h"
+#include "host/gsl_errors.h"
+#include "run/road_resolution.h"
+#include "run/variable_step.h"
+#include "scene/scene.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct Variable {
+    const gic_model *model;
+    gic_head *self;    /* during a step */
+    int status;        /* of the right-hand side that failed last in this step */
+    double first_step; /* s, after a restart, when nothing is known yet */
+    double step;       /* s, proposed by the error control */
+    bool jumped;       /* the last step ended with a change of the integrated numbers */
+    double tolerance;
+    bool fresh; /* the history is empty: continue from the instance's state */
+    gsl_odeiv2_system system;
+    gsl_odeiv2_driver *driver;
+    double *integrated, *settled; /* states */
+    void *before;                 /* the instance at the start of the stepper's step */
+    void *start, *trial;          /* the instance at the start of a step, and within it, while a change is located */
+    Probe *probe;                 /* records where the road is evaluated */
+    bool begun;                   /* a step has been made */
+};
+
+static double *array_of(void *self, size_t offset)
+{
+    return (double *)(void *)((char *)self + offset);
+}
+
+static size_t states(const gic_model *model)
+{
+    return (size_t)(model->slow_count + model->fast_count);
+}
+
+static void refresh_inputs(const gic_model *model, gic_head *self, double time)
+{
+    if (self->input_function)
+        self->input_function(self->user, self->lane, time, array_of(self, model->input_offset));
+}
+
+/* A stage that reached too far may have spoilt the Newton start: restore the one at the begin of the step. */
+static void find_back(const Variable *variable)
+{
+    const gic_head done = *variable->self;
+    memcpy(variable->self, variable->before, variable->model->size);
+    variable->self->rhs_count = done.rhs_count;
+    variable->self->newton_count = done.newton_count;
+    variable->self->correction_count = done.correction_count;
+    variable->self->subset = done.subset;
+}
+
+/* On failure the stepper tries half the step. */
+static int right_hand_side(double time, const double *state, double *rate, void *user)
+{
+    Variable *variable = user;
+    refresh_inputs(variable->model, variable->self, time);
+    probe_begin(variable->probe, time);
+    const int status = variable->model->rhs(variable->self, time, state, rate);
+    if (status == GIC_OK)
+        return GSL_SUCCESS;
+    variable->status = status;
+    find_back(variable);
+    return GSL_FAILURE;
+}
+
+Variable *variable_open(const gic_model *model, int32_t method, double tolerance)
+{
+    const gsl_odeiv2_step_type *type = method == METHOD_ADAMS ? gsl_odeiv2_step_msadams : gsl_odeiv2_step_rkck;
+    Variable *variable = calloc(1, sizeof *variable);
+    if (!variable)
+        return NULL;
+    gsl_errors_return();
+    variable->model = model;
+    /* the first step is of first order: its error is half its square times the second derivative, about 1e3 here */
+    variable->tolerance = tolerance;
+    variable->first_step = 0.03 * sqrt(tolerance);
+    variable->system = (gsl_odeiv2_system){right_hand_side, NULL, states(model), variable};
+    variable->integrated = calloc(states(model), sizeof(double));
+    variable->settled = calloc(states(model), sizeof(double));
+    variable->before = malloc(model->size);
+    variable->start = malloc(model->size);
+    variable->trial = malloc(model->size);
+    variable->probe = probe_new();
+    variable->driver =
+        gsl_odeiv2_driver_alloc_standard_new(&variable->system, type, variable->first_step, tolerance, tolerance, 1, 0);
+    variable_restart(variable);
+    if (variable->integrated && variable->settled && variable->before && variable->start && variable->trial &&
+        variable->probe && variable->driver)
+        return variable;
+    variable_close(variable);
+    return NULL;
+}
+
+void variable_close(Variable *variable)
+{
+    if (!variable)
+        return;
+    if (variable->driver)
+        gsl_odeiv2_driver_free(variable->driver);
+    free(variable->integrated);
+    free(variable->settled);
+    free(variable->before);
+    free(variable->start);
+    free(variable->trial);
+    probe_free(variable->probe);
+    free(variable);
+}
+
+void variable_change(Variable *variable, const gic_model *model)
+{
+    variable->model = model;
+}
+
+void variable_restart(Variable *variable)
+{
+    variable->fresh = true;
+}
+
+/* True if an integrated number that the right-hand side did not use has drifted from the recovered one by more than the
+ * tolerance when it comes into use: the history is then not valid. */
+static bool jumps(const Variable *variable)
+{
+    for (size_t i = 0; i < states(variable->model); ++i)
+        if (!(fabs(variable->settled[i] - variable->integrated[i]) <=
+              variable->tolerance * (1 + fabs(variable->settled[i]))))
+            return true;
+    return false;
+}
+
+/* One step of the stepper from the instance's time to *time. */
+static int advance(Variable *variable, double *time, double end)
+{
+    gsl_odeiv2_driver *driver = variable->driver;
+    variable->status = GIC_OK;
+    variable->self->ahead = variable->step;
+    const int result = gsl_odeiv2_evolve_apply(driver->e, driver->c, driver->s, &variable->system, time, end,
+                                               &variable->step, variable->integrated);
+    if (result != GSL_SUCCESS)
+        return variable->status == GIC_OK ? GIC_ERROR_ARGUMENT : variable->status;
+    const size_t size = sizeof(double) * states(variable->model);
+    memcpy(variable->settled, variable->integrated, size);
+    variable->self->subset = -1;
+    const int64_t switches = variable->self->switch_count;
+    const int status = variable->model->settle(variable->self, variable->settled);
+    variable->jumped = variable->self->switch_count != switches && jumps(variable);
+    return status;
+}
+
+/* The longest next step that skips no detail of the road; unlimited if the code asks for no road. */
+static double longest(const Variable *variable)
+{
+    return variable->begun && !probe_asked(variable->probe) ? INFINITY : probe_longest(variable->probe);
+}
+
+/* variable_step() without changes of discrete states. */
+static int step(Variable *variable, gic_head *self, double end)
+{
+    const gic_model *model = variable->model;
+    const size_t size = sizeof(double) * states(model);
+    double time = gic_time(self), *state = array_of(self, model->state_offset);
+    if (variable->fresh) {
+        memcpy(variable->integrated, state, size);
+        gsl_odeiv2_step_reset(variable->driver->s);
+        gsl_odeiv2_evolve_reset(variable->driver->e); /* which keeps the rate at the end of the last step */
+        variable->step = variable->first_step;
+    }
+    const gic_road *const road = self->road;
+    self->road = probe_road(variable->probe, road);
+    variable->self = self;
+    memcpy(variable->before, self, model->size);
+    const int status = advance(variable, &time, road ? fmin(end, time + longest(variable)) : end);
+    self->road = road;
+    self->status = status;
+    if (status == GIC_OK)
+        probe_end(variable->probe);
+    variable->begun = variable->begun || status == GIC_OK;
+    variable->fresh = status != GIC_OK || variable->jumped;
+    if (status == GIC_OK) {
+        memcpy(state, variable->settled, size);
+        gic_restart(self, time);
+    }
+    refresh_inputs(model, self, gic_time(self));
+    return status;
+}
+
+/* ---- changes of discrete states ----------------------------------------------------------------------------- */
+
+/* What an instance has counted. */
+static void carry_counts(const gic_head *from, gic_head *to)
+{
+    to->rhs_count = from->rhs_count;
+    to->newton_count = from->newton_count;
+    to->correction_count = from->correction_count;
+}
+
+/* Continue `self` from the start of the step, without a history, to `time` within it. */
+static int repeat_until(Variable *variable, gic_head *self, double time)
+{
+    int status = GIC_OK;
+    gic_head *start = variable->start;
+    memcpy(self, start, variable->model->size);
+    variable->fresh = true;
+    while (status == GIC_OK && gic_time(self) < time)
+        status = step(variable, self, time);
+    carry_counts(self, start);
+    return status;
+}
+
+/* A discrete state changes within the step that led to `self`: end the step there. The time is the least one at which
+ * the change is due, to 1/100 of what the tolerance makes of a second; bisected, for the model only says whether it is
+ * due. On failure `self` is as it was at the start of the step. */
+static int return_to_change(Variable *variable, gic_head *self)
+{
+    gic_head *start = variable->start, *trial = variable->trial;
+    double low = gic_time(start), high = gic_time(self);
+    int status = GIC_OK;
+    carry_counts(self, start);
+    for (double middle; status == GIC_OK && high - low > 0.01 * variable->tolerance &&
+                        low < (middle = 0.5 * (low + high)) && middle < high;) {
+        status = repeat_until(variable, trial, middle);
+        if (status == GIC_OK && variable->model->shift(trial))
+            high = middle;
+        else
+            low = middle;
+    }
+    if (status == GIC_OK)
+        status = repeat_until(variable, self, high);
+    variable->fresh = true;
+    if (status == GIC_OK) {
+        (void)variable->model->shift(self); /* 0: rounding; then it is due in the next step */
+        return GIC_OK;
+    }
+    memcpy(self, start, variable->model->size);
+    self->status = status;
+    return status;
+}
+
+int variable_step(Variable *variable, void *instance, double end)
+{
+    const gic_model *model = variable->model;
+    gic_head *self = instance;
+    if (!model->shift)
+        return step(variable, self, end);
+    memcpy(variable->start, self, model->size);
+    const int status = step(variable, self, end);
+    if (status != GIC_OK)
+        return status;
+    memcpy(variable->trial, self, model->size);
+    return model->shift(variable->trial) ? return_to_change(variable, self) : GIC_OK;
+}

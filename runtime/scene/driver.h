@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A driver that keeps a speed and follows a path: models/SCENE.md section 5. */
+#ifndef SCENE_DRIVER_H
+#define SCENE_DRIVER_H
+
+#include "scene/scene.h"
+
+/* A polynomial of degree 7 in time that starts at `start` and ends at rest after `duration`, s; before it at c[0],
+ * after it at `end`. */
+typedef struct Movement {
+    double start, duration, end, c[8];
+} Movement;
+
+/* A line in the plane as points at equal distances `step` along it, m. */
+typedef struct Path {
+    int count; /* at least 2 */
+    double step, (*point)[2];
+    bool closed; /* the last point is the first */
+} Path;
+
+/* Measurements of the vehicle for the driver: the origin of the base's body frame, m, and its velocity, m/s, world;
+ * yaw, rad, and its rate, rad/s. */
+typedef struct Sight {
+    double position[3], velocity[3], yaw, yaw_rate;
+} Sight;
+
+struct Driver {
+    /* from the scene */
+    int accelerator, brake;   /* inputs; -1: no speed is kept */
+    Profile speed;            /* m/s */
+    double gain, integral;    /* 1/s, 1/s^2 */
+    double full[2];           /* m/s^2: of full accelerator, of full brake */
+    int steering;             /* input; -1: no path is followed */
+    bool driven;              /* it is a driven coordinate: rate and acceleration follow */
+    Path path;                /* m, world */
+    double straight;          /* steering value at the start */
+    double per_angle;         /* of the steering over the angle of the front wheels, 1/rad */
+    double wheelbase;         /* m */
+    double preview, shortest; /* distance of the preview point: s, and least m */
+    double limit, adapt;      /* largest steering value; 1/s, correction of the curvature driven */
+    double period, reach;     /* s between looks; s that a movement takes */
+    /* during the run */
+    int64_t looks; /* number of looks so far */
+    double next;   /* time of the next look */
+    double speed_sum, curvature_sum, along;
+    bool seen;
+    Movement pedal[2], wheel;
+};
+
+/* Begin at time 0 with pedals free and steering straight. */
+void driver_start(Driver *driver);
+/* True if a look is due. */
+bool driver_is_due(const Driver *driver, double time);
+/* The first time after `time` at which its commands are less smooth: the next look, or an earlier end of a movement. */
+double driver_next_kink(const Driver *driver, double time);
+/* Decide on new movements. */
+void driver_look(Driver *driver, double time, const Sight *sight);
+/* Clear the marks of the inputs that it moves. */
+void driver_moves(const Driver *driver, bool *fixed);
+/* Write its commands into input[]. */
+void driver_inputs(const Driver *driver, double time, double *input);
+
+#endif

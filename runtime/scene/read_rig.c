@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * The model as a scene has it: on a test rig the base is fixed and coordinates are driven (models/SCENE.md section
+ * 10), light bodies lose their mass (section 9). */
+#include "base/base.h"
+#include "model/model.h"
+#include "scene/scene.h"
+#include "specialize/specialize.h"
+
+#include <string.h>
+
+static void check_rig(const Scene *scene, const Model *model, Place at, const char *what)
+{
+    if (model->tuning)
+        diag_fail(at, "give geometric parameters numbers in the model", "%s, and '%s' has geometric parameters", what,
+                  model->name);
+    if (scene->driver)
+        diag_fail(at, "remove the driver: nobody can drive on a rig", "%s, and there is a driver", what);
+}
+
+static void read_massless(const Item *item, const Model *model, Scene *scene)
+{
+    if (item->kind != ITEM_MAP)
+        diag_fail(item->at, "write {below: 6}, a mass in kg", "massless must be a map");
+    CHECK_KEYS(item, "massless", "below");
+    scene->massless = scene_positive(scene_need(item, "below", "massless"), "below");
+    scene->massless_at = item->at;
+    if (model->tuning)
+        diag_fail(item->at, "give geometric parameters numbers in the model",
+                  "bodies lose their mass, and '%s' has geometric parameters", model->name);
+    const Body *base = &model->body[BODY_BASE];
+    if (model->free_base && base->mass < scene->massless)
+        diag_fail(item->at, "choose a smaller mass", "the base '%s' of %.6g kg would be without mass", base->name,
+                  base->mass);
+}
+
+void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
+{
+    if (doc_find(root, "massless"))
+        read_massless(doc_find(root, "massless"), model, scene);
+    const Item *base = doc_find(root, "base"), *driven = doc_find(root, "driven");
+    if (base) {
+        const char *word = doc_word(base, "base");
+        if (strcmp(word, "free") && strcmp(word, "fixed"))
+            diag_fail(base->at, "write fixed, or free", "the base can't be '%s'", word);
+        scene->held = !strcmp(word, "fixed") && model->free_base;
+        if (scene->held)
+            check_rig(scene, model, base->at, "the base is held");
+    }
+    if (!driven)
+        return;
+    const char **name = pool_alloc(pool, sizeof *name * (size_t)(model->coordinates + 1));
+    for (int i = 0; i < model->coordinates; ++i)
+        name[i] = model->coordinate[i].name;
+    if (driven->kind != ITEM_MAP)
+        diag_fail(driven->at, "write {name: number or profile}", "driven coordinates must be a map");
+    check_rig(scene, model, driven->at, "coordinates are driven");
+    for (int k = 0; k < driven->count; ++k) {
+        const Item *key = driven->key[k];
+        const int w = scene_name_index(pool, key, key->text, "coordinate", name, model->coordinates);
+        const Coordinate *coordinate = &model->coordinate[w];
+        if (coordinate->driven)
+            diag_fail(key->at, "describe it under `inputs`", "coordinate '%s' is driven anyway", name[w]);
+        if (scene->given[w])
+            diag_fail(key->at, "remove it from `initial`", "the profile of '%s' says where it begins", name[w]);
+        Profile *profile = POOL_PUSH(pool, scene->profile, scene->profiles);
+        *profile = (Profile){.input = model->inputs + 3 * scene->driven,
+                             .driven = coordinate,
+                             .unit = coordinate->type == COORDINATE_ANGLE ? "rad" : "m",
+                             .offset = coordinate->initial,
+                             .end = scene->duration,
+                             .until = scene->duration,
+                             .model = model};
+        profile_read(pool, driven->value[k], key->text, profile);
+        *POOL_PUSH(pool, scene->drive, scene->driven) = w;
+    }
+}
+
+static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
+{
+    const Model *light = model_lighten(pool, model, scene->massless, &scene->massless_names);
+    if (!scene->massless_names)
+        diag_fail(scene->massless_at, "remove it, or choose a larger mass", "no body of '%s' is lighter than %.6g kg",
+                  model->name, scene->massless);
+    scene->lost = model_lost(pool, model, scene->massless);
+    if (scene->lost >= 1)
+        diag_fail(scene->massless_at,
+                  "choose a smaller mass, so that each free coordinate still moves one that has some",
+                  "without the mass of %s a coordinate has no inertia", scene->massless_names);
+    return light;
+}
+
+const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
+{
+    if (!*scene || (!(*scene)->held && !(*scene)->driven && (*scene)->massless == 0))
+        return model;
+    Scene *own = pool_alloc(pool, sizeof *own);
+    *own = **scene;
+    if (own->held)
+        model = model_hold(pool, model, own->position, own->euler);
+    model = model_drive(pool, model, own->drive, own->driven);
+    if (own->massless != 0)
+        model = lighten(pool, model, own);
+    own->signal = scene_signals(pool, model); /* new inputs are added after the others */
+    *scene = own;
+    return model;
+}
+
+void scene_no_rig(const Scene *scene)
+{
+    if (scene->actions)
+        diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene has conditions (`until`, `when`)");
+    if (scene->held || scene->driven)
+        diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene is one of a rig (`base`, `driven`)");
+    if (scene->massless != 0)
+        diag_fail(scene->massless_at, "run it with gicrun", "the scene leaves out the mass of light bodies");
+}

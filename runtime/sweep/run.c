@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT
+ * The runs of a sweep: in batches, side by side in lanes, or one by one, in one process or several. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_batch.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "model/model.h"
+#include "run/run.h"
+#include "run/stability_watch.h"
+#include "run/variable_step.h"
+#include "scene/scene.h"
+#include "sweep/sweep.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CHUNK = 4096 /* steps between checks for a request to stop */ };
+
+static const double refresh = 0.1; /* s between lines of progress */
+
+/* End, least and greatest value of an output so far. */
+typedef struct Range {
+    double end, least, greatest;
+} Range;
+
+/* One run of a batch. */
+typedef struct Slot {
+    int64_t run;
+    Scene scene; /* its own; `user` of the instance */
+    int status;
+    const char *reason; /* why it failed */
+    double time;        /* the time up to which it succeeded */
+    Range *range;       /* [columns] */
+    StepWatch *watch;   /* NULL: not watched */
+} Slot;
+
+typedef struct Runner {
+    const Sweep *sweep;
+    Pool *pool; /* of this batch */
+    int slots, used;
+    Slot *slot;
+    gic_head *one, *copy;
+    StepTheory *theory;
+    void *batch;
+    double begun, looked;
+    int64_t before; /* runs finished by others */
+    bool shown, stopped;
+    bool silent; /* another process prints progress */
+} Runner;
+
+/* ---- one run ------------------------------------------------------------------------------------------------ */
+
+static void set_input(Pool *pool, const Model *model, Scene *scene, int input, double value)
+{
+    Profile *profile = pool_alloc(pool, sizeof *profile * (size_t)(scene->profiles + 1));
+    int kept = 0;
+    bool driven = false;
+    for (int i = 0; i < model->coordinates; ++i)
+        driven |= model->coordinate[i].driven && model->coordinate[i].input == input;
+    for (int i = 0; i < scene->profiles; ++i)
+        if (scene->profile[i].input != input)
+            profile[kept++] = scene->profile[i];
+    Profile constant = {.input = input, .driven = driven, .count = 1};
+    constant.time = pool_alloc(pool, sizeof(double));
+    constant.value = pool_alloc(pool, sizeof(double));
+    *constant.value = value;
+    profile[kept++] = constant;
+    scene->profile = profile;
+    scene->profiles = kept;
+}
+
+/* The scene of a run. */
+static Scene vary_scene(Pool *pool, const Sweep *sweep, int64_t run)
+{
+    Scene own = *sweep->scene;
+    own.rest = NULL; /* vehicles in lanes do not sleep */
+    own.steady = 0;
+    const size_t parameters = sizeof(double) * (size_t)sweep->model->tunables;
+    own.parameter = pool_alloc(pool, parameters + 1);
+    memcpy(own.parameter, sweep->scene->parameter, parameters);
+    for (int v = 0; v < sweep->plan->varied; ++v) {
+        const Vary *vary = &sweep->plan->vary[v];
+        const double value = plan_value(sweep->plan, v, run);
+        if (vary->kind == VARY_PARAMETER) {
+            own.parameter[vary->index] = value;
+        } else if (vary->kind == VARY_INPUT) {
+            set_input(pool, sweep->model, &own, vary->index, value);
+        } else if (vary->kind == VARY_SPEED) {
+            own.speed = value;
+            own.along = true;
+            scene_along(&own);
+        }
+    }
+    return own;
+}
+
+/* Bring the instance to the beginning of a run. */
+static int begin(const Sweep *sweep, const Slot *slot, gic_head *self)
+{
+    int status = scene_start(sweep->engine, &slot->scene, self);
+    double state[sweep->engine->standard_count + 1];
+    bool changed = false;
+    if (status == GIC_OK)
+        status = engine_look(sweep->engine, self, state, NULL);
+    for (int v = 0; v < sweep->plan->varied; ++v)
+        if (sweep->plan->vary[v].kind == VARY_STATE) {
+            state[sweep->plan->vary[v].index] = plan_value(sweep->plan, v, slot->run);
+            changed = true;
+        }
+    return status == GIC_OK && changed ? engine_enter(sweep->engine, self, state) : status;
+}
+
+static void record(Slot *slot, int column, double value)
+{
+    Range *range = &slot->range[column];
+    const bool first = isnan(range->end);
+    range->end = value;
+    range->least = first ? value : fmin(range->least, value);
+    range->greatest = first ? value : fmax(range->greatest, value);
+}
+
+static void add_number(Text *row, double value)
+{
+    char digits[CSV_DIGITS];
+    text_print(row, "%s%s", row->size ? "," : "", csv_digits(value, digits));
+}
+
+/* Its row of the results as one text for the journal. */
+static const char *row_text(Pool *pool, const Sweep *sweep, const Slot *slot)
+{
+    Text row = {.pool = pool};
+    add_number(&row, (double)slot->run);
+    for (int v = 0; v < sweep->plan->varied; ++v)
+        add_number(&row, plan_value(sweep->plan, v, slot->run));
+    add_number(&row, slot->status);
+    text_print(&row, ",%.15g", slot->time);
+    for (int c = 0; c < sweep->scene->columns; ++c) {
+        add_number(&row, slot->range[c].end);
+        add_number(&row, slot->range[c].least);
+        add_number(&row, slot->range[c].greatest);
+    }
+    return pool_print(sweep->journal->pool, "%s", row.s);
+}
+
+/* ---- for the person who waits --------------------------------------------------------------------------------- */
+
+static void look_around(Runner *r)
+{
+    const Journal *journal = r->sweep->journal;
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    if (now - r->looked < refresh)
+        return;
+    r->looked = now;
+    r->stopped = interrupt_arrived();
+    if (r->silent || r->sweep->quiet || !isatty(STDERR_FILENO))
+        return;
+    fprintf(stderr, "\r%5.1f %%  %lld of %lld runs, %lld failed, %.4g runs/s\x1b[K",
+            100 * (double)journal->finished / (double)journal->runs, (long long)journal->finished,
+            (long long)journal->runs, (long long)journal->failed,
+            (double)(journal->finished - r->before) / fmax(now - r->begun, 1e-9));
+    r->shown = true;
+}
+
+/* ---- what goes wrong --------------------------------------------------------------------------------------- */
+
+/* The status of a slot, and if it is not GIC_OK what its instance knows of it. */
+static void set_status(const Runner *r, Slot *slot, int status, const gic_head *self)
+{
+    slot->status = status;
+    if (status != GIC_OK)
+        slot->reason = pool_print(r->pool, "at t = %.6g s: %s", gic_time(self),
+                                  instance_status(r->pool, r->sweep->engine->code, self, status));
+}
+
+/* Judge a watched run: one that is unstable within bounds gets the status of unstable runs. */
+static void judge(const Runner *r, Slot *slot)
+{
+    const char *remedy;
+    const char *finding =
+        slot->watch && slot->status == GIC_OK && !r->stopped ? step_watch_judge(slot->watch, &remedy) : NULL;
+    if (!finding)
+        return;
+    slot->status = GIC_ERROR_UNSTABLE;
+    slot->reason = pool_print(r->pool, "%s\n  remedy: %s", finding, remedy);
+}
+
+/* ---- batches -------------------------------------------------------------------------------------------------- */
+
+/* Outputs of all slots that go on, at the present time. */
+static void look_at_batch(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_batch_model *many = sweep->many;
+    many->outputs(r->batch);
+    for (int i = 0; i < r->used; ++i) {
+        Slot *slot = &r->slot[i];
+        if (slot->status != GIC_OK)
+            continue;
+        many->store(r->batch, i, r->one);
+        set_status(r, slot, many->status(r->batch, i), r->one);
+        slot->time = gic_time(r->one);
+        for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c) {
+            const int column = sweep->scene->column[c]; /* instances don't take outputs with them, but inputs */
+            const bool input = column >= sweep->engine->code->output_count;
+            record(slot, c,
+                   input ? scene_value(sweep->engine->code, r->one, column) : many->output(r->batch, i, column));
+        }
+    }
+}
+
+/* Steps of all slots, at most `most`, up to the next sample of the watch. */
+static int32_t step_lanes(Runner *r, int64_t most)
+{
+    const Sweep *sweep = r->sweep;
+    const Scene *scene = sweep->scene;
+    const StepWatch *watch = r->slot->watch; /* all watches sample the same steps */
+    const bool look = watch && step_watch_idle(watch) < most;
+    const int32_t steps = (int32_t)(look ? step_watch_idle(watch) + 1 : most);
+    sweep->many->step(r->batch, scene->step, scene->method, steps);
+    for (int i = 0; i < r->used && watch; ++i) {
+        step_watch_pass(r->slot[i].watch, steps - look);
+        if (!look)
+            continue;
+        sweep->many->store(r->batch, i, r->one);
+        step_watch_step(r->slot[i].watch, sweep->engine->code, r->one, r->copy);
+    }
+    return steps;
+}
+
+static void run_lanes(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const Scene *scene = sweep->scene;
+    sweep->many->setup(r->batch);
+    for (int i = 0; i < r->used; ++i) {
+        set_status(r, &r->slot[i], begin(sweep, &r->slot[i], r->one), r->one);
+        if (r->slot[i].status == GIC_OK)
+            sweep->many->load(r->batch, i, r->one);
+    }
+    look_at_batch(r);
+    for (int64_t k = 0; k < scene->outputs && !r->stopped; ++k) {
+        for (int64_t left = scene->per_output; left > 0 && !r->stopped;) {
+            left -= step_lanes(r, left < CHUNK ? left : CHUNK);
+            look_around(r);
+        }
+        look_at_batch(r);
+    }
+    for (int i = 0; i < r->used; ++i)
+        judge(r, &r->slot[i]);
+}
+
+/* The present outputs of the only slot. */
+static void look_at_one(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    Slot *slot = r->slot;
+    memcpy(r->copy, r->one, code->size); /* outputs are computed on a copy */
+    slot->time = gic_time(r->one);
+    set_status(r, slot, code->outputs(r->copy), r->copy);
+    for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
+        record(slot, c, scene_value(code, r->copy, sweep->scene->column[c]));
+}
+
+static void run_one(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    Slot *slot = r->slot;
+    const Scene *scene = &slot->scene;
+    Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
+    set_status(r, slot, begin(sweep, slot, r->one), r->one);
+    if (slot->status == GIC_OK)
+        look_at_one(r);
+    for (int64_t k = 0; k < scene->outputs && slot->status == GIC_OK && !r->stopped; ++k) {
+        const double end = (double)(k + 1) * scene->output_step;
+        int64_t left = scene->per_output;
+        while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
+            set_status(r, slot, scene_step(sweep->engine, code, scene, variable, r->one, end), r->one);
+            if (slot->watch && slot->status == GIC_OK)
+                step_watch_step(slot->watch, code, r->one, r->copy);
+            if (left-- % CHUNK == 0)
+                look_around(r);
+        }
+        slot->time = gic_time(r->one);
+        if (slot->status == GIC_OK)
+            look_at_one(r);
+    }
+    variable_close(variable);
+    judge(r, slot);
+    look_around(r);
+}
+
+/* A run that has not begun. */
+static void take_up(Runner *r, Slot *slot, int64_t run)
+{
+    const Sweep *sweep = r->sweep;
+    slot->run = run;
+    slot->scene = vary_scene(r->pool, sweep, run);
+    slot->watch = step_watch_new(r->pool, r->theory, &slot->scene, sweep->engine, true);
+    slot->time = 0;
+    slot->reason = NULL;
+    for (int c = 0; c < sweep->scene->columns; ++c)
+        slot->range[c] = (Range){NAN, NAN, NAN};
+}
+
+/* The result of a slot's run; its texts live as long as the journal. */
+static Result result_of(const Runner *r, const Slot *slot)
+{
+    Pool *pool = r->sweep->journal->pool;
+    return (Result){slot->run, slot->status, row_text(r->pool, r->sweep, slot),
+                    slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
+}
+
+/* Runs side by side, as many as there are slots at most. False: someone asked to stop. */
+static bool make_runs(void *context, const int64_t *run, int runs, Result *result)
+{
+    Runner *r = context;
+    r->pool = pool_new(); /* memory of a batch's scenes is freed afterwards */
+    for (r->used = 0; r->used < runs; ++r->used)
+        take_up(r, &r->slot[r->used], run[r->used]);
+    if (r->sweep->many)
+        run_lanes(r);
+    else
+        run_one(r);
+    for (int i = 0; i < runs && !r->stopped; ++i)
+        result[i] = result_of(r, &r->slot[i]);
+    pool_free(r->pool);
+    return !r->stopped;
+}
+
+/* The same without progress. */
+static bool make_silently(void *context, const int64_t *run, int runs, Result *result)
+{
+    Runner *r = context;
+    r->silent = true;
+    return make_runs(r, run, runs, result);
+}
+
+static bool take_results(void *context, const Result *result, int results)
+{
+    Runner *r = context;
+    if (results)
+        journal_add(r->sweep->journal, result, results);
+    look_around(r);
+    return !r->stopped;
+}
+
+/* In this process. */
+static void run_alone(Runner *r, const int64_t *run, int64_t count)
+{
+    Result result[r->slots];
+    for (int64_t next = 0; next < count && !r->stopped; next += r->slots) {
+        const int runs = count - next < r->slots ? (int)(count - next) : r->slots;
+        if (make_runs(r, run + next, runs, result))
+            journal_add(r->sweep->journal, result, runs);
+    }
+}
+
+bool sweep_run(const Sweep *sweep)
+{
+    Pool *pool = sweep->pool;
+    Runner r = {.sweep = sweep, .slots = sweep->many ? sweep->many->vehicles : 1, .before = sweep->journal->finished};
+    r.slot = pool_alloc(pool, sizeof *r.slot * (size_t)r.slots);
+    for (int i = 0; i < r.slots; ++i)
+        r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
+    r.one = instance_new(pool, sweep->engine);
+    r.copy = instance_new(pool, sweep->engine);
+    r.theory = step_theory_new(pool, sweep->model);
+    r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
+    if (sweep->many && !r.batch)
+        diag_fail(program_place(), NULL, "no memory for %d vehicles", sweep->many->vehicles);
+    r.begun = clock_seconds(CLOCK_MONOTONIC);
+    int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(sweep->plan->runs + 1)), count = 0;
+    for (int64_t i = 0; i < sweep->plan->runs; ++i)
+        if (!sweep->journal->row[i])
+            run[count++] = i;
+    /* equal parts if there are few runs for many processes */
+    const int64_t part = (count + sweep->processes - 1) / sweep->processes;
+    const int together = part < r.slots ? (int)part : r.slots;
+    const int64_t batches = together ? (count + together - 1) / together : 0;
+    const size_t processes = (size_t)(batches < sweep->processes ? batches : sweep->processes);
+    const Share share = {count, run, sweep->journal->file, together, make_silently, take_results, &r};
+    if (processes > 1)
+        r.stopped = !share_runs(pool, &share, processes) || sweep->journal->finished < sweep->plan->runs;
+    else
+        run_alone(&r, run, count);
+    if (r.shown)
+        fputs("\r\x1b[K", stderr);
+    free(r.batch);
+    return !r.stopped;
+}

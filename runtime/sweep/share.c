@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT
+ * Runs shared out among processes: whoever is ready takes the next ones, by a counter in memory that all of them see,
+ * and sends back what came of them. Processes, not threads: engines and the libraries behind them keep things of their
+ * own, and nobody waits for anybody, whatever else the machine has to do. */
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "base/base.h"
+#include "host/host.h"
+#include "sweep/sweep.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+enum { LOOK_MS = 100 /* between looks at who wants to stop */ };
+
+/* In front of the texts of a result, in a pipe. */
+typedef struct Parcel {
+    int64_t run;
+    int status;
+    uint32_t row, reason; /* sizes with the 0 at the end; reason 0: none */
+} Parcel;
+
+typedef struct Worker {
+    pid_t process;
+    int pipe;   /* -1: it is finished, */
+    int status; /* as waitpid() says */
+    int said;   /* its standard error: what ends all of them is told once */
+    Text heard; /* what came and is no whole parcel yet */
+} Worker;
+
+int share_processes(void)
+{
+    const char *wanted = getenv("OMP_NUM_THREADS");
+    char *end;
+    const long number = wanted ? strtol(wanted, &end, 10) : 0;
+    const long most = number > 0 ? number : sysconf(_SC_NPROCESSORS_ONLN);
+    return most < 1 ? 1 : most > SHARE_PROCESSES_MOST ? SHARE_PROCESSES_MOST : (int)most;
+}
+
+/* ---- the worker ------------------------------------------------------------------------------------------------- */
+
+/* The other end is gone: so are we, by SIGPIPE or here. */
+static void send_bytes(int pipe, const void *bytes, size_t size)
+{
+    for (const char *next = bytes; size;) {
+        const ssize_t n = write(pipe, next, size);
+        if (n < 0 && errno != EINTR)
+            _exit(1);
+        next += n < 0 ? 0 : n;
+        size -= n < 0 ? 0 : (size_t)n;
+    }
+}
+
+static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
+{
+    Result result[share->together];
+    for (int64_t i; (i = atomic_fetch_add(taken, share->together)) < share->count;) {
+        const int64_t left = share->count - i;
+        const int runs = left < share->together ? (int)left : share->together;
+        if (!share->make(share->context, share->run + i, runs, result))
+            break;
+        for (int k = 0; k < runs; ++k) {
+            const Parcel parcel = {result[k].run, result[k].status, (uint32_t)strlen(result[k].row) + 1,
+                                   result[k].reason ? (uint32_t)strlen(result[k].reason) + 1 : 0};
+            send_bytes(pipe, &parcel, sizeof parcel);
+            send_bytes(pipe, result[k].row, parcel.row);
+            send_bytes(pipe, result[k].reason, parcel.reason);
+        }
+    }
+    _exit(0);
+}
+
+/* ---- whom they work for -------------------------------------------------------------------------------------------
+ */
+
+/* One more than there are. False: there is no process to be had. */
+static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker *all, size_t workers)
+{
+    Worker *worker = &all[workers];
+    int ends[2];
+    *worker = (Worker){.said = nameless_file(pool), .heard = {.pool = pool}};
+    if (worker->said < 0 || pipe(ends))
+        return false;
+    fflush(NULL); /* or the child would write it too */
+    const pid_t parent = getpid();
+    worker->process = fork();
+    if (worker->process == 0) {
+        close(ends[0]);
+        for (size_t w = 0; w < workers; ++w) /* each pipe has one reader: who writes learns of its end */
+            close(all[w].pipe);
+        close(share->lock); /* held by its parent alone, so that it ends with it */
+        dup2(worker->said, STDERR_FILENO);
+#ifdef __linux__
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+        if (getppid() != parent)
+            _exit(1);
+        work(share, taken, ends[1]);
+    }
+    close(ends[1]);
+    worker->pipe = worker->process > 0 ? ends[0] : -1;
+    if (worker->process < 0)
+        close(ends[0]);
+    return worker->process > 0;
+}
+
+/* The results among what a worker has sent: whole parcels, whose texts stay where they are. Returns how many. */
+static int open_parcels(Pool *pool, Worker *worker, Result **result, int results)
+{
+    const Text heard = worker->heard;
+    size_t at = 0;
+    for (Parcel parcel; heard.size - at >= sizeof parcel;) {
+        memcpy(&parcel, heard.s + at, sizeof parcel);
+        if (heard.size - at - sizeof parcel < (size_t)parcel.row + parcel.reason)
+            break;
+        const char *row = heard.s + at + sizeof parcel;
+        *POOL_PUSH(pool, *result, results) =
+            (Result){parcel.run, parcel.status, row, parcel.reason ? row + parcel.row : NULL};
+        at += sizeof parcel + parcel.row + parcel.reason;
+    }
+    if (at) {
+        worker->heard = (Text){.pool = heard.pool};
+        text_add(&worker->heard, heard.s + at, heard.size - at);
+    }
+    return results;
+}
+
+/* What has come from a worker, if anything; or it has ended. */
+static void hear(Worker *worker)
+{
+    char bytes[65536];
+    const ssize_t n = read(worker->pipe, bytes, sizeof bytes);
+    if (n > 0)
+        text_add(&worker->heard, bytes, (size_t)n);
+    if (n > 0 || (n < 0 && errno == EINTR))
+        return;
+    close(worker->pipe);
+    worker->pipe = -1;
+    while (waitpid(worker->process, &worker->status, 0) < 0 && errno == EINTR)
+        ;
+}
+
+/* What a worker that failed has said, or what happened to it. */
+static _Noreturn void fail_as(Pool *pool, const Worker *worker)
+{
+    if (WIFSIGNALED(worker->status))
+        diag_fail(program_place(), "finished runs are kept: the same command goes on",
+                  "a process that made runs was ended by signal %d", WTERMSIG(worker->status));
+    fputs(nameless_text(pool, worker->said), stderr);
+    exit(1);
+}
+
+static void end_all(Worker *worker, size_t workers)
+{
+    for (size_t w = 0; w < workers; ++w)
+        if (worker[w].pipe >= 0)
+            kill(worker[w].process, SIGKILL);
+}
+
+bool share_runs(Pool *pool, const Share *share, size_t processes)
+{
+    _Atomic int64_t *taken = mmap(NULL, sizeof *taken, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (taken == MAP_FAILED)
+        diag_fail(program_place(), NULL, "no memory for the counter of runs: %s", strerror(errno));
+    Worker worker[processes];
+    struct pollfd ready[processes];
+    const Worker *broken = NULL;
+    bool stopped = false;
+    size_t workers = 0;
+    while (workers < processes && start(pool, share, taken, worker, workers))
+        ++workers;
+    if (!workers)
+        diag_fail(program_place(), "try again when there are fewer of them", "can't start a process: %s",
+                  strerror(errno));
+    for (size_t open = workers; open;) {
+        Result *result = NULL;
+        int results = 0;
+        for (size_t w = 0; w < workers; ++w) /* closed ones, which are negative, are passed over */
+            ready[w] = (struct pollfd){.fd = worker[w].pipe, .events = POLLIN};
+        const int some = poll(ready, workers, LOOK_MS);
+        for (size_t w = 0; w < workers && some > 0; ++w) {
+            if (!ready[w].revents)
+                continue;
+            hear(&worker[w]);
+            open -= worker[w].pipe < 0;
+            if (!broken && !stopped && worker[w].status) /* how we ended them is no news */
+                broken = &worker[w];
+            results = open_parcels(pool, &worker[w], &result, results);
+        }
+        const bool more = share->take(share->context, result, results);
+        if (!stopped && (!more || broken)) {
+            stopped = true;
+            end_all(worker, workers);
+        }
+    }
+    munmap((void *)taken, sizeof *taken);
+    if (broken)
+        fail_as(pool, broken);
+    for (size_t w = 0; w < workers; ++w)
+        close(worker[w].said);
+    return !stopped;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gicsweep: one scene with many values of parameters, inputs and initial states. Its parts, file by file, in the order
+ * in which they are used; conventions as in vehicle/vehicle.h. */
+#ifndef SWEEP_SWEEP_H
+#define SWEEP_SWEEP_H
+
+#include "base/base.h"
+#include "engine/engine.h"
+#include "gic_batch.h"
+#include "model/model.h"
+#include "scene/scene.h"
+
+/* ---- plan.c: which runs there are ------------------------------------------------------------------ */
+
+typedef enum VaryKind { VARY_PARAMETER, VARY_INPUT, VARY_STATE, VARY_SPEED } VaryKind;
+
+/* A number that differs from run to run. */
+typedef struct Vary {
+    const char *name;
+    VaryKind kind;
+    int index; /* index among tunable parameters, inputs or numbers of the state */
+    double low, high;
+    int64_t count; /* values of a grid from low to high; 0: only a range is given */
+} Vary;
+
+/* Larger tables are refused. */
+enum { SWEEP_RUNS_MOST = 10000000 };
+
+typedef struct SweepPlan {
+    int varied;
+    Vary *vary;
+    int64_t runs;
+    int64_t latin; /* 0: a grid, the last number varies fastest */
+    uint64_t seed;
+    int32_t *place; /* [varied][runs] which of `latin` equal parts of the range */
+    double *share;  /* [varied][runs] where within it */
+} SweepPlan;
+
+/* name=low:high or name=low:high:count; the name is looked up later. Mistakes end in a usage error. */
+void vary_read(Pool *pool, SweepPlan *plan, const char *word);
+/* Look names up, count the runs. */
+void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine);
+/* The value of a varied number in a run. */
+double plan_value(const SweepPlan *plan, int varied, int64_t run);
+
+/* ---- share.c: runs shared out among processes ----------------------------------------------------------- */
+
+/* The result of a run. */
+typedef struct Result {
+    int64_t run;
+    int status;
+    const char *row, *reason; /* its row of the results; the reason of a failure, NULL: none or unknown */
+} Result;
+
+typedef struct Share {
+    int64_t count;
+    const int64_t *run; /* [count] those to be made */
+    int lock;           /* a file that is for the caller's process alone */
+    int together;       /* most runs that are made at once */
+    /* In one of the processes: make runs. False: someone asked to stop. */
+    bool (*make)(void *context, const int64_t *run, int runs, Result *result);
+    /* In the caller's: results that came, perhaps none, at least ten times a second. False: stop. */
+    bool (*take)(void *context, const Result *result, int results);
+    void *context;
+} Share;
+
+enum { SHARE_PROCESSES_MOST = 256 };
+
+/* Processes to run at once: $OMP_NUM_THREADS, or one for each processor. */
+int share_processes(void);
+/* Make all runs in up to so many processes; texts of results are the pool's. False: take() wanted to stop. A process
+ * that fails ends the program with a message. */
+bool share_runs(Pool *pool, const Share *share, size_t processes);
+
+/* ---- journal.c: what is finished --------------------------------------------------------------------- */
+
+/* Rows of finished runs, each in the file before the next batch begins: a kill loses none of them. */
+typedef struct Journal {
+    Pool *pool;
+    const char *path;
+    int file;
+    int64_t runs, finished, failed;
+    const char **row; /* [runs] text of each row; NULL: not finished */
+    int first_status; /* of the failed run with the lowest number; GIC_OK: none failed */
+    int64_t first_failed;
+    const char *first_reason; /* NULL: an earlier gicsweep recorded the failure */
+} Journal;
+
+/* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
+Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
+/* Rows of runs, into the file and onto the disk; texts stay in use. */
+void journal_add(Journal *journal, const Result *result, int results);
+/* Remove the journal after the results are written. */
+void journal_remove(Journal *journal);
+
+/* ---- run.c: the runs ------------------------------------------------------------------------------------ */
+
+typedef struct Sweep {
+    Pool *pool;
+    const Model *model;
+    const Scene *scene;
+    SweepPlan *plan;
+    const Engine *engine;
+    const gic_batch_model *many; /* NULL: no lanes */
+    int processes;               /* most processes */
+    Journal *journal;
+    bool quiet;
+} Sweep;
+
+/* All runs that are not finished. False: someone asked to stop. */
+bool sweep_run(const Sweep *sweep);
+
+#endif

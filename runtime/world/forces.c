@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: MIT
+ * Applied forces (FORMAT.md sections 6 to 8) as a force at the centre of mass and a torque about it, body by body. */
+#include "base/base.h"
+#include "base/vec3.h"
+#include "expression/expression.h"
+#include "gic_runtime.h"
+#include "model/model.h"
+#include "world/wheel.h"
+#include "world/world.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A point of a body, or of ground: arm from the centre of mass, place and velocity. */
+typedef struct Point {
+    int body;
+    double arm[3], r[3], v[3];
+} Point;
+
+static inline Point point_at(const World *world, int body, const double s[3])
+{
+    Point p = {.body = body};
+    if (body == BODY_GROUND) {
+        copy3(s, p.r);
+        return p;
+    }
+    double local[3], rate[3];
+    sub3(s, world->model->body[body].com, local);
+    apply3(world->A[body], local, p.arm);
+    add3(world->q[body], p.arm, p.r);
+    cross3(world->omega[body], p.arm, rate);
+    add3(world->qd[body], rate, p.v);
+    return p;
+}
+
+static inline void push(World *world, const Point *point, const double F[3])
+{
+    if (point->body == BODY_GROUND)
+        return;
+    double torque[3], *wrench = world->wrench[point->body];
+    cross3(point->arm, F, torque);
+    add3(wrench, F, wrench);
+    add3(wrench + 3, torque, wrench + 3);
+}
+
+/* ---- laws ------------------------------------------------------------------------------------------------ */
+
+static double call_at(const World *world, const Law *law, const double *local)
+{
+    const double a = world_law(world, law->arg[0], local), b = law->arg[1] ? world_law(world, law->arg[1], local) : 0;
+    switch ((Op)law->call) {
+    case OP_NEG: return -a;
+    case OP_ADD: return a + b;
+    case OP_SUB: return a - b;
+    case OP_MUL: return a * b;
+    case OP_DIV: return a / b;
+    case OP_SQRT: return sqrt(a);
+    case OP_ABS: return fabs(a);
+    case OP_SIN: return sin(a);
+    case OP_COS: return cos(a);
+    case OP_TAN: return tan(a);
+    case OP_ASIN: return asin(a);
+    case OP_ACOS: return acos(a);
+    case OP_ATAN: return atan(a);
+    case OP_EXP: return exp(a);
+    case OP_LOG: return log(a);
+    case OP_TANH: return tanh(a);
+    case OP_POW: return pow(a, b);
+    case OP_ATAN2: return atan2(a, b);
+    case OP_MIN: return a < b ? a : b;
+    case OP_MAX: return a > b ? a : b;
+    default: return a > 0 ? b : world_law(world, law->arg[2], local); /* OP_POSITIVE */
+    }
+}
+
+static double table_at(const Table *table, double x)
+{
+    const gic_table t = {table->x, table->y, table->slope, table->count, table->cubic, table->onward};
+    return gic_table_value(&t, x);
+}
+
+double world_law(const World *world, const Law *law, const double *local)
+{
+    switch (law->op) {
+    case LAW_NUMBER: return law->number;
+    case LAW_PARAMETER: {
+        const Parameter *parameter = &world->model->parameter[law->index];
+        if (parameter->law)
+            return world_law(world, parameter->law, local);
+        return parameter->tunable ? world->parameter[parameter->index] : parameter->value;
+    }
+    case LAW_INPUT: return world->input[law->index];
+    case LAW_VALUE: return world->x[law->index];
+    case LAW_RATE: return world->xd[law->index];
+    case LAW_TIME: return world->time;
+    case LAW_LOCAL: return local[law->index];
+    case LAW_TABLE: return table_at(&world->model->table[law->index], world_law(world, law->arg[0], local));
+    default: return call_at(world, law, local);
+    }
+}
+
+/* ---- elements -------------------------------------------------------------------------------------------- */
+
+static inline double fade_in(double s)
+{
+    s = fmin(s, 1);
+    return s * s * (3 - 2 * s);
+}
+
+/* Of a spring, by its stiffness or table; rate: of the extension. */
+static double elastic_force(World *world, const Force *force, double extension, double rate)
+{
+    if (force->table >= 0)
+        return table_at(&world->model->table[force->table], extension);
+    const double elastic = world_law(world, force->stiffness, NULL) * extension;
+    world->potential += 0.5 * elastic * extension;
+    world->stored += elastic * rate;
+    return elastic;
+}
+
+/* What one end of a stop pushes. */
+static double contact(World *world, const Force *force, double depth, double rate)
+{
+    if (!(depth > 0))
+        return 0;
+    const double damping =
+        world_law(world, force->damping, NULL) * fade_in(depth / world_law(world, force->fade, NULL));
+    return fmax(0, elastic_force(world, force, depth, rate) + damping * rate);
+}
+
+/* What an element between points, about an axis or, but for a formula, along a coordinate does against growth. */
+static double resistance(World *world, const Force *force, double value, double rate)
+{
+    if (force_is_law(force))
+        return world_law(world, force->law[0], (const double[FORCE_LOCALS]){value, rate});
+    if (force_is_spring(force))
+        return elastic_force(world, force, value - world_law(world, force->free, NULL), rate) +
+               world_law(world, force->damping, NULL) * rate;
+    double tension = 0;
+    if (force->high)
+        tension += contact(world, force, value - world_law(world, force->high, NULL), rate);
+    if (force->low)
+        tension -= contact(world, force, world_law(world, force->low, NULL) - value, -rate);
+    return tension;
+}
+
+static void add_along(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    const int w = force->coordinate;
+    const double Q = force_is_law(force) ? world_law(world, force->law[0], NULL)
+                                         : -resistance(world, force, world->x[w], world->xd[w]);
+    world->element[index] = Q;
+    world->along[w] += Q;
+    world->power += Q * world->xd[w];
+}
+
+static void add_between(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    const Point a = point_at(world, force->body[0], force->point[0]),
+                b = point_at(world, force->body[1], force->point[1]);
+    double d[3], rate[3], F[3];
+    sub3(b.r, a.r, d);
+    sub3(b.v, a.v, rate);
+    const double length = norm3(d), speed = dot3(d, rate) / length;
+    const double tension = resistance(world, force, length, speed);
+    world->shortest = fmin(world->shortest, length);
+    world->element[index] = tension;
+    world->power -= tension * speed;
+    for (int i = 0; i < 3; ++i)
+        F[i] = tension / length * d[i];
+    push(world, &a, F);
+    for (int i = 0; i < 3; ++i)
+        F[i] = -F[i];
+    push(world, &b, F);
+}
+
+/* A direction fixed in a body, or in ground. */
+static inline void direction(const World *world, int body, const double u[3], double out[3])
+{
+    if (body == BODY_GROUND)
+        copy3(u, out);
+    else
+        apply3(world->A[body], u, out);
+}
+
+/* Torques T n on the first body and -T n on the second, n being the derivative of the angle by the relative rotation.
+ */
+static void add_about(World *world, int index)
+{
+    static const double still[3] = {0, 0, 0};
+    const Force *force = &world->model->force[index];
+    const int a = force->body[0], b = force->body[1];
+    double u[3], e1[3], e2[3], f1[3], n[3], turn[3];
+    direction(world, a, force->axis, u);
+    direction(world, a, force->reference[0], e1);
+    direction(world, b, force->reference[1], f1);
+    cross3(u, e1, e2);
+    const double x = dot3(e1, f1), y = dot3(e2, f1);
+    copy3(u, n);
+    add_scaled3(-dot3(u, f1), f1, n);
+    sub3(b == BODY_GROUND ? still : world->omega[b], a == BODY_GROUND ? still : world->omega[a], turn);
+    const double square = x * x + y * y;
+    const double rate = dot3(n, turn) / square, torque = resistance(world, force, atan2(y, x), rate);
+    world->element[index] = torque;
+    world->power -= torque * rate;
+    if (a != BODY_GROUND)
+        add_scaled3(torque / square, n, world->wrench[a] + 3);
+    if (b != BODY_GROUND)
+        add_scaled3(-torque / square, n, world->wrench[b] + 3);
+}
+
+/* Force and torque, components in the frame of body `in`. */
+static void add_load(World *world, int body, int in, const double at[3], const double load[6])
+{
+    const Point point = point_at(world, body, at);
+    double F[3], T[3], *wrench = world->wrench[body];
+    if (in == BODY_GROUND) {
+        copy3(load, F);
+        copy3(load + 3, T);
+    } else {
+        apply3(world->A[in], load, F);
+        apply3(world->A[in], load + 3, T);
+    }
+    push(world, &point, F);
+    add3(wrench + 3, T, wrench + 3);
+    world->power += dot3(F, point.v) + dot3(T, world->omega[body]);
+}
+
+static void add_force(World *world, int index)
+{
+    const Force *force = &world->model->force[index];
+    double load[6];
+    if (force->coordinate >= 0) {
+        add_along(world, index);
+    } else if (force_is_torque(force)) {
+        add_about(world, index);
+    } else if (force->type != FORCE_LOAD) {
+        add_between(world, index);
+    } else {
+        for (int i = 0; i < 6; ++i)
+            load[i] = force->law[i] ? world_law(world, force->law[i], NULL) : 0;
+        add_load(world, force->body[0], force->body[1], force->point[0], load);
+    }
+}
+
+/* ---- wheels ---------------------------------------------------------------------------------------------- */
+
+/* A vertical spring and damper. */
+static int add_contact(World *world, int index)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const Point center = point_at(world, wheel->body, wheel->center);
+    double road[3] = {0, 0, 0};
+    if (world->road)
+        world->road->height(world->road, world->lane, world->time, center.r[0], center.r[1], road);
+    if (!gic_finite(road, 3))
+        return GIC_ERROR_ROAD;
+    const double deflection = wheel->radius + road[0] - center.r[2];
+    const double rate = road[1] * center.v[0] + road[2] * center.v[1] - center.v[2];
+    double fz = 0;
+    if (deflection > 0)
+        fz = fmax(0, wheel->stiffness * deflection + wheel->damping * fade_in(deflection / wheel->fade) * rate);
+    push(world, &center, (const double[3]){0, 0, fz});
+    world->power += fz * center.v[2];
+    double *out = world->wheel[index];
+    out[0] = fz;
+    out[1] = deflection;
+    out[2] = rate;
+    out[3] = road[0];
+    return GIC_OK;
+}
+
+void world_wheel_motion(const World *world, int index, WheelMotion *motion)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const Point center = point_at(world, wheel->body, wheel->center);
+    copy3(center.r, motion->center);
+    copy3(center.v, motion->velocity);
+    apply3(world->A[wheel->body], wheel->axis, motion->axis);
+    copy3(world->omega[wheel->body], motion->omega);
+    motion->drive_turn = dot3(motion->axis, world->omega[wheel->drive_body]);
+}
+
+/* A wheel for itself, as if it had no powertrain. */
+static int turn_wheel(const World *world, const Wheel *wheel, const WheelMotion *motion, const double *fast,
+                      double *rate, Rolling *rolling)
+{
+    const Tire *tire = &world->model->tire[wheel->tire];
+    const Ground ground = {world->road, world->lane, world->time};
+    const double *spin = &fast[FAST_SPIN];
+    const double drive = wheel->drive ? world_law(world, wheel->drive, spin) : 0;
+    const double brake = wheel->brake ? world_law(world, wheel->brake, spin) : 0;
+    const int status = wheel_touch(wheel, tire, &ground, motion, rolling);
+    if (status == GIC_OK)
+        wheel_turn(wheel, tire, motion, drive, brake, fast, rate, rolling);
+    return status;
+}
+
+int world_wheels_turn(World *world, const double *fast, double *rate)
+{
+    const Model *model = world->model;
+    for (int i = 0; i < model->wheels; ++i) {
+        const Wheel *wheel = &model->wheel[i];
+        const int at = wheel->fast;
+        int status = GIC_OK;
+        if (wheel->tire >= 0)
+            status = turn_wheel(world, wheel, &world->motion[i], fast + at, rate + at, &world->rolling[i]);
+        if (status != GIC_OK)
+            return status;
+    }
+    if (model->powertrain)
+        world_drive(world, fast, rate);
+    return GIC_OK;
+}
+
+static void add_tire(World *world, int index)
+{
+    const Wheel *wheel = &world->model->wheel[index];
+    const WheelMotion *motion = &world->motion[index];
+    const Rolling *rolling = &world->rolling[index];
+    double arm[3], moment[3], *carrier = world->wrench[wheel->body], *driver = world->wrench[wheel->drive_body] + 3;
+    sub3(motion->center, world->q[wheel->body], arm);
+    cross3(arm, rolling->force, moment);
+    add3(carrier, rolling->force, carrier);
+    add3(carrier + 3, moment, carrier + 3);
+    add3(carrier + 3, rolling->torque, carrier + 3);
+    add3(driver, rolling->reaction, driver);
+    world->power += rolling->power;
+    memcpy(world->wheel[index],
+           (const double[4]){rolling->fz, rolling->deflection, rolling->deflection_rate, rolling->height},
+           sizeof world->wheel[index]);
+}
+
+/* Wheels, with tires or not. */
+static int add_wheels(World *world)
+{
+    const Model *model = world->model;
+    int status = GIC_OK;
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
+        if (model->wheel[i].tire < 0)
+            status = add_contact(world, i);
+        else
+            world_wheel_motion(world, i, &world->motion[i]);
+    if (status == GIC_OK)
+        status = world_wheels_turn(world, world->fast, world->fast_rate);
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i)
+        if (model->wheel[i].tire >= 0)
+            add_tire(world, i);
+    return status;
+}
+
+int world_forces(World *world)
+{
+    const Model *model = world->model;
+    for (int b = 0; b < world->bodies; ++b) {
+        for (int i = 0; i < 3; ++i) {
+            world->wrench[b][i] = model->body[b].mass * model->gravity[i];
+            world->wrench[b][3 + i] = 0;
+        }
+    }
+    memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
+    world->potential = world->stored = world->power = 0;
+    world->shortest = INFINITY;
+    for (int i = 0; i < model->forces; ++i)
+        add_force(world, i);
+    for (int i = 0; i < model->ports; ++i) {
+        const Port *port = &model->port[i];
+        add_load(world, port->body, port->in, port->point, world->port + 6 * i);
+    }
+    world->power += world->stored;
+    return add_wheels(world);
+}
+
+void world_spread(World *world)
+{
+    for (int c = 0; c < world->model->coordinates; ++c) {
+        if (world->along[c] == 0)
+            continue;
+        /* the multiplier of Psi: Psi_w^T multiplier = along */
+        const Tie *tie = &world->tie[world->coordinate_tie[c]];
+        const double *J = world->J + ROW_J * tie->first, multiplier = world->along[c] / world->dual[c];
+        for (int end = 0; end < 2; ++end, J += BODY_Q) {
+            double *wrench = world->wrench[tie->body[end]], torque[3];
+            add_scaled3(-multiplier, J, wrench);
+            euler_turn(world->q[tie->body[end]] + 3, J + 3, torque); /* the p part is 2 E^T torque */
+            add_scaled3(-0.5 * multiplier, torque, wrench + 3);
+        }
+    }
+}

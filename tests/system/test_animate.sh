@@ -1,0 +1,180 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_animate.sh GICRUN: the page of --animate: its numbers against the results and the road's formula, with every
+# engine; in a real browser the picture, what moves in it, and every control; names with what HTML means something by.
+gicrun=$1
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+
+page() { /usr/bin/python3 -B "$root/tests/data/animate/page.py" "$@" >"$work/said" 2>&1; }
+
+model=$root/models/hmmwv.veh
+scene=$root/models/scenes/paper_run.scene
+run "$model" "$scene" -o "$work/run.csv" --animate "$work/run.html"
+check 'a run writes a page' exits 0
+check 'no temporary file is left' [ -z "$(find "$work" -name '*.tmp')" ]
+check 'poses, wheels, forces and curves are those of the results' page motion "$work/run.html" "$work/run.csv"
+check 'the road is that of the scene' page road "$work/run.html" "$scene"
+# 401 frames of 73 channels with some 4 bytes a number, and 200 kB of road and page
+check 'the page is small' [ "$(wc -c <"$work/run.html")" -lt 350000 ]
+inside() { ! grep -oE '(src|href)="[^"]*|https?://[^ ]*|@import|url\(' "$1" | grep -v 'href="data:,$'; }
+check 'it refers to nothing outside' inside "$work/run.html"
+cp "$work/run.html" "$work/first.html"
+run "$model" "$scene" --animate "$work/run.html"
+check 'without -o only the page' [ ! -s "$work/out" ]
+check 'the same page again, byte for byte' cmp "$work/run.html" "$work/first.html"
+
+# to rounding, twice a unit, for the last digit may fall either way; partitioned coordinates are integrated themselves,
+# with errors of their own: more
+for engine in cc tape gic gcp1 gcp2; do
+    run -q --engine $engine "$model" "$scene" --animate "$work/$engine.html"
+    case $engine in gcp*) units=10 ;; *) units=2 ;; esac
+    check "engine $engine gives the same motion" page same "$work/run.html" "$work/$engine.html" $units
+done
+
+# wheels that spin, on a plane that rises to the left and ahead: steered, braked until they lock
+tires=$root/models/hmmwv_tires.veh
+cat >"$work/tires.scene" <<'END'
+gicscene: 1
+duration: 3
+step: 0.005
+ratio: 5
+initial: {position: [0, 0, 0.4826], orientation: {yaw: 0.3}, speed: 12}
+road: {type: slope, x: 0.05, y: 0.03}
+inputs:
+  rack: {knots: {times: [0.2, 1], values: [0, 0.03]}}
+  brake: {knots: {times: [1.5, 1.7], values: [0, 0.9]}}
+END
+run "$tires" "$work/tires.scene" -o "$work/tires.csv" --animate "$work/tires.html"
+check 'wheels with tires turn by their spin, arrows have all three components' \
+    page tires "$work/tires.html" "$work/tires.csv" 0.05 0.03 0.3175
+run -q --engine gcp1 "$tires" "$work/tires.scene" -o "$work/gcp1.csv" --animate "$work/gcp1.html"
+check 'they do with another engine' page tires "$work/gcp1.html" "$work/gcp1.csv" 0.05 0.03 0.3175
+
+# ice and glue
+cat >"$work/ice.scene" <<'END'
+gicscene: 1
+duration: 1
+step: 0.005
+initial: {speed: 8}
+road:
+  type: flat
+  friction:
+    value: 1
+    patches: [{x: [3, 9], y: [-2, 0.3], value: 0.1, fade: 0.5}, {x: [6, 7], y: [0, 1], value: 1.6, fade: 0.3}]
+END
+run "$model" "$work/ice.scene" --animate "$work/ice.html"
+check 'friction of the road is that of the scene' page friction "$work/ice.html" "$work/ice.scene"
+
+# names that HTML means something by; a long run of something small on a fixed base, made larger by a parameter
+cat >"$work/odd.veh" <<'END'
+gicgen: 1
+model: odd
+description: "</script><b>\"5 < 6\" & \\ Größe \u2028 <!-- x"
+base: ground
+parameters:
+  length: {value: 0.02, tunable: true}
+bodies:
+  bob: {mass: 1, com: [0, 0, -length], inertia: [1e-6, 1e-6, 1e-6]}
+joints:
+  pivot: {type: revolute, bodies: [ground, bob], point: [0, 0, 0], axis: [0, 1, 0]}
+coordinates:
+  angle: {type: angle, bodies: [ground, bob], axis: [0, 1, 0], range: [-1, 1], initial: 0.5}
+END
+cat >"$work/<i>&.scene" <<'END'
+gicscene: 1
+duration: 500
+step: 0.005
+parameters: {length: 0.03}
+END
+run "$work/odd.veh" "$work/<i>&.scene" --animate "$work/odd.html"
+check 'odd names: a page' exits 0
+check 'the joint is where the parameter puts it' grep -q '"name":"bob".*\[0,0,0.03\]' "$work/odd.html"
+# 100001 output times; at most 6000 frames of two numbers that change, three curves
+check 'a long run has a small page' [ "$(wc -c <"$work/odd.html")" -lt 300000 ]
+
+# springs and dampers along coordinates and between points
+cat >"$work/lines.veh" <<'END'
+gicgen: 1
+model: lines
+base: ground
+bodies:
+  near: {mass: 1, com: [1, 0, 0], inertia: [1, 1, 1]}
+  far: {mass: 1, com: [3, 0, 0], inertia: [1, 1, 1]}
+joints:
+  near: {type: prismatic, bodies: [ground, near], axis: [1, 0, 0]}
+  far: {type: prismatic, bodies: [ground, far], axis: [1, 0, 0]}
+coordinates:
+  coil: {type: length, bodies: [ground, near], points: [[0, 0, 0], [1, 0, 0]]}
+  pot: {type: length, bodies: [ground, far], points: [[0, 1, 0], [3, 0, 0]]}
+forces:
+  coil: {type: spring_damper, coordinate: coil, stiffness: 100, damping: 10}
+  pot: {type: spring_damper, coordinate: pot, stiffness: 0, damping: 10}
+  strut: {type: spring_damper, bodies: [near, far], points: [[1, 0, 0.2], [3, 0, 0.1]], stiffness: 50, damping: 1}
+  dash: {type: spring_damper, bodies: [near, far], points: [[1, 0.3, 0], [3, 0.4, 0]], stiffness: 0, damping: 1}
+END
+printf 'gicscene: 1\nduration: 0.1\nstep: 0.01\n' >"$work/lines.scene"
+run --engine tape "$work/lines.veh" "$work/lines.scene" --animate "$work/lines.html"
+check 'springs and dampers are lines between their points' page lines "$work/lines.html" coil:spring:ground:0,0,0:near:0,0,0 \
+    pot:damper:ground:0,1,0:far:0,0,0 strut:spring:near:0,0,0.2:far:0,0,0.1 dash:damper:near:0,0.3,0:far:0,0.4,0
+
+# shapes that models name, and those of bodies of which little is known; wheels whose forces no output tells
+cat >"$work/shapes.scene" <<'END'
+gicscene: 1
+duration: 0.5
+step: 0.002
+output_step: 0.01
+initial: {speed: 8}
+END
+shapes=$root/tests/data/animate/shapes.veh
+run "$shapes" "$work/shapes.scene" -o "$work/shapes.csv" --animate "$work/shapes.html"
+check 'bodies look as their model says or their mass suggests' page looks "$work/shapes.html"
+cp "$root/tests/data/animate/wing.obj" "$work"
+{
+    cat "$shapes"
+    echo 'outputs:'
+    for wheel in front_l rear_l trailer_l; do echo "  load_$wheel: {type: wheel, wheel: $wheel}"; done
+} >"$work/loads.veh"
+run "$work/loads.veh" "$work/shapes.scene" -o "$work/loads.csv"
+check 'forces of wheels without an output are those that an output tells' page forces "$work/shapes.html" "$work/loads.csv"
+run --general "$shapes" "$work/shapes.scene" -o "$work/plain.csv"
+check 'a page leaves no trace in the results' cmp "$work/shapes.csv" "$work/plain.csv"
+
+lanes=$root/models/scenes/lane_change.scene
+run "$root/models/hmmwv_vehicle.veh" "$lanes" --animate "$work/lanes.html"
+check 'cones, lanes and path are those of the scene' page course "$work/lanes.html"
+
+{ cat "$work/shapes.scene"; echo 'course: {lanes: [{points: [[0, 0], [10, 0], [10, 10]], width: 4}]}'; } >"$work/bend.scene"
+run "$shapes" "$work/bend.scene" --animate "$work/bend.html"
+check 'edges of a lane that turns' page bend "$work/bend.html"
+
+# ---- in the browser
+
+run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
+timeout 600 /usr/bin/python3 -B "$root/tests/data/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" >"$work/notes" 2>"$work/err"
+check 'the browser is used to the end' [ $? -eq 0 ]
+while read -r how what; do
+    check "$what" [ "$how" = good ]
+done <"$work/notes"
+
+# ---- mistakes and failures
+
+run "$model" "$scene" --animate "$work/page.txt"
+check 'a page of another kind' exits 2
+check 'a page of another kind: why' says 'must end in .html'
+run --eval "$work/run.csv" "$model" --animate "$work/page.html"
+check 'not with --eval' exits 2
+run "$model" "$scene" -o "$work/kept.csv" --animate "$work/nowhere/page.html"
+check 'a place that is not there' exits 1
+check 'a place that is not there: why' says "nowhere/page.html: error: can't create"
+check 'a place that is not there: noticed before the run' [ ! -e "$work/kept.csv" ]
+# the wheels drop into a hole and the springs go beyond reach
+sed 's/height: 0.08, tracks: both/height: -80, tracks: both/' "$scene" >"$work/hole.scene"
+run "$model" "$work/hole.scene" -o "$work/hole.csv" --animate "$work/hole.html"
+check 'a run that fails' exits 1
+check 'a run that fails has its page up to there' page motion "$work/hole.html" "$work/hole.csv"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

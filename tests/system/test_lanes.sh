@@ -1,0 +1,71 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_lanes.sh GICGEN: of every model that gicgen --batch does not refuse, vehicles in lanes have the bits of the code
+# for one vehicle: states, outputs, status; with lanes of any width, either number type, gcc and clang, threads, as C++.
+gicgen=$(realpath "$1")
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+
+cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/tests/data/embed/lanes.c" "$work/"
+# reactions are refused; what else tuned geometry moves is not
+sed "s|\.\./\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/data/tuning/car.veh" >"$work/car.veh"
+cd "$work" || exit 1
+
+# agrees MODEL.veh OPTIONS LANES COMPILER...: eight vehicles, LANES of them in a vector, have the same bits
+agrees() {
+    file=$1
+    options=$2
+    lanes=$3
+    shift 3
+    name=$(sed -n 's/^model: *//p' "$file")
+    # shellcheck disable=SC2086  # a list of words
+    "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 --lanes "$lanes" $options "$file" &&
+        "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DBATCH="${name}_batch_model" -I. \
+            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = '8 8 8 of 8' ]
+    verdict $? "$file $options, $lanes lanes: $* $(./lanes)"
+}
+
+# a compiler that knows no vectors
+"$gicgen" "$root/models/hmmwv.veh" && "$gicgen" --batch 8 "$root/models/hmmwv.veh" && tcc -I. -c hmmwv_batch.c -o x.o 2>err
+[ $? -ne 0 ] && grep -q '#error.*needs the vector extensions of gcc or clang' err
+verdict $? "tcc: $(cat err)"
+# a body that stands still
+printf '%s\n' "gicgen: 1" "model: hinged" "base: ground" bodies: \
+    "  bracket: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}" "  rod: {mass: 1, com: [0, 0, 1], inertia: [1, 1, 1]}" \
+    joints: "  weld: {type: fixed, bodies: [ground, bracket]}" \
+    "  pivot: {type: revolute, bodies: [bracket, rod], point: [0, 0, 0], axis: [0, 1, 0]}" coordinates: \
+    "  angle: {type: angle, bodies: [bracket, rod], axis: [0, 1, 0], range: [-1, 1]}" >hinged.veh
+for model in "$root"/models/*.veh "$root/tests/data/laws/cart.veh" car.veh hinged.veh; do
+    if "$gicgen" --batch 8 "$model" -o - >out 2>err; then
+        agrees "$model" '' 4 gcc -std=c11 -O0
+    else
+        grep -q "error: code for many vehicles at once can't have wheels with tires yet" err
+        verdict $? "$model: $(cat err)"
+    fi
+done
+
+hmmwv=$root/models/hmmwv.veh
+agrees "$hmmwv" '' 2 gcc -std=c11 -O2
+agrees "$hmmwv" '' 8 gcc -std=c11 -O2 -DGIC_FLOAT -Wdouble-promotion
+agrees "$hmmwv" '' 16 clang -std=c11 -O1
+agrees "$hmmwv" '--solve augmented' 4 clang -std=c11 -O1 -DGIC_FLOAT
+agrees "$hmmwv" '' 4 gcc -std=c11 -O1 -fopenmp
+for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
+    $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I. -c hmmwv_batch.c -o x.o
+    verdict $? "$how hmmwv_batch.c"
+done
+"$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
+verdict $? "the same input gives other bytes"
+
+# code of another model is noticed
+"$gicgen" "$root/models/quarter_car.veh" -o quarter_car.c
+sed 's/^gravity:.*/gravity: [0, 0, -1.62]/' "$root/models/quarter_car.veh" >moon.veh
+"$gicgen" --batch 8 moon.veh -o quarter_car_batch.c &&
+    gcc -std=c11 -DBATCH=quarter_car_batch_model -I. lanes.c quarter_car.c quarter_car_batch.c gic_runtime.c -lm -o lanes
+./lanes
+[ $? -eq 1 ]
+verdict $? "lanes of one model and vehicles of another"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,111 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_narrow.sh GICGEN GICRUN: code for one scene against code for any, and its refusal of everything else.
+#
+# The two do the same operations but for those with constants, so a number of the results may differ by rounding, which
+# a run of a second lets grow: 1e-9 of the largest in its column (a force of 1e-7 N beside 100 N) is far below what any
+# term that is left out by mistake would make.
+gicgen=$1
+gicrun=$2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tests/lib/checking.sh"
+models=$root/models
+: >"$work/out"
+: >"$work/err"
+
+# near FILE FILE: the same columns and, to 1e-9 of the largest of each column, the same numbers; with rows
+near() {
+    awk -F, 'FNR == 1 { if (NR == 1) head = $0; else if ($0 != head) bad = 1; next }
+        NR == FNR { for (i = 1; i <= NF; ++i) { a[FNR, i] = $i; s = $i < 0 ? -$i : $i; if (s > m[i]) m[i] = s }; rows = FNR; next }
+        { for (i = 1; i <= NF; ++i) { d = a[FNR, i] - $i; if (d < 0) d = -d; if (!(d <= 1e-9 * (1 + m[i]))) bad = 1 }; other = FNR }
+        END { exit bad || rows < 2 || rows != other }' "$1" "$2"
+}
+
+# same MODEL SCENE [OPTION...]: generated code for the scene does what code for any scene and the interpreted engine do
+same() {
+    model=$1
+    scene=$2
+    shift 2
+    run --general "$@" "$models/$model.veh" "$scene" -o "$work/general"
+    check "$model, $scene: general" exits 0
+    for engine in tcc cc; do
+        run --engine $engine "$@" "$models/$model.veh" "$scene" -o "$work/narrow"
+        check "$model, $scene: $engine" exits 0
+        check "$model, $scene: $engine as the general code" near "$work/general" "$work/narrow"
+    done
+}
+
+same hmmwv_vehicle "$root/tests/data/narrow/coast.scene" --cflags -O1
+same hmmwv_vehicle "$root/tests/data/narrow/steer.scene" --cflags -O1
+same hmmwv_vehicle "$root/tests/data/narrow/straight.scene" --cflags -O1
+same hmmwv "$root/tests/data/narrow/bounce.scene" --cflags -O1
+same hmmwv "$root/tests/data/narrow/bumps.scene" --cflags -O1
+same hmmwv_vehicle "$root/tests/data/narrow/brake.scene" --cflags -O1
+sed 's/^duration.*/duration: 2/' "$models/scenes/suspension_rig.scene" >"$work/rig.scene"
+same hmmwv "$work/rig.scene" --cflags -O1
+
+# a rig, whose model is another one: the interpreted engines, which know nothing of how it is narrowed
+# shellcheck disable=SC2043  # one engine, for now
+for engine in gic; do
+    run --engine $engine "$models/hmmwv.veh" "$work/rig.scene" -o "$work/other"
+    check "rig: $engine" exits 0
+    check "rig: as $engine" near "$work/narrow" "$work/other"
+done
+# straight ahead the interpreted engine keeps its distance: rounding grows, but not like a term left out
+run --engine gic "$models/hmmwv.veh" "$root/tests/data/narrow/bumps.scene" -o "$work/other"
+run --engine cc --cflags -O1 "$models/hmmwv.veh" "$root/tests/data/narrow/bumps.scene" -o "$work/narrow"
+check "straight ahead: as gic" near "$work/narrow" "$work/other"
+same quarter_car "$models/scenes/quarter_car.scene" --cflags -O1
+same pendulum "$models/scenes/pendulum.scene" --cflags -O1
+
+# operations of all together FILE: adds and multiplies of a right-hand side
+operations() { sed -n 's/^ \*   all together  *\([0-9]*\) *\([0-9]*\) .*/\1 \2/p' "$1" | awk '{ print $1 + $2 }'; }
+
+scene=$root/tests/data/narrow/coast.scene
+"$gicgen" "$models/hmmwv_vehicle.veh" -o "$work/general.c" && "$gicgen" --scene "$scene" "$models/hmmwv_vehicle.veh" -o "$work/narrow.c"
+check "code for a scene" [ $? -eq 0 ]
+check "takes fewer operations" [ "$(operations "$work/narrow.c")" -lt "$(operations "$work/general.c")" ]
+check "looks no road up" [ "$(grep -c 'road_height\|road_friction' "$work/narrow.c")" -eq 0 ]
+check "says what it takes for granted" grep -q "the transmission is in neutral" "$work/narrow.c"
+cp "$work/narrow.c" "$work/first.c"
+"$gicgen" --scene "$scene" "$models/hmmwv_vehicle.veh" -o "$work/narrow.c"
+check "the same bytes again" cmp -s "$work/narrow.c" "$work/first.c"
+warnings="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -I$root/runtime -I$work"
+for how in "gcc -std=c99" "clang -std=c99" "gcc -std=c99 -DGIC_FLOAT" "g++ -x c++"; do
+    # shellcheck disable=SC2086  # words
+    $how $warnings -c -o "$work/object.o" "$work/narrow.c" 2>"$work/err"
+    check "compiled by $how" [ $? -eq 0 ]
+done
+# shellcheck disable=SC2086  # words
+gcc -std=c99 -O1 $warnings -o "$work/refuse" "$root/tests/data/narrow/refuse.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" -lm &&
+    "$work/refuse" >"$work/out"
+check "every false assumption is refused" [ $? -eq 0 ]
+# shellcheck disable=SC2086  # a list of words
+"$gicgen" --scene "$root/tests/data/narrow/bumps.scene" "$models/hmmwv.veh" -o "$work/narrow.c" &&
+    gcc -std=c99 -O1 $warnings -o "$work/uneven" "$root/tests/data/narrow/uneven.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" -lm &&
+    "$work/uneven" >"$work/out"
+check "what is not the same on both sides is refused" [ $? -eq 0 ]
+
+# side NAME SCENE MODEL: is one side computed for both, and if not, why?
+side() { "$gicgen" --scene "$2" "$3" -o - 2>&1 | grep -q "one side for both .* $1"; }
+sed 's/10, 0, 0/10, 0.1, 0/' "$root/tests/data/narrow/bounce.scene" >"$work/drift.scene"
+check "refused: drift" side "refused: the vehicle does not move straight ahead" "$work/drift.scene" "$models/hmmwv.veh"
+sed 's/tracks: both/tracks: left/' "$root/tests/data/narrow/bumps.scene" >"$work/left.scene"
+check "refused: road" side "refused: the road" "$work/left.scene" "$models/hmmwv.veh"
+sed "s|parts/|$models/parts/|g; s/^forces:/forces:\n  spring_f_r: {type: spring_damper, coordinate: spring_f_r, stiffness: 167071, damping: 17490.8, free: 0.31903}/" \
+    "$models/hmmwv.veh" >"$work/spring.veh"
+check "refused: a spring" side "refused: forces are not the same" "$root/tests/data/narrow/bumps.scene" "$work/spring.veh"
+sed "s|parts/|$models/parts/|g; s/^wheels:/wheels:\n  tire_f_r: {body: wheel_f_r, center: centre_f_r, radius: 0.47, stiffness: 283000, damping: 500}/" \
+    "$models/hmmwv.veh" >"$work/wheel.veh"
+check "refused: a wheel" side "refused: wheel 'tire_f_" "$root/tests/data/narrow/bumps.scene" "$work/wheel.veh"
+check "taken" side "model, initial state" "$root/tests/data/narrow/bumps.scene" "$models/hmmwv.veh"
+"$gicgen" --scene "$scene" --sequence "$models/hmmwv_vehicle.veh" >"$work/out" 2>"$work/err"
+check "--scene with another task" [ $? -eq 2 ]
+sed 's/chassis, spring/chassis, sprong/' "$scene" >"$work/wrong.scene"
+"$gicgen" --scene "$work/wrong.scene" "$models/hmmwv_vehicle.veh" -o "$work/wrong.c" >"$work/out" 2>"$work/err"
+check "a mistake in the scene" [ $? -eq 1 ]
+check "is explained" says "wrong.scene:.*no output 'sprong_f_l'"
+check "and leaves no file" [ ! -e "$work/wrong.c" ]
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,64 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_scenes.sh GICRUN: the table of scenes in README.md. Every scene of models/scenes/ is set up and runs to its
+# first output with every model that the table names for it, and with every other model it is refused as a scene for
+# other models, which the message names.
+gicrun=$(realpath "$1")
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+
+# the same scenes, as short as can be, beside the same models
+mkdir "$work/scenes"
+for entry in "$root"/models/*.veh "$root/models/parts" "$root/models/roads" "$root/models/tires"; do
+    ln -s "$entry" "$work/"
+done
+for scene in "$root"/models/scenes/*.scene; do
+    output=$(sed -n 's/^output_step: *//p' "$scene")
+    sed "s/^duration: .*/duration: ${output:?}/" "$scene" >"$work/scenes/$(basename "$scene")"
+done
+models=$(cd "$root/models" && echo *.veh | sed 's/\.veh//g')
+
+# the table's rows: scenes | models
+sed -n '/^| scenes in/,/^$/p' "$root/README.md" | sed -n 's/^| `/`/p' | tr -d '`,' | while IFS='|' read -r scenes fitting _; do
+    for scene in $scenes; do echo "$scene $fitting" | sed "s/each the model of its name/$scene/"; done
+done >"$work/table"
+all_scenes() { (cd "$root/models/scenes" && echo *.scene | sed 's/\.scene//g' | tr ' ' '\n'); }
+listed() { [ "$(cut -d' ' -f1 "$work/table" | sort)" = "$(all_scenes | sort)" ]; }
+check 'the table has every scene once' listed
+described() { for scene in $(all_scenes); do grep -q "^| \`$scene\.scene\` |" "$root/models/README.md" || return 1; done; }
+check 'models/README.md says what happens in every scene' described
+
+cd "$work" || exit 1
+try() { "$gicrun" -q --engine tape "$1.veh" "scenes/$2.scene" -o out.csv >out 2>err; }
+while read -r scene fitting; do
+    for model in $models; do
+        try "$model" "$scene"
+        status=$?
+        case " $fitting " in
+            *" $model "*)
+                verdict $status "$scene runs with $model"
+                ;;
+            *)
+                [ $status -eq 1 ] && grep -q "^scenes/$scene.scene:[0-9]*:[0-9]*: error: $scene is for models with " err &&
+                    # those that the message names, where it names all
+                    grep -Eq " and [0-9]* more; '|: $(echo "$fitting" | tr ' ' '\n' | sort | paste -sd, | sed 's/,/, /g'); '" err
+                verdict $? "$scene is refused with $model"
+                ;;
+        esac
+    done
+done <table
+
+# a name that no model beside it has is a mistake in the scene, with the nearest name
+sed 's/accelerator:/acelerator:/' scenes/full_run.scene >scenes/mistaken.scene
+try hmmwv_vehicle mistaken
+check 'a misspelt input' grep -q "error: the model has no input 'acelerator'" err
+check 'and the nearest one' grep -q "did you mean 'accelerator'" err
+# models with errors beside it do not matter
+echo 'gicgen: 1' >aaa.veh
+try pendulum full_run
+check 'a broken model beside it' grep -q "error: full_run is for models with the inputs brake, accelerator, rack: hmmwv_vehicle; 'pendulum' has no input 'brake'$" err
+check 'what to run instead' grep -q "remedy: run it with hmmwv_vehicle.veh, or 'pendulum' with the scene pendulum$" err
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
