@@ -59,11 +59,21 @@ differ() {
 larger() { awk "BEGIN { print ($1 > $2) ? \"$1\" : \"$2\" }"; }
 within() { awk "BEGIN { exit !($1 <= $2) }"; }
 
+# 32-bit programs go through QEMU where the kernel runs none of its own
+emulator=
+echo 'int main(void) { return 0; }' >narrow.c
+if gcc -m32 narrow.c -o narrow 2>/dev/null && ! ./narrow 2>/dev/null; then
+    emulator=qemu-i386
+fi
+# starter HOW: what starts a program that was compiled so
+starter() { case $1 in *-m32*) echo "$emulator" ;; esac; }
+
 # try TOLERANCE QUAD HOW MODEL FOLDER: $reason and, after success, the worst deviations $off and $error
 try() {
     reason=
-    if ! { compile "$3" "$4" "$5" && build "$3" "$4" drive "$5" && ./drive >numbers 2>messages &&
-        build "$3" "$4" evaluate "$5" && ./evaluate <"$4.states" >evaluated 2>messages; }; then
+    start=$(starter "$3")
+    if ! { compile "$3" "$4" "$5" && build "$3" "$4" drive "$5" && $start ./drive >numbers 2>messages &&
+        build "$3" "$4" evaluate "$5" && $start ./evaluate <"$4.states" >evaluated 2>messages; }; then
         reason="$4: $(grep -m 1 'error\|row\|step\|numbers' messages || tail -n 1 messages)"
         return
     fi
@@ -150,7 +160,7 @@ while read -r tolerance how; do
         # shellcheck disable=SC2086
         if compile "$how" "$model" . && $how -std=c11 -I. -DMODEL="$model" -DMANY="${model}_batch" \
             -DHEADER="\"${model}_batch.h\"" many.c "$model.o" "${model}_batch.c" gic_runtime.o gic_road.o -lm -o many \
-            2>messages && ./many >numbers 2>messages; then
+            2>messages && $(starter "$how") ./many >numbers 2>messages; then
             off=$(cat numbers)
             most=$(larger "$off" "$most")
             if within "$off" "$tolerance"; then good=$((good + 1)); else verdict="$model differs by $off"; fi
