@@ -153,6 +153,7 @@ typedef struct Item {
     const char *text;    /* scalar: its text (may hold any byte but is terminated) */
     bool quoted;         /* scalar: written in quotes, so never a number */
     bool negated;        /* scalar: of a mirror image; its number is -(written + shift) */
+    bool mirrored;       /* scalar: of a mirror image, whose formulas read the quantities of the other side */
     double shift;        /* scalar: of a moved file; its number is written + shift */
     int count;           /* list: elements; map: pairs */
     struct Item **value; /* list: the elements; map: the values */

@@ -42,21 +42,26 @@ enum { FUNCTIONS = sizeof function / sizeof *function };
 static _Noreturn void fail(Parser *p, const char *where, const char *remedy, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Fail at a place inside the text of the formula. In a text with escapes or folded lines places are not exact: then the
- * place is the formula's beginning. */
-static _Noreturn void fail(Parser *p, const char *where, const char *remedy, const char *format, ...)
+/* The place of a character of the formula. In a text with escapes or folded lines places are not exact: then it is the
+ * formula's beginning. */
+static Place place_of(const Parser *p, const char *where)
 {
-    va_list args;
-    va_start(args, format);
-    const char *message = pool_vprint(p->pool, format, args);
-    va_end(args);
     Place at = p->item->at;
     const Source *source = at.source;
     size_t length = strlen(p->item->text);
     const char *start = diag_line(at) + at.column - 1 + p->item->quoted, *end = source->bytes + source->size;
     if (start <= end && length <= (size_t)(end - start) && !memcmp(start, p->item->text, length))
         at.column += p->item->quoted + (int)(where - p->item->text);
-    diag_fail(at, remedy, "%s: %s", p->what, message);
+    return at;
+}
+
+static _Noreturn void fail(Parser *p, const char *where, const char *remedy, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    const char *message = pool_vprint(p->pool, format, args);
+    va_end(args);
+    diag_fail(place_of(p, where), remedy, "%s: %s", p->what, message);
 }
 
 static void skip(Parser *p)
@@ -148,31 +153,51 @@ static void only_constants(Parser *p, const char *where, const char *name)
              name);
 }
 
-static _Noreturn void unknown(Parser *p, const char *where, const char *name)
+_Noreturn void law_name_unknown(Pool *pool, const LawNames *names, const char *what, const char *name, Place at,
+                                const char *const *more, int count)
 {
-    const Model *model = p->names->model;
+    const Model *model = names->model;
     const char **known = NULL;
-    int count = 0;
-    for (int i = 0; i < p->names->locals; ++i)
-        *POOL_PUSH(p->pool, known, count) = p->names->local[i];
-    for (int i = 0; i < model->coordinates && !p->names->constant; ++i)
-        *POOL_PUSH(p->pool, known, count) = model->coordinate[i].name;
+    int knowns = 0;
+    for (int i = 0; i < names->locals; ++i)
+        *POOL_PUSH(pool, known, knowns) = names->local[i];
+    for (int i = 0; i < model->coordinates && !names->constant; ++i)
+        *POOL_PUSH(pool, known, knowns) = model->coordinate[i].name;
     for (int i = 0; i < model->parameters; ++i)
-        *POOL_PUSH(p->pool, known, count) = model->parameter[i].name;
-    for (int i = 0; i < model->inputs && !p->names->constant; ++i)
-        *POOL_PUSH(p->pool, known, count) = model->input[i].name;
-    if (!p->names->constant)
-        *POOL_PUSH(p->pool, known, count) = "time";
-    *POOL_PUSH(p->pool, known, count) = "pi";
-    const char *nearest = diag_nearest(name, known, count);
-    Text list = {.pool = p->pool};
-    for (int i = 0; i < count && list.size < 200; ++i)
+        *POOL_PUSH(pool, known, knowns) = model->parameter[i].name;
+    for (int i = 0; i < model->inputs && !names->constant; ++i)
+        *POOL_PUSH(pool, known, knowns) = model->input[i].name;
+    if (!names->constant)
+        *POOL_PUSH(pool, known, knowns) = "time";
+    *POOL_PUSH(pool, known, knowns) = "pi";
+    for (int i = 0; i < count; ++i)
+        *POOL_PUSH(pool, known, knowns) = more[i];
+    const char *nearest = diag_nearest(name, known, knowns);
+    Text list = {.pool = pool};
+    for (int i = 0; i < knowns && list.size < 200; ++i)
         text_print(&list, "%s%s", i ? ", " : "", known[i]);
-    const char *above = p->names->constant ? " (parameters stand above what uses them)" : "";
-    fail(p, where,
-         nearest ? pool_print(p->pool, "did you mean '%s'?%s", nearest, above)
-                 : pool_print(p->pool, "names known here: %s%s", list.s, above),
-         "there is no '%s'", name);
+    const char *above = names->constant ? " (parameters stand above what uses them)" : "";
+    diag_fail(at,
+              nearest ? pool_print(pool, "did you mean '%s'?%s", nearest, above)
+                      : pool_print(pool, "names known here: %s%s", list.s, above),
+              "%s: there is no '%s'", what, name);
+}
+
+/* A name that only a signal can have. */
+static const Law *signal_named(Parser *p, const char *where, const char *name)
+{
+    const LawNames *names = p->names;
+    if (!names->reads)
+        law_name_unknown(p->pool, names, p->what, name, place_of(p, where), NULL, 0);
+    Law *law = pool_alloc(p->pool, sizeof *law);
+    *law = (Law){.op = LAW_SIGNAL, .index = -1, .number = 1, .name = pool_print(p->pool, "%s", name), .size = 1};
+    *POOL_PUSH(p->pool, names->reads->read, names->reads->count) = (SignalRead){.law = law,
+                                                                                .name = law->name,
+                                                                                .at = place_of(p, where),
+                                                                                .what = p->what,
+                                                                                .mirrored = p->item->mirrored,
+                                                                                .names = *names};
+    return law;
 }
 
 /* rate(name). There is no acceleration(name): accelerations depend on the forces. */
@@ -309,7 +334,7 @@ static const Law *parse_name(Parser *p)
             only_constants(p, where, name);
             return reference(p, LAW_INPUT, i, model->input[i].name);
         }
-    unknown(p, where, name);
+    return signal_named(p, where, name);
 }
 
 static const Law *parse_atom(Parser *p)

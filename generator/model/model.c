@@ -85,7 +85,18 @@ const char *const output_type_name[OUTPUT_TYPES] = {
     [OUTPUT_CONTACT] = "contact",
     [OUTPUT_POWERTRAIN] = "powertrain",
     [OUTPUT_ENERGY] = "energy",
+    [OUTPUT_SIGNAL] = "signal",
 };
+
+void law_signals(const Law *law, void (*see)(void *user, const Law *signal), void *user)
+{
+    if (!law)
+        return;
+    if (law->op == LAW_SIGNAL)
+        see(user, law);
+    for (int i = 0; i < 3; ++i)
+        law_signals(law->arg[i], see, user);
+}
 
 int wheel_rolling(const Model *model, int wheel)
 {
@@ -103,12 +114,58 @@ const char *model_massless(const Model *model)
     return NULL;
 }
 
+/* A search for outputs of a type, of one index or of any (-1), among all that something reads. */
+typedef struct Search {
+    const Model *model;
+    OutputType type;
+    int index;
+    bool found;
+} Search;
+
+static void search_output(Search *search, const Output *output);
+
+static void search_signal(void *user, const Law *law)
+{
+    Search *search = user;
+    const Signal *signal = &search->model->signal[law->index];
+    if (signal->law)
+        law_signals(signal->law, search_signal, search);
+    else
+        search_output(search, &signal->output);
+}
+
+static void search_output(Search *search, const Output *output)
+{
+    if (output->type == search->type && (search->index < 0 || output->index == search->index))
+        search->found = true;
+    if (output->type == OUTPUT_SIGNAL)
+        law_signals(search->model->signal[output->index].law, search_signal, search);
+}
+
+bool output_reads(const Model *model, const Output *output, OutputType type)
+{
+    Search search = {.model = model, .type = type, .index = -1};
+    search_output(&search, output);
+    return search.found;
+}
+
+bool model_reads(const Model *model, OutputType type)
+{
+    Search search = {.model = model, .type = type, .index = -1};
+    for (int i = 0; i < model->outputs; ++i)
+        search_output(&search, &model->output[i]);
+    for (int i = 0; i < model->forces; ++i)
+        for (int k = 0; k < 6; ++k)
+            law_signals(model->force[i].law[k], search_signal, &search);
+    return search.found;
+}
+
 static bool is_wanted(const Model *model, OutputType type, int index)
 {
-    bool wanted = false;
+    Search search = {.model = model, .type = type, .index = index};
     for (int i = 0; i < model->outputs; ++i)
-        wanted = wanted || (model->output[i].type == type && model->output[i].index == index);
-    return wanted;
+        search_output(&search, &model->output[i]);
+    return search.found;
 }
 
 bool reaction_wanted(const Model *model, int joint)

@@ -17,9 +17,10 @@ typedef enum LawOp {
     LAW_VALUE,     /* of coordinate index */
     LAW_RATE,
     LAW_TIME,
-    LAW_LOCAL, /* index among the local names, such as `length`, that the formula's place offers */
-    LAW_TABLE, /* index, arg[0] */
-    LAW_CALL   /* op `call` of the expression graph with arguments */
+    LAW_LOCAL,  /* index among the local names, such as `length`, that the formula's place offers */
+    LAW_SIGNAL, /* of signal index, times number: 1, or -1 where a mirror image reads what changes its sign there */
+    LAW_TABLE,  /* index, arg[0] */
+    LAW_CALL    /* op `call` of the expression graph with arguments */
 } LawOp;
 
 typedef struct Law {
@@ -32,6 +33,8 @@ typedef struct Law {
     int size;         /* nodes in it, those of its parameters counted at each use */
 } Law;
 
+typedef struct SignalReads SignalReads;
+
 /* The meaning of the names in a formula. */
 typedef struct LawNames {
     const struct Model *model; /* coordinates, inputs, parameters, tables */
@@ -40,7 +43,28 @@ typedef struct LawNames {
     bool hide;          /* local names hide equal names of the model; else a formula that uses such a name is refused */
     bool constant;      /* only numbers and parameters are allowed */
     const char *remedy; /* the remedy if another name is used */
+    SignalReads *reads; /* where names are noted that may be signals; NULL: formulas here read no signals */
 } LawNames;
+
+/* A name in a formula that is none of the names known when the formula is read: one of a signal, which the reader finds
+ * once all outputs are read (read/signals.c). */
+typedef struct SignalRead {
+    Law *law; /* LAW_SIGNAL, whose index and sign the reader sets */
+    const char *name;
+    Place at;         /* of the name */
+    const char *what; /* the formula, for messages: "value of force 'drag'" */
+    bool mirrored;    /* the formula belongs to a mirror image */
+    LawNames names;
+} SignalRead;
+
+struct SignalReads {
+    int count;
+    SignalRead *read;
+};
+
+/* End in diag_fail for a name in a formula `what` that means nothing there; more, count: further names that do. */
+_Noreturn void law_name_unknown(Pool *pool, const LawNames *names, const char *what, const char *name, Place at,
+                                const char *const *more, int count);
 
 /* Parse a scalar of the file as a formula; mistakes end in diag_fail at their place inside the text. */
 const Law *law_parse(Pool *pool, const Item *item, const char *what, const LawNames *names);
@@ -273,6 +297,7 @@ typedef enum OutputType {
     OUTPUT_CONTACT,
     OUTPUT_POWERTRAIN,
     OUTPUT_ENERGY,
+    OUTPUT_SIGNAL,
     OUTPUT_TYPES
 } OutputType;
 
@@ -285,12 +310,22 @@ typedef struct Output {
     int body;                                     /* if the type has one */
     double point[3];                              /* frame of body */
     int in;                                       /* body in whose frame components are given, BODY_GROUND: world */
-    int index;                                    /* coordinate, force element, joint or wheel */
+    int index;                                    /* coordinate, force element, joint, wheel or signal */
     int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
     bool hidden; /* made for pages of results: scenes can not name it and results do not show it */
 } Output;
+
+/* A quantity that formulas read by its name (FORMAT.md section 7.1): a formula of its own, or a component of an output.
+ */
+typedef struct Signal {
+    const char *name, *unit;
+    Place at;
+    const Law *law; /* an entry of `signals`; NULL: a component of `output` */
+    Output output;
+    int component;
+} Signal;
 
 typedef struct Model {
     const Source *source;
@@ -299,6 +334,7 @@ typedef struct Model {
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
     int parameters, tunables, tables, ports, tires, fast_states;
+    int signals; /* entries of `signals`, then the components of outputs that formulas read */
     Body *body;
     Joint *joint;
     Coordinate *coordinate;
@@ -311,6 +347,7 @@ typedef struct Model {
     Parameter *parameter;
     Table *table;
     Port *port;
+    Signal *signal;
     struct Tuning *tuning; /* tunable.c; NULL: only numbers of force laws are tunable */
     const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
 } Model;
@@ -385,9 +422,16 @@ typedef struct Derived {
     Ex *formula;
 } Derived;
 
+/* True if an output is of a type, or a signal whose formula reads such an output. */
+bool output_reads(const Model *model, const Output *output, OutputType type);
+/* True if an output or the formula of a force element reads an output of a type. */
+bool model_reads(const Model *model, OutputType type);
 /* True if an output asks for the reaction of this joint; for the drive force of this coordinate. */
 bool reaction_wanted(const Model *model, int joint);
 bool drive_wanted(const Model *model, int coordinate);
+
+/* Call `see` for the signals that a formula reads by name, without those which they read in turn; law NULL: none. */
+void law_signals(const Law *law, void (*see)(void *user, const Law *signal), void *user);
 
 /* The name of a body without mass, ground excepted; NULL: there is none. */
 const char *model_massless(const Model *model);

@@ -242,7 +242,7 @@ static void read_stop(Reader *reader, const Entry *entry, const Value *value, Fo
 static void read_load(Reader *reader, const Entry *entry, const Value *value, Force *force)
 {
     static const int key[2] = {ELEMENT_FORCE, ELEMENT_TORQUE};
-    LawNames names = {.model = reader->model};
+    LawNames names = {.model = reader->model, .reads = &reader->reads};
     if (!value[ELEMENT_FORCE].item && !value[ELEMENT_TORQUE].item)
         diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula",
                   "%s has neither force nor torque", entry->what);
@@ -321,7 +321,8 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
     if (force_is_law(force)) {
         LawNames names = {.model = reader->model,
                           .local = form == FORCE_POINTS_LAW ? between_local : about_local,
-                          .locals = form == FORCE_COORDINATE_LAW ? 0 : FORCE_LOCALS};
+                          .locals = form == FORCE_COORDINATE_LAW ? 0 : FORCE_LOCALS,
+                          .reads = &reader->reads};
         force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item,
                                   pool_print(reader->pool, "value of %s", entry->what), &names);
     }

@@ -23,6 +23,7 @@ enum {
     FILE_PARAMETERS,
     FILE_TABLES,
     FILE_PORTS,
+    FILE_SIGNALS,
     FILE_FORCES,
     FILE_TIRES,
     FILE_WHEELS,
@@ -46,6 +47,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_PARAMETERS] = {"parameters", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TABLES] = {"tables", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_PORTS] = {"ports", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_SIGNALS] = {"signals", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TIRES] = {"tires", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -68,11 +70,12 @@ static const char *const file_about[FILE_KEYS] = {
     [FILE_PARAMETERS] = "named numbers, worked into the code or tunable at run time",
     [FILE_TABLES] = "functions of one number, for formulas",
     [FILE_PORTS] = "external forces and torques that the calling program supplies",
+    [FILE_SIGNALS] = "formulas with names, which other formulas and outputs read",
     [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
     [FILE_TIRES] = "tires of wheels that roll, from .tir files or with their data",
     [FILE_WHEELS] = "contacts of bodies with the road of the scene",
     [FILE_POWERTRAIN] = "engine, converter, transmission and differentials that drive wheels with tires",
-    [FILE_OUTPUTS] = "results and their names; default: poses and velocity of a free base, and coordinates",
+    [FILE_OUTPUTS] = "results and their names; default: pose and velocity of a free base, coordinates, and signals",
 };
 
 const Section file_section = {file_key, FILE_KEYS, NULL, 0, NULL, NULL, file_about};
@@ -112,12 +115,14 @@ const Model *model_read(Pool *pool, const char *path)
     coordinates_read(&reader, value[FILE_COORDINATES].item);
     inputs_read(&reader, value[FILE_INPUTS].item);
     ports_read(&reader, value[FILE_PORTS].item);
+    signals_read(&reader, value[FILE_SIGNALS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
     powertrain_read(&reader, value[FILE_POWERTRAIN].item);
     wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
+    signals_close(&reader);
     model->drawn = model->body;
     tuning_close(model);
     return model;

@@ -16,6 +16,7 @@ enum {
     WATCH_ELEMENT,
     WATCH_JOINT,
     WATCH_WHEEL,
+    WATCH_SIGNAL,
     WATCH_KEYS
 };
 
@@ -36,6 +37,7 @@ static const Key output_key[WATCH_KEYS] = {
     [WATCH_ELEMENT] = {"element", KEY_FORCE, FORM(OUTPUT_FORCE), FORM(OUTPUT_FORCE), BOUND_NONE, 0},
     [WATCH_JOINT] = {"joint", KEY_JOINT, FORM(OUTPUT_REACTION), FORM(OUTPUT_REACTION), BOUND_NONE, 0},
     [WATCH_WHEEL] = {"wheel", KEY_WHEEL, WATCH_WHEELS, WATCH_WHEELS, BOUND_NONE, 0},
+    [WATCH_SIGNAL] = {"signal", KEY_SIGNAL, FORM(OUTPUT_SIGNAL), FORM(OUTPUT_SIGNAL), BOUND_NONE, 0},
 };
 
 /* Components and units of each type; a single component "" has no suffix. angle_unit: units for coordinates that are
@@ -71,7 +73,40 @@ static const OutputKind output_kind[OUTPUT_TYPES] = {
                            {"rad/s", "N m", "1", "1", "1", "rad/s", "N m", "N m"},
                            {0}},
     [OUTPUT_ENERGY] = {3, {"kinetic", "potential", "power"}, {"J", "J", "W"}, {0}},
+    [OUTPUT_SIGNAL] = {1, {""}, {"1"}, {0}}, /* its unit is the signal's */
 };
+
+#define BIT(component) (1u << (component))
+
+bool output_is_odd(OutputType type, int component)
+{
+    /* y of points and forces; x and z of what turns; the angles and slips of tires that change the side */
+    static const unsigned odd[OUTPUT_TYPES] = {
+        [OUTPUT_POSITION] = BIT(1),
+        [OUTPUT_VELOCITY] = BIT(1),
+        [OUTPUT_ACCELERATION] = BIT(1),
+        [OUTPUT_ORIENTATION] = BIT(1) | BIT(3),
+        [OUTPUT_ROLL_PITCH_YAW] = BIT(0) | BIT(2),
+        [OUTPUT_ANGULAR_VELOCITY] = BIT(0) | BIT(2),
+        [OUTPUT_REACTION] = BIT(1) | BIT(3) | BIT(5),
+        [OUTPUT_TIRE] = BIT(1) | BIT(2) | BIT(4) | BIT(6) | BIT(7),
+        [OUTPUT_CONTACT] = BIT(1),
+    };
+    return odd[type] & BIT(component);
+}
+
+bool output_follows_accelerations(OutputType type, int component)
+{
+    switch (type) {
+    case OUTPUT_ACCELERATION:
+    case OUTPUT_DRIVE_FORCE:
+    case OUTPUT_REACTION:
+    case OUTPUT_ENERGY: return true;
+    case OUTPUT_COORDINATE: return component == 2;
+    case OUTPUT_TIRE: return component == 9; /* spin_rate */
+    default: return false;
+    }
+}
 
 static const char *const output_about[WATCH_KEYS] = {
     [WATCH_TYPE] = "what is put out",
@@ -82,6 +117,7 @@ static const char *const output_about[WATCH_KEYS] = {
     [WATCH_ELEMENT] = "the force element whose force (N) or torque (N m) it is",
     [WATCH_JOINT] = "the joint whose force (N) and torque (N m) on its second body it is",
     [WATCH_WHEEL] = "the wheel that it is about",
+    [WATCH_SIGNAL] = "the entry of signals whose value it is",
 };
 
 const Section output_section = {output_key,       WATCH_KEYS, output_type_name, OUTPUT_TYPES,
@@ -108,7 +144,7 @@ static void components_set(Pool *pool, const Model *model, Output *output)
     for (int i = 0; i < kind->count; ++i) {
         const char *suffix = kind->component[i];
         output->component[i] = pool_print(pool, suffix[0] ? "%s.%s" : "%s%s", output->name, suffix);
-        output->unit[i] = unit[i];
+        output->unit[i] = output->type == OUTPUT_SIGNAL ? model->signal[output->index].unit : unit[i];
     }
 }
 
@@ -126,7 +162,7 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
                    value[WATCH_POINT].item->at, output->point);
     if (value[WATCH_IN].item)
         output->in = value[WATCH_IN].index[0];
-    for (int k = WATCH_COORDINATE; k <= WATCH_WHEEL; ++k)
+    for (int k = WATCH_COORDINATE; k <= WATCH_SIGNAL; ++k)
         if (value[k].item)
             output->index = value[k].index[0];
     if (type == OUTPUT_DRIVE_FORCE && !reader->model->coordinate[output->index].driven)
@@ -142,7 +178,7 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
     components_set(reader->pool, reader->model, output);
 }
 
-/* The default outputs: pose and velocity of a free base, and every coordinate. */
+/* The default outputs: pose and velocity of a free base, every coordinate, every signal. */
 static void default_outputs(Reader *reader)
 {
     static const struct {
@@ -173,6 +209,15 @@ static void default_outputs(Reader *reader)
             .in = BODY_GROUND,
             .index = i,
         };
+    for (int i = 0; i < model->signals; ++i)
+        model->output[model->outputs++] = (Output){
+            .name = model->signal[i].name,
+            .at = model->signal[i].at,
+            .type = OUTPUT_SIGNAL,
+            .body = BODY_GROUND,
+            .in = BODY_GROUND,
+            .index = i,
+        };
     for (int i = 0; i < model->outputs; ++i)
         components_set(reader->pool, model, model->output + i);
 }
@@ -182,7 +227,8 @@ void outputs_read(Reader *reader, const Item *map)
     Model *model = reader->model;
     int count;
     Entry *entry = section_entries(reader, map, "output", &count);
-    model->output = pool_alloc(reader->pool, sizeof *model->output * (size_t)(count + model->coordinates + 3));
+    model->output =
+        pool_alloc(reader->pool, sizeof *model->output * (size_t)(count + model->coordinates + model->signals + 3));
     if (!map)
         default_outputs(reader);
     for (int i = 0; i < count; ++i)

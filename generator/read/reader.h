@@ -51,6 +51,7 @@ typedef enum KeyKind {
     KEY_TIRE,          /* index[0] */
     KEY_WHEEL,         /* index[0] */
     KEY_TABLE,         /* index[0] */
+    KEY_SIGNAL,        /* index[0] */
     KEY_SHAPE,         /* item: a word, a path or a map of shape_section */
     KEY_PATH,          /* text: a path; its item is negated if the mirror image of the file's contents is meant */
     KEY_SERIES,        /* a list of any length: item */
@@ -108,6 +109,7 @@ typedef struct Reader {
     Point *point;
     int points;
     bool fixed; /* values of this entry may follow no tunable parameter */
+    SignalReads reads;
 } Reader;
 
 /* One entry of a map of named things. */
@@ -122,7 +124,7 @@ extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
 extern const Section coordinate_section;
-extern const Section input_section, force_section, tire_section, wheel_section, output_section;
+extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section;
 extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
 /* An example of each kind of value, for remedies. */
@@ -225,6 +227,21 @@ void coordinates_read(Reader *reader, const Item *map);
 void inputs_read(Reader *reader, const Item *map);
 void forces_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
+
+/* True if the mirror changes the sign of a component of outputs of this type. */
+bool output_is_odd(OutputType type, int component);
+/* True if it follows accelerations, which follow forces, or all forces of elements. */
+bool output_follows_accelerations(OutputType type, int component);
+
+/* ---- signals.c ---- */
+
+/* True for a word that means something of its own in some formula: `time`, or `speed` of a force between points. */
+bool is_formula_word(const char *name);
+/* The entries of `signals`, before forces are read. */
+void signals_read(Reader *reader, const Item *map);
+/* Once outputs are read: find the signals that formulas read, and refuse forces that would follow accelerations or
+ * themselves. */
+void signals_close(Reader *reader);
 
 /* ---- tires.c, tir_file.c, wheels.c ---- */
 

@@ -62,6 +62,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_SIDE] = {.words = WORDS_SIDE},
     [KEY_WHEEL] = {.words = WORDS_NAME, .group = "wheels"},
     [KEY_TABLE] = {.words = WORDS_NAME, .group = "tables"},
+    [KEY_SIGNAL] = {.words = WORDS_NAME, .group = "signals"},
     [KEY_OUTPUTS] = {.pair = true, .words = WORDS_NAME, .group = "wheels", .other = differentials},
     [KEY_ENGINE] = {.section = &engine_section},
     [KEY_CONVERTER] = {.section = &converter_section},
@@ -75,12 +76,19 @@ static const struct {
     const Section *section;
     bool formulas; /* formulas may contain its names */
 } groups[] = {
-    {"points", NULL, false},           {"bodies", &body_section, false},
-    {"joints", &joint_section, false}, {"coordinates", &coordinate_section, true},
-    {"inputs", &input_section, true},  {"parameters", &parameter_section, true},
-    {"tables", &table_section, true},  {"ports", &port_section, false},
-    {"forces", &force_section, false}, {"tires", &tire_section, false},
-    {"wheels", &wheel_section, false}, {"outputs", &output_section, false},
+    {"points", NULL, false},
+    {"bodies", &body_section, false},
+    {"joints", &joint_section, false},
+    {"coordinates", &coordinate_section, true},
+    {"inputs", &input_section, true},
+    {"parameters", &parameter_section, true},
+    {"tables", &table_section, true},
+    {"ports", &port_section, false},
+    {"forces", &force_section, false},
+    {"tires", &tire_section, false},
+    {"wheels", &wheel_section, false},
+    {"signals", &signal_section, true},
+    {"outputs", &output_section, false},
 };
 
 enum { GROUPS = sizeof groups / sizeof *groups };
@@ -133,6 +141,25 @@ static const char *renamed(const Rewrite *rewrite, const char *group, const char
     return both || has(rewrite, group, name) ? pool_print(rewrite->pool, "%s%s", rewrite->prefix, name) : name;
 }
 
+/* Does a formula read an output here, at text that follows the name? An output has components behind a dot; a force has
+ * not, and a name of its own then. */
+static bool is_output(const Rewrite *rewrite, const char *name, const char *next)
+{
+    const Item *map = rewrite->file && rewrite->file->kind == ITEM_MAP ? doc_find(rewrite->file, "outputs") : NULL;
+    const char *other = name_mirrored(rewrite->pool, name);
+    if (!map || map->kind != ITEM_MAP)
+        return false;
+    const Item *entry = doc_find(map, name);
+    if (!entry && other)
+        entry = doc_find(map, other);
+    const Item *type = entry && entry->kind == ITEM_MAP ? doc_find(entry, "type") : NULL;
+    const char *const word = type && type->kind == ITEM_SCALAR ? type->text : "";
+    const bool single = !strcmp(word, output_type_name[OUTPUT_FORCE]) ||
+                        !strcmp(word, output_type_name[OUTPUT_DRIVE_FORCE]) ||
+                        !strcmp(word, output_type_name[OUTPUT_SIGNAL]);
+    return entry && single != (*next == '.');
+}
+
 /* A formula with its names replaced. */
 static const char *formula_renamed(const Rewrite *rewrite, const char *s)
 {
@@ -147,8 +174,10 @@ static const char *formula_renamed(const Rewrite *rewrite, const char *s)
         length += length == 0;
         const char *name = pool_print(rewrite->pool, "%.*s", (int)length, s), *other = name;
         for (int i = 0; word && i < GROUPS && other == name; ++i)
-            if (groups[i].formulas)
+            if (groups[i].formulas && !(groups[i].section == &signal_section && is_formula_word(name)))
                 other = renamed(rewrite, groups[i].name, name);
+        if (word && other == name && !is_formula_word(name) && is_output(rewrite, name, s + length))
+            other = renamed(rewrite, "outputs", name);
         text_add(&text, other, strlen(other));
         s += length;
     }
@@ -183,6 +212,7 @@ static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int compone
     if (item->kind != ITEM_SCALAR)
         return item;
     Item *other = copy(rewrite, item);
+    other->mirrored = item->mirrored != rewrite->mirror;
     other->negated = item->negated != (rewrite->mirror && (how->odd >> component & 1));
     if (how->place)
         other->shift += rewrite->shift[component];
@@ -267,6 +297,8 @@ Item *entry_rewrite(const Rewrite *rewrite, const char *group, Item *entry)
         return value_rewrite(rewrite, &rule[KEY_POINT], false, entry);
     if (entry->kind == ITEM_SCALAR && section == &parameter_section)
         return value_rewrite(rewrite, &rule[KEY_MEASURE], false, entry);
+    if (entry->kind == ITEM_SCALAR && section == &signal_section)
+        return value_rewrite(rewrite, &rule[KEY_FORMULA], false, entry);
     return entry->kind == ITEM_MAP ? map_rewrite(rewrite, section, entry) : entry;
 }
 

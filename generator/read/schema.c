@@ -86,7 +86,8 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_FORCE:
     case KEY_TIRE:
     case KEY_WHEEL:
-    case KEY_TABLE: reference(out, "name"); break;
+    case KEY_TABLE:
+    case KEY_SIGNAL: reference(out, "name"); break;
     case KEY_INERTIA:
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, ");
         object(out, &inertia_section, indent);
@@ -203,14 +204,15 @@ static void inclusion(Text *out)
 /* A map of named entries; of points where `section` is NULL. */
 static void group(Text *out, const Section *section)
 {
+    const bool bare = section == &parameter_section || section == &signal_section; /* `name: value` will do */
     entries_begin(out, 6);
-    if (section == &parameter_section)
+    if (bare)
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
     if (section)
         object(out, section, 6);
     else
         reference(out, "vector");
-    text_print(out, "%s}", section == &parameter_section ? "]}" : "");
+    text_print(out, "%s}", bare ? "]}" : "");
 }
 
 void schema_print(Text *out)

@@ -52,6 +52,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TIRE] = "tire",
     [KEY_WHEEL] = "wheel",
     [KEY_TABLE] = "table",
+    [KEY_SIGNAL] = "signal",
     [KEY_SHAPE] = "box",
     [KEY_PATH] = "name.obj",
     [KEY_SERIES] = "[first, ...]",
@@ -413,6 +414,9 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TABLE:
         value->index[0] = find(reader, item, what, "table", model->table, model->tables, sizeof *model->table);
         break;
+    case KEY_SIGNAL:
+        value->index[0] = find(reader, item, what, "signal", model->signal, model->signals, sizeof *model->signal);
+        break;
     case KEY_TYPE:
     case KEY_ITEM:
     case KEY_LIST:
@@ -491,7 +495,7 @@ static _Noreturn void missing_key(Reader *reader, const Section *section, int fo
 {
     const bool named = key->kind == KEY_BODY || key->kind == KEY_FRAME || key->kind == KEY_COORDINATE ||
                        key->kind == KEY_JOINT || key->kind == KEY_FORCE || key->kind == KEY_TIRE ||
-                       key->kind == KEY_WHEEL || key->kind == KEY_TABLE;
+                       key->kind == KEY_WHEEL || key->kind == KEY_TABLE || key->kind == KEY_SIGNAL;
     const char *example = kind_example[key->kind];
     const char *wanted = named ? pool_print(reader->pool, "`%s: name` with the name of a %s", key->name, example)
                                : pool_print(reader->pool, "`%s: %s`", key->name, example);

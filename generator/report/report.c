@@ -380,35 +380,38 @@ static void stack(void *context, Text *out, int indent)
 
 /* ---- signals ----------------------------------------------------------------------------------------------------- */
 
-static bool law_uses(const Law *law, int parameter)
+static bool law_uses(const Model *model, const Law *law, int parameter)
 {
     if (!law)
         return false;
     bool uses = law->op == LAW_PARAMETER && law->index == parameter;
+    if (law->op == LAW_SIGNAL)
+        uses = law_uses(model, model->signal[law->index].law, parameter);
     for (int i = 0; i < 3; ++i)
-        uses = uses || law_uses(law->arg[i], parameter);
+        uses = uses || law_uses(model, law->arg[i], parameter);
     return uses;
 }
 
-static bool powertrain_uses(const Powertrain *powertrain, int parameter)
+static bool powertrain_uses(const Model *model, int parameter)
 {
-    bool uses = law_uses(powertrain->throttle, parameter) || law_uses(powertrain->torque, parameter) ||
-                law_uses(powertrain->selector, parameter);
+    const Powertrain *powertrain = model->powertrain;
+    bool uses = law_uses(model, powertrain->throttle, parameter) || law_uses(model, powertrain->torque, parameter) ||
+                law_uses(model, powertrain->selector, parameter);
     for (int i = 0; i < powertrain->forward - 1; ++i)
-        uses = uses || law_uses(powertrain->up[i], parameter) || law_uses(powertrain->down[i], parameter);
+        uses = uses || law_uses(model, powertrain->up[i], parameter) || law_uses(model, powertrain->down[i], parameter);
     for (int i = 0; i < powertrain->differentials; ++i)
-        uses = uses || law_uses(powertrain->differential[i].lock, parameter);
+        uses = uses || law_uses(model, powertrain->differential[i].lock, parameter);
     return uses;
 }
 
-static bool force_uses(const Force *force, int parameter)
+static bool force_uses(const Model *model, const Force *force, int parameter)
 {
     const Law *const number[] = {force->stiffness, force->damping, force->free, force->low, force->high, force->fade};
     bool uses = false;
     for (size_t i = 0; i < sizeof number / sizeof *number; ++i)
-        uses = uses || law_uses(number[i], parameter);
+        uses = uses || law_uses(model, number[i], parameter);
     for (size_t i = 0; i < sizeof force->law / sizeof *force->law; ++i)
-        uses = uses || law_uses(force->law[i], parameter);
+        uses = uses || law_uses(model, force->law[i], parameter);
     return uses;
 }
 
@@ -444,12 +447,12 @@ static void users_list(const Report *r, int parameter, Text *users)
 {
     const Model *m = r->model;
     for (int k = 0; k < m->forces; ++k)
-        if (force_uses(&m->force[k], parameter))
+        if (force_uses(m, &m->force[k], parameter))
             listed(users, "force %s", m->force[k].name);
     for (int k = 0; k < m->wheels; ++k)
-        if (law_uses(m->wheel[k].drive, parameter) || law_uses(m->wheel[k].brake, parameter))
+        if (law_uses(m, m->wheel[k].drive, parameter) || law_uses(m, m->wheel[k].brake, parameter))
             listed(users, "wheel %s", m->wheel[k].name);
-    if (m->powertrain && powertrain_uses(m->powertrain, parameter))
+    if (m->powertrain && powertrain_uses(m, parameter))
         listed(users, "the %s", "powertrain");
     const Element input = element_at(ARRAY_p, m->parameter[parameter].index);
     const char **seen = NULL;

@@ -171,12 +171,32 @@ static void coordinates(Text *out, const Model *model)
     }
 }
 
+static void formula(Text *out, const Law *law, const Model *model);
+
+/* A signal by its formula; a component of an output by all that it follows. */
+static void signal_read(Text *out, const Law *law, const Model *model)
+{
+    const Signal *signal = &model->signal[law->index];
+    const Output *output = &signal->output;
+    if (law->number < 0)
+        add(out, "[\"-\", ");
+    if (signal->law)
+        formula(out, signal->law, model);
+    else
+        text_print(out, "[\"signal\", \"%s\", %d, %d, %d, %d, %.17g, %.17g, %.17g]", output_type_name[output->type],
+                   signal->component, output->body, output->in, output->index, output->point[0], output->point[1],
+                   output->point[2]);
+    if (law->number < 0)
+        add(out, "]");
+}
+
 /* A formula as nested lists, operator first; parameters as their values. */
 static void formula(Text *out, const Law *law, const Model *model)
 {
     static const char *const word[] = {
         [LAW_INPUT] = "input", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
     switch (law->op) {
+    case LAW_SIGNAL: signal_read(out, law, model); return;
     case LAW_NUMBER:
     case LAW_PARAMETER: text_print(out, "%.17g", law_number(law, model)); return;
     case LAW_TIME:

@@ -423,14 +423,6 @@ static void narrow_wheel_class(Narrower *n, const Block *torque, WheelClass *cla
     class->balance = partial_block(&p, &class->balance);
 }
 
-static bool powertrain_seen(const Model *model)
-{
-    for (int i = 0; i < model->outputs; ++i)
-        if (model->output[i].type == OUTPUT_POWERTRAIN)
-            return true;
-    return false;
-}
-
 /* What a powertrain does to a wheel whose image is computed comes with the image. */
 static void drop_images(Narrower *n, Block *drive)
 {
@@ -481,7 +473,7 @@ static const Wheels *narrow_wheels(Narrower *n)
         wheels->drive = *narrow_block(n, n->fast, &wheels->drive);
         wheels->shift = *narrow_block(n, n->fast, &wheels->shift);
         drop_images(n, &wheels->drive);
-        if (!powertrain_seen(n->model))
+        if (!model_reads(n->model, OUTPUT_POWERTRAIN))
             rest_powertrain(n, &wheels->drive);
     }
     return wheels;
@@ -565,14 +557,6 @@ static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
     }
 }
 
-static bool has_reactions(const Model *model)
-{
-    for (int i = 0; i < model->outputs; ++i)
-        if (model->output[i].type == OUTPUT_REACTION)
-            return true;
-    return false;
-}
-
 /* To the bit, as the code checks it. */
 static bool starts_even(const Narrower *n, const Mirror *mirror)
 {
@@ -608,7 +592,7 @@ static const Mirror *find_mirror(Narrower *n, Solve solve)
         *why = "geometric parameters are not those of the file";
     if (!*why && solve == SOLVE_AUGMENTED)
         *why = "the equations of motion are in the augmented form";
-    if (!*why && has_reactions(n->model))
+    if (!*why && model_reads(n->model, OUTPUT_REACTION))
         *why = "reaction forces of joints are asked for";
     const Mirror *mirror = *why ? NULL : mirror_find(n->pool, n->model, why);
     for (int w = 0; mirror && w < n->model->coordinates; ++w)

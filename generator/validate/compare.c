@@ -432,6 +432,7 @@ static double output_scale(const Comparison *c, const Output *output, const doub
     case OUTPUT_ANGULAR_VELOCITY: return size + c->speed + 1e-3;
     case OUTPUT_ENERGY: return component < 2 ? fabs(value[0]) + fabs(value[1]) + 1 : size + c->watts + 1;
     case OUTPUT_COORDINATE: return fabs(value[component]) + (component == 2 ? c->swing : 1);
+    case OUTPUT_SIGNAL: return world_law_size(c->world, c->v.model->signal[output->index].law, NULL) + 1;
     default: return fabs(value[component]) + 1;
     }
 }
@@ -481,7 +482,7 @@ static void compare_outputs(Comparison *c, bool reactions)
     const Model *model = c->v.model;
     world_outputs(c->world, c->out);
     for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
-        if ((model->output[i].type == OUTPUT_REACTION) == reactions)
+        if (output_reads(model, &model->output[i], OUTPUT_REACTION) == reactions)
             compare_output(c, reactions ? KIND_REACTION : KIND_OUTPUT, &model->output[i], c->v.run->out + at,
                            c->out + at);
 }
@@ -564,7 +565,7 @@ static bool forces_exist(Comparison *c)
     for (int i = 0; i < c->v.model->wheels; ++i)
         if (c->v.model->wheel[i].tire >= 0 && !(fabs(world->rolling[i].camber) < flat))
             return false;
-    return isfinite(sum);
+    return isfinite(sum) && world_signals_are_sure(world);
 }
 
 bool compare_state(Comparison *c)

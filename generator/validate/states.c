@@ -75,6 +75,10 @@ static void add_parts(LawParts *parts, const Law *law, int wheel)
         if (wheel >= 0)
             *POOL_PUSH(parts->pool, parts->variable, parts->variables) = (Kink){KINK_SPIN, wheel, 0};
         break;
+    case LAW_SIGNAL:
+        if (parts->model->signal[law->index].law)
+            add_parts(parts, parts->model->signal[law->index].law, wheel);
+        break;
     case LAW_TABLE: {
         const Table *table = &parts->model->table[law->index];
         for (int i = 0; i < table->count; ++i)

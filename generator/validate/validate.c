@@ -62,9 +62,7 @@ void compare(Comparison *c, Kind which, const char *what, double difference, dou
 static int idle_engine(const Comparison *c)
 {
     const Model *model = c->v.model;
-    bool seen = !model->powertrain || !c->v.facts->neutral;
-    for (int i = 0; i < model->outputs; ++i)
-        seen = seen || model->output[i].type == OUTPUT_POWERTRAIN;
+    const bool seen = !model->powertrain || !c->v.facts->neutral || model_reads(model, OUTPUT_POWERTRAIN);
     return seen ? -1 : c->v.run->plan->states + model->powertrain->fast + POWERTRAIN_SPEED;
 }
 
@@ -157,7 +155,7 @@ static Comparison *comparison_new(Pool *pool, const Formulation *f, const gic_ro
     for (int i = 0; i < states; ++i)
         c->state_name[i] = state_number(pool, f, i).name;
     for (int i = 0; i < model->outputs; ++i)
-        if (model->output[i].type == OUTPUT_REACTION && !c->world->solver && !model_massless(model))
+        if (output_reads(model, &model->output[i], OUTPUT_REACTION) && !c->world->solver && !model_massless(model))
             world_set_solver(pool, c->world, &topology_solver);
     return c;
 }

@@ -105,6 +105,10 @@ Ex whole_law(Whole *whole, const Law *law, const Ex *local)
     case LAW_RATE: return whole->xd[law->index];
     case LAW_TIME: return ex_input(dag, element_at(ARRAY_time, 0), NULL);
     case LAW_LOCAL: return local[law->index];
+    case LAW_SIGNAL: {
+        const Ex signal = whole_signal(whole, law->index);
+        return law->number < 0 ? ex_neg(dag, signal) : signal;
+    }
     default: return law_top(dag, whole->model, law, arg);
     }
 }
@@ -396,6 +400,49 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
         loads->wheel[index][i] = all[i];
 }
 
+static void make_wheel(Whole *whole, int index)
+{
+    Loads *loads = whole->loads;
+    const Wheel *wheel = &whole->model->wheel[index];
+    if (loads->pressed[index])
+        return;
+    loads->pressed[index] = true;
+    dag_section(whole->dag, pool_print(whole->dag->pool, "wheel %s", wheel->name));
+    (wheel->tire < 0 ? add_wheel : add_rolling_wheel)(whole, loads, index);
+}
+
+static void make_force(Whole *whole, int index);
+
+/* Make the forces that a formula reads. */
+static void make_read(void *user, const Law *law)
+{
+    Whole *whole = user;
+    const Signal *signal = &whole->model->signal[law->index];
+    if (signal->law)
+        law_signals(signal->law, make_read, whole);
+    else if (signal->output.type == OUTPUT_FORCE)
+        make_force(whole, signal->output.index);
+    else if (signal->output.type == OUTPUT_WHEEL)
+        make_wheel(whole, signal->output.index);
+}
+
+/* Elements are in the order of the file, but those that a formula reads come before its own. No formula follows itself:
+ * read/signals.c. */
+static void make_force(Whole *whole, int index)
+{
+    Loads *loads = whole->loads;
+    const Force *force = &whole->model->force[index];
+    if (loads->made[index])
+        return;
+    loads->made[index] = true;
+    for (int i = 0; i < 6; ++i)
+        law_signals(force->law[i], make_read, whole);
+    dag_section(whole->dag, pool_print(whole->dag->pool, "force %s", force->name));
+    add_force(whole, loads, index);
+    if (loads->element[index])
+        ex_label(whole->dag, loads->element[index], "force_%s", force->name);
+}
+
 Loads *loads_make(Whole *whole)
 {
     Pool *pool = whole->dag->pool;
@@ -408,16 +455,13 @@ Loads *loads_make(Whole *whole)
     loads->wheel = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->wheel);
     loads->size = pool_alloc(pool, (size_t)model->bodies * sizeof *loads->size);
     loads->own_size = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->own_size);
-    for (int i = 0; i < model->forces; ++i) {
-        dag_section(whole->dag, pool_print(pool, "force %s", model->force[i].name));
-        add_force(whole, loads, i);
-        if (loads->element[i])
-            ex_label(whole->dag, loads->element[i], "force_%s", model->force[i].name);
-    }
-    for (int i = 0; i < model->wheels; ++i) {
-        dag_section(whole->dag, pool_print(pool, "wheel %s", model->wheel[i].name));
-        (model->wheel[i].tire < 0 ? add_wheel : add_rolling_wheel)(whole, loads, i);
-    }
+    loads->made = pool_alloc(pool, (size_t)(model->forces + 1) * sizeof *loads->made);
+    loads->pressed = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->pressed);
+    whole->loads = loads;
+    for (int i = 0; i < model->forces; ++i)
+        make_force(whole, i);
+    for (int i = 0; i < model->wheels; ++i)
+        make_wheel(whole, i);
     for (int i = 0; i < model->ports; ++i) {
         dag_section(whole->dag, pool_print(pool, "port %s", model->port[i].name));
         add_port(whole, loads, i);

@@ -8,13 +8,6 @@
 
 #include <string.h>
 
-/* Values that several outputs share. */
-typedef struct Signals {
-    Whole *whole;
-    Ex alpha[3], a[3], *w2;
-    Loads *loads;
-} Signals;
-
 /* Rotation of a body to the world. */
 static void body_rotation(Whole *whole, int body, Ex A[9])
 {
@@ -92,14 +85,14 @@ static void tire_components(Whole *whole, int wheel, Ex *out)
         out[i] = whole_grip(whole, wheel, from_grip[i]);
     out[6] = ex_op(whole->dag, OP_ATAN, out[6], 0, 0);
     out[8] = whole_fast(whole, ARRAY_y, wheel, FAST_SPIN);
-    out[9] = whole_fast(whole, ARRAY_rate, wheel, FAST_SPIN);
+    out[9] = whole->accelerated ? whole_fast(whole, ARRAY_rate, wheel, FAST_SPIN) : 0;
     out[10] = whole_grip(whole, wheel, GRIP_DRIVE);
     out[11] = whole_grip(whole, wheel, GRIP_BRAKE);
 }
 
-static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MAX_COMPONENTS])
+static void output_components(Whole *whole, const Output *output, Ex out[OUTPUT_MAX_COMPONENTS])
 {
-    Whole *whole = s->whole;
+    const Accelerated *at = whole->accelerated;
     Dag *dag = whole->dag;
     Vector point = {.point = true};
     Ex t[3], A[9];
@@ -116,7 +109,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         }
         break;
     case OUTPUT_ACCELERATION:
-        whole_acceleration(whole, output->body, &point, s->alpha, s->a, s->w2, t);
+        whole_acceleration(whole, output->body, &point, at->alpha, at->a, at->w2, t);
         ex_add3(dag, t, whole->gravity, t);
         express(whole, output->in, t, out);
         break;
@@ -139,9 +132,9 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
     case OUTPUT_COORDINATE:
         out[0] = whole->x[output->index];
         out[1] = whole->xd[output->index];
-        out[2] = s->w2[output->index];
+        out[2] = at ? at->w2[output->index] : 0;
         break;
-    case OUTPUT_FORCE: out[0] = s->loads->element[output->index]; break;
+    case OUTPUT_FORCE: out[0] = whole->loads->element[output->index]; break;
     case OUTPUT_DRIVE_FORCE:
         out[0] = whole->plan->solve == SOLVE_AUGMENTED ? whole_drive_reaction(whole, output->index)
                                                        : whole_drive_force(whole, output->index);
@@ -153,7 +146,7 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         express(whole, output->in, torque, out + 3);
         break;
     }
-    case OUTPUT_WHEEL: memcpy(out, s->loads->wheel[output->index], 4 * sizeof *out); break;
+    case OUTPUT_WHEEL: memcpy(out, whole->loads->wheel[output->index], 4 * sizeof *out); break;
     case OUTPUT_TIRE: tire_components(whole, output->index, out); break;
     case OUTPUT_CONTACT:
         for (int i = 0; i < 3; ++i)
@@ -165,8 +158,8 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         break;
     case OUTPUT_ENERGY: {
         out[0] = 0;
-        out[1] = s->loads->potential;
-        out[2] = whole_power(whole, s->loads);
+        out[1] = whole->loads->potential;
+        out[2] = whole_power(whole, whole->loads);
         Ex half = ex_literal(dag, 0.5);
         for (int i = 0; i < whole->model->wheels; ++i) {
             const Wheel *wheel = &whole->model->wheel[i];
@@ -193,8 +186,19 @@ static void output_components(Signals *s, const Output *output, Ex out[OUTPUT_MA
         }
         break;
     }
+    case OUTPUT_SIGNAL: out[0] = whole_signal(whole, output->index); break;
     default: break;
     }
+}
+
+Ex whole_signal(Whole *whole, int index)
+{
+    const Signal *signal = &whole->model->signal[index];
+    if (signal->law)
+        return whole_law(whole, signal->law, NULL);
+    Ex out[OUTPUT_MAX_COMPONENTS] = {0};
+    output_components(whole, &signal->output, out);
+    return out[signal->component];
 }
 
 Block *outputs_block(Whole *whole)
@@ -202,17 +206,19 @@ Block *outputs_block(Whole *whole)
     Dag *dag = whole->dag;
     Block *block = pool_alloc(dag->pool, sizeof *block);
     block->dag = dag;
-    Signals s = {.whole = whole};
-    whole_accelerations(whole, s.alpha, s.a, &s.w2);
-    s.loads = loads_make(whole);
+    Accelerated accelerated;
+    whole_accelerations(whole, accelerated.alpha, accelerated.a, &accelerated.w2);
+    loads_make(whole);
+    whole->accelerated = &accelerated;
     int index = 0;
     for (int i = 0; i < whole->model->outputs; ++i) {
         Ex out[OUTPUT_MAX_COMPONENTS] = {0};
         dag_section(dag, pool_print(dag->pool, "output %s", whole->model->output[i].name));
-        output_components(&s, &whole->model->output[i], out);
+        output_components(whole, &whole->model->output[i], out);
         for (int c = 0; c < whole->model->output[i].count; ++c)
             block_store(block, out[c], element_at(ARRAY_out, index++));
     }
+    whole->accelerated = NULL;
     return block;
 }
 

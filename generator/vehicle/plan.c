@@ -84,8 +84,8 @@ Plan *plan_new(Pool *pool, const Model *model, const Sequence *sequence, Solve s
         }
     }
     for (int i = 0; i < model->outputs; ++i)
-        if (model->output[i].type == OUTPUT_REACTION ||
-            (model->output[i].type == OUTPUT_DRIVE_FORCE && solve == SOLVE_AUGMENTED))
+        if (output_reads(model, &model->output[i], OUTPUT_REACTION) ||
+            (output_reads(model, &model->output[i], OUTPUT_DRIVE_FORCE) && solve == SOLVE_AUGMENTED))
             plan->multipliers = multipliers;
     for (int i = 0; i < model->coordinates; ++i)
         plan->free_coordinates += !model->coordinate[i].driven;

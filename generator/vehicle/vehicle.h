@@ -79,13 +79,15 @@ typedef struct Whole {
     const Plan *plan;
     const Model *model;
     Dag *dag;
-    Motion *motion;            /* [bodies] relative to the base */
-    Ex r[3], e[4], R[9], v[3]; /* base: position, Euler parameters, rotation to the world, world velocity */
-    Ex turn[3];                /* angular velocity of the base, base frame */
-    Ex gravity[3];             /* base frame */
-    Ex *x, *xd;                /* [coordinates] */
-    bool open;                 /* constant numbers stay inputs, for block_pack to compare */
-    bool sized;                /* loads also sum the magnitudes of their terms */
+    Motion *motion;                        /* [bodies] relative to the base */
+    Ex r[3], e[4], R[9], v[3];             /* base: position, Euler parameters, rotation to the world, world velocity */
+    Ex turn[3];                            /* angular velocity of the base, base frame */
+    Ex gravity[3];                         /* base frame */
+    Ex *x, *xd;                            /* [coordinates] */
+    struct Loads *loads;                   /* while forces are made and after; NULL: not yet */
+    const struct Accelerated *accelerated; /* of outputs; NULL: formulas read nothing that follows accelerations */
+    bool open;                             /* constant numbers stay inputs, for block_pack to compare */
+    bool sized;                            /* loads also sum the magnitudes of their terms */
     const Ex *carried_by;  /* carrier.c: the accelerations of coordinates for which the two below were computed; NULL:
                             * not yet */
     Ex (*carried)[6];      /* [bodies] resulting accelerations: angular, of the reference point */
@@ -142,6 +144,8 @@ Ex whole_magnitude3(Whole *whole, const Ex v[3]); /* |x| + |y| + |z| */
 /* Applied forces on each body, and the generalised forces: moment about the base origin and force on the whole vehicle,
  * base frame; force along every coordinate. */
 typedef struct Loads {
+    bool *made;      /* [forces] the element is among the sums */
+    bool *pressed;   /* [wheels] the wheel is */
     Ex (*wrench)[6]; /* [bodies] moment about the reference point, force; base frame */
     Ex *own;         /* [coordinates] of elements along a coordinate, which are not among the wrenches */
     Ex moment[3], force[3];
@@ -155,7 +159,8 @@ typedef struct Loads {
 } Loads;
 
 Loads *loads_make(Whole *whole);
-/* A formula as an expression; local: the values of its local names. */
+/* A formula as an expression; local: the values of its local names. The force elements that it reads are among the
+ * loads already. */
 Ex whole_law(Whole *whole, const Law *law, const Ex *local);
 
 /* ---- wheel.c, tire_*.c, powertrain.c: wheels with tires, models/TIRES.md, POWERTRAIN.md */
@@ -233,8 +238,15 @@ void whole_store_rates(Whole *whole, Block *block, const Ex *z);
  * which a body has more than augmented_most_mass times the mass of another. */
 extern const double augmented_most_mass;
 Block *augmented_block(Whole *whole);
+/* Accelerations at rate[], as whole_accelerations() has them. */
+typedef struct Accelerated {
+    Ex alpha[3], a[3], *w2;
+} Accelerated;
+
 /* out[] of all outputs from a Whole and rate[]. */
 Block *outputs_block(Whole *whole);
+/* outputs.c: the value of a signal, without the sign that a formula has for it. */
+Ex whole_signal(Whole *whole, int signal);
 /* pose[7 i]: world poses of all body frames. */
 Block *poses_block(Whole *whole);
 /* reactions.c: lambda[] of the subsets whose multipliers outputs need: the wrenches that the joints must exert on their

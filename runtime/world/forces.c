@@ -94,9 +94,24 @@ double world_law(const World *world, const Law *law, const double *local)
     case LAW_RATE: return world->xd[law->index];
     case LAW_TIME: return world->time;
     case LAW_LOCAL: return local[law->index];
+    case LAW_SIGNAL: return law->number * world_signal(world, law->index);
     case LAW_TABLE: return table_at(&world->model->table[law->index], world_law(world, law->arg[0], local));
     default: return call_at(world, law, local);
     }
+}
+
+double world_law_size(const World *world, const Law *law, const double *local)
+{
+    const bool call = law->op == LAW_CALL;
+    const double value = fabs(world_law(world, law, local));
+    if (law->op == LAW_SIGNAL && world->model->signal[law->index].law)
+        return world_law_size(world, world->model->signal[law->index].law, NULL);
+    if (!call || (law->call != OP_ADD && law->call != OP_SUB && law->call != OP_MUL && law->call != OP_DIV))
+        return value;
+    const double a = world_law_size(world, law->arg[0], local), b = world_law_size(world, law->arg[1], local);
+    if (law->call == OP_MUL)
+        return a * b;
+    return law->call == OP_DIV ? a / fabs(world_law(world, law->arg[1], local)) : a + b;
 }
 
 /* ---- elements -------------------------------------------------------------------------------------------- */
@@ -363,14 +378,17 @@ int world_forces(World *world)
     memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
     world->potential = world->stored = world->power = 0;
     world->shortest = INFINITY;
+    const int status = add_wheels(world);
+    if (status != GIC_OK)
+        return status;
     for (int i = 0; i < model->forces; ++i)
-        add_force(world, i);
+        add_force(world, world->order[i]);
     for (int i = 0; i < model->ports; ++i) {
         const Port *port = &model->port[i];
         add_load(world, port->body, port->in, port->point, world->port + 6 * i);
     }
     world->power += world->stored;
-    return add_wheels(world);
+    return GIC_OK;
 }
 
 void world_spread(World *world)

@@ -166,7 +166,7 @@ static void reaction(const World *world, const Output *output, double *out)
     express(world, output->in, wrench + 3, out + 3);
 }
 
-static void one_output(const World *world, const Output *output, double *out)
+void world_output(const World *world, const Output *output, double *out)
 {
     const int body = output->body, i = output->index;
     const Track point = track(world, body, output->point);
@@ -197,6 +197,7 @@ static void one_output(const World *world, const Output *output, double *out)
         memcpy(out, all, sizeof *out * (size_t)output->count);
         break;
     }
+    case OUTPUT_SIGNAL: out[0] = world_signal(world, i); break;
     default: break;
     }
 }
@@ -204,7 +205,7 @@ static void one_output(const World *world, const Output *output, double *out)
 void world_outputs(const World *world, double *out)
 {
     for (int i = 0; i < world->model->outputs; ++i) {
-        one_output(world, &world->model->output[i], out);
+        world_output(world, &world->model->output[i], out);
         out += world->model->output[i].count;
     }
 }

@@ -81,6 +81,7 @@ typedef struct World {
     /* applied forces: world_forces() */
     double (*wrench)[6]; /* [bodies] force and torque about the centre of mass; gravity is among them */
     double *along;       /* [coordinates] generalized force on w */
+    int *order;          /* [forces] elements, those whose formulas read others after these */
     double *element;     /* [forces] Q or T of FORMAT.md section 7 */
     double (*wheel)[4];  /* [wheels] fz, deflection, deflection rate, road height */
     WheelMotion *motion; /* [wheels] with tires */
@@ -137,6 +138,15 @@ double world_tie_residual(World *world, int tie);
 
 /* A formula at the World's coordinates, inputs, parameters and time; local: what the place of the formula offers. */
 double world_law(const World *world, const Law *law, const double *local);
+/* The sum of the magnitudes of its terms. */
+double world_law_size(const World *world, const Law *law, const double *local);
+/* signals.c: the value of a signal, of elements that have been evaluated. */
+double world_signal(const World *world, int signal);
+/* Orders the elements by what their formulas read. */
+void world_order(World *world);
+/* False where a formula with signals may come out otherwise for rounding alone: at the bound of a condition, or where
+ * an attitude angle jumps. */
+bool world_signals_are_sure(const World *world);
 /* How the carrier of a wheel with a tire moves at the present configuration. */
 void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
 /* All wheels with tires, and the powertrain, where carriers move as motion[] says: rates of these fast states, and
@@ -171,6 +181,8 @@ int world_accelerate(World *world);
 
 /* ---- outputs.c ------------------------------------------------------------------------------- */
 
+/* All components of one output. */
+void world_output(const World *world, const Output *output, double *out);
 /* All components of all outputs at the present configuration and its accelerations. */
 void world_outputs(const World *world, double *out);
 /* World poses of the body frames, 7 numbers a body; signs as FORMAT.md section 9 has them. */

@@ -7,6 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+static SignalSource *source_read(const Json *json)
+{
+    if (json->count != 9)
+        fail("a signal in a formula has 9 parts, not %d", json->count);
+    SignalSource *source = grab(1, sizeof *source);
+    const char *type = json->item[1]->text;
+    source->type = strcpy(grab(strlen(type) + 1, 1), type);
+    source->component = (int)json->item[2]->number;
+    source->body = (int)json->item[3]->number;
+    source->in = (int)json->item[4]->number;
+    source->index = (int)json->item[5]->number;
+    for (int i = 0; i < 3; ++i)
+        source->point[i] = json->item[6 + i]->number;
+    return source;
+}
+
 Formula *formula_read(const Json *json)
 {
     Formula *formula = grab(1, sizeof *formula);
@@ -18,6 +34,10 @@ Formula *formula_read(const Json *json)
         fail("a formula is a number or a list that begins with an operator");
     const char *op = json->item[0]->text;
     formula->op = strcpy(grab(strlen(op) + 1, 1), op);
+    if (!strcmp(op, "signal")) {
+        formula->source = source_read(json);
+        return formula;
+    }
     bool indexed = !strcmp(op, "value") || !strcmp(op, "rate") || !strcmp(op, "input") || !strcmp(op, "table");
     int first = 1 + indexed;
     if (json->count < first || json->count - first > 3)
@@ -36,6 +56,9 @@ void formula_free(Formula *formula)
         return;
     for (int i = 0; i < formula->arguments; ++i)
         formula_free(formula->argument[i]);
+    if (formula->source)
+        free(formula->source->type);
+    free(formula->source);
     free(formula->op);
     free(formula);
 }
@@ -99,6 +122,8 @@ quad formula_value(const Formula *formula, const Surroundings *around)
     for (int i = 0; i < formula->arguments; ++i)
         x[i] = formula_value(formula->argument[i], around);
     const char *op = formula->op;
+    if (formula->source)
+        return signal_value(formula->source, around);
     if (!strcmp(op, "value"))
         return around->w[formula->index];
     if (!strcmp(op, "rate"))

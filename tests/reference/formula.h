@@ -6,8 +6,16 @@
 #include "json.h"
 #include "quad.h"
 
+/* A component of an output that a formula reads. */
+typedef struct SignalSource {
+    char *type;
+    int component, body, in, index; /* GROUND possible; index: of a coordinate or force element */
+    double point[3];
+} SignalSource;
+
 typedef struct Formula {
-    char *op; /* NULL: a number */
+    SignalSource *source; /* of the op `signal` */
+    char *op;             /* NULL: a number */
     double number;
     int index; /* of a coordinate, input or table */
     int arguments;
@@ -33,7 +41,11 @@ typedef struct Surroundings {
     const Lookup *table;
     quad time;
     Locals local;
+    const void *model, *configuration; /* of signals */
 } Surroundings;
+
+/* signal.c: its value at the configuration. */
+quad signal_value(const SignalSource *source, const Surroundings *around);
 
 Formula *formula_read(const Json *json);
 void formula_free(Formula *formula);

@@ -341,9 +341,8 @@ void add_force(const Configuration *configuration, int body, const quad point[3]
     }
 }
 
-/* Place and velocity of a point of a body, or of a point of the ground. */
-static void point_motion(const Model *model, const Configuration *configuration, int body, const double point[3],
-                         quad x[3], quad v[3])
+void point_motion(const Model *model, const Configuration *configuration, int body, const double point[3], quad x[3],
+                  quad v[3])
 {
     if (body == GROUND) {
         widen(point, x, 3);
@@ -373,8 +372,13 @@ static quad of_law(const Model *model, const Configuration *configuration, const
             input[next + 1] = configuration->w_rate[c];
             next += 3;
         }
-    Surroundings around = {
-        .w = configuration->w, .w_rate = configuration->w_rate, .input = input, .table = model->table, .local = local};
+    Surroundings around = {.w = configuration->w,
+                           .w_rate = configuration->w_rate,
+                           .input = input,
+                           .table = model->table,
+                           .local = local,
+                           .model = model,
+                           .configuration = configuration};
     return find(law, &around);
 }
 
@@ -506,6 +510,16 @@ static void add_load(const Model *model, const Configuration *configuration, con
     add_torque(configuration, body, world + 3, Q);
 }
 
+quad element_value(const Model *model, const Configuration *configuration, int force)
+{
+    const Force *element = &model->force[force];
+    quad value, rate;
+    element_extension(model, configuration, force, &value, &rate);
+    quad law = law_value(model, configuration, element->law[0], (Locals){.length = value, .speed = rate});
+    quad against = resistance(element, value, rate);
+    return element->coordinate >= 0 ? law - against : law + against;
+}
+
 void add_force_element(const Model *model, const Configuration *configuration, const Row *rows, int force,
                        quad (*Q)[BODY_COORDINATES])
 {
@@ -515,8 +529,7 @@ void add_force_element(const Model *model, const Configuration *configuration, c
         return;
     }
     int c = element->coordinate;
-    quad along = law_value(model, configuration, element->law[0], (Locals){0}) -
-                 resistance(element, configuration->w[c], configuration->w_rate[c]);
+    quad along = element_value(model, configuration, force);
     /* virtual work: along * dw, with dw = -(dc/dq dq) / (dc/dw) */
     const Row *row = &rows[joint_row(model, model->joints) + c];
     for (int side = 0; side < 2; ++side)

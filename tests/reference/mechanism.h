@@ -54,6 +54,11 @@ void add_torque(const Configuration *configuration, int body, const quad torque[
 quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local);
 /* The sum of magnitudes of its terms. */
 quad law_size(const Model *model, const Configuration *configuration, const Formula *law, Locals local);
+/* Place and velocity of a point of a body, or of a point of the ground. */
+void point_motion(const Model *model, const Configuration *configuration, int body, const double point[3], quad x[3],
+                  quad v[3]);
+/* Q or T of an element that is no load (FORMAT.md section 7). */
+quad element_value(const Model *model, const Configuration *configuration, int force);
 /* Length, angle or coordinate along which a force element acts, and its rate. Not for loads. */
 void element_extension(const Model *model, const Configuration *configuration, int force, quad *value, quad *rate);
 /* Add the generalized force of one force element. `rows` are those of the same configuration. */
