@@ -203,9 +203,8 @@ static void force_visit(Order *order, int index)
         diag_fail(
             force->at,
             "let it read positions, velocities, coordinates, their rates or forces of other elements; a signal that "
-            "follows accelerations can be an output"
-            "force '%s' would follow accelerations, which follow from forces: %s",
-            force->name, thing->follows);
+            "follows accelerations can be an output",
+            "force '%s' would follow accelerations, which follow from forces: %s", force->name, thing->follows);
 }
 
 static void signal_visit(void *user, const Law *law)

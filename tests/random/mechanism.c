@@ -284,6 +284,35 @@ static void add_law(Vehicle *v, int coordinate)
     }
 }
 
+/* A formula that reads an output, of a body or of an element before it. */
+static void add_reader(Vehicle *v)
+{
+    const int coordinate = pick(v, v->section[COORDINATE].count), body = pick(v, v->section[BODY].count);
+    const char *along = v->section[COORDINATE].entry[coordinate].name, *axis = &"xyz"[pick(v, 3)];
+    static const double apart[] = {0.0123, 0.1123, -0.0877, 10}; /* bounds that no state meets but for rounding */
+    const double size = nice_size(v, 0.1, 10), where = apart[pick(v, 4)];
+    const bool base = body == BASE && v->fixed;
+    static const char *const type[] = {"position", "velocity", "angular_velocity", "roll_pitch_yaw"};
+    const int which = pick(v, base ? 1 : 4);
+    Entry *output = add(v, OUTPUT, "read");
+    say(output, "type: %s, body: %s", type[which], body_name(v, body));
+    if (!base && (which == 1 || which == 2) && chance(v, 0.5))
+        say(output, ", in: %s", body_name(v, pick(v, v->section[BODY].count)));
+    Entry *force = add(v, FORCE, "reader");
+    say(force, "type: force, coordinate: %s, value: \"", along);
+    if (which == 3) /* roll and yaw say nothing where the pitch is a quarter turn */
+        say(force, "-%.6g * sin(%s.pitch)\"", size, output->name);
+    else if (chance(v, 0.3))
+        say(force, "if(%s.%c > %.6g, -%.6g, 0)\"", output->name, axis[0], where, size);
+    else
+        say(force, "-%.6g * %s.%c\"", size, output->name, axis[0]);
+    if (chance(v, 0.5))
+        return;
+    Entry *seen = add(v, OUTPUT, "seen"), *echo = add(v, FORCE, "echo");
+    say(seen, "type: force, element: %s", force->name);
+    say(echo, "type: force, coordinate: %s, value: \"0.5 * %s - %.6g * time\"", along, seen->name, size);
+}
+
 static void add_nice_element(Vehicle *v)
 {
     int b = any_body(v), a = any_body(v);
@@ -394,6 +423,8 @@ void build_mechanism(Vehicle *v)
         add_nice_element(v);
     for (int i = pick(v, 3); i > 0 && !v->conserves && !v->halves; --i)
         add_law(v, pick(v, v->section[COORDINATE].count));
+    for (int i = pick(v, 4); i > 1 && !v->conserves && !v->halves; --i)
+        add_reader(v);
     for (int i = 0; i < v->section[COORDINATE].count; ++i)
         say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
     for (int i = v->fixed; i < v->section[BODY].count; ++i) {

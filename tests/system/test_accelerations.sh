@@ -59,7 +59,7 @@ agrees() {
         "$agree" "$work/dump" "$work/accelerations" "$work/results" --reactions --wheels --tolerance "$tolerance"
 }
 
-for model in "$root"/models/*.veh "$root/tests/data/laws/cart.veh" "$work/steered.veh"; do
+for model in "$root"/models/*.veh "$root"/tests/data/laws/*.veh "$work/steered.veh"; do
     rows=${ROWS:-100}
     tires=false
     tolerance=5e-13

@@ -75,7 +75,7 @@ same_states() {
 }
 sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
     "$root/models/hmmwv.veh" >steered.veh
-for model in "$root"/models/*.veh steered.veh "$root/tests/data/laws/cart.veh" "$root/tests/data/tuning/car.veh"; do
+for model in "$root"/models/*.veh steered.veh "$root"/tests/data/laws/*.veh "$root/tests/data/tuning/car.veh"; do
     same_states "$model"
 done
 "$gicgen" --dump-model "$root/models/hmmwv14.veh" >dump &&

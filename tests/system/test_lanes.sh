@@ -36,7 +36,7 @@ printf '%s\n' "gicgen: 1" "model: hinged" "base: ground" bodies: \
     joints: "  weld: {type: fixed, bodies: [ground, bracket]}" \
     "  pivot: {type: revolute, bodies: [bracket, rod], point: [0, 0, 0], axis: [0, 1, 0]}" coordinates: \
     "  angle: {type: angle, bodies: [bracket, rod], axis: [0, 1, 0], range: [-1, 1]}" >hinged.veh
-for model in "$root"/models/*.veh "$root/tests/data/laws/cart.veh" car.veh hinged.veh; do
+for model in "$root"/models/*.veh "$root"/tests/data/laws/*.veh car.veh hinged.veh; do
     if "$gicgen" --batch 8 "$model" -o - >out 2>err; then
         agrees "$model" '' 4 gcc -std=c11 -O0
     else

@@ -79,7 +79,7 @@ same_run() {
 
 sed "s|parts/|$root/models/parts/|g; s/^model: .*/model: steered/; s/^  rack: *{type: translation,/& driven: true,/" \
     "$root/models/hmmwv.veh" >"$work/steered.veh"
-for model in "$root"/models/*.veh "$work/steered.veh" "$root/tests/data/laws/cart.veh" \
+for model in "$root"/models/*.veh "$work/steered.veh" "$root"/tests/data/laws/*.veh \
     "$root"/tests/data/tuning/car.veh "$root"/tests/data/tuning/rig.veh; do
     same_states "$model" "$(basename "$model")"
 done
