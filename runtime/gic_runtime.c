@@ -410,7 +410,9 @@ static Kept keep(const gic_model *model, void *self)
     const gic_head *head = (const gic_head *)self;
     if (model->shift)
         copy(kept_rows(model, self), array_at(self, model->rate_offset), model->slow_count + model->fast_count);
-    return (Kept){head->start_time, head->step, head->steps, head->method, head->ratio, head->history};
+    /* no compound literal: this file compiles as C++, too */
+    const Kept kept = {head->start_time, head->step, head->steps, head->method, head->ratio, head->history};
+    return kept;
 }
 
 static void take_back(const gic_model *model, void *self, const Kept *kept)
