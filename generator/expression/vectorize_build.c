@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The same number at all times, be it of one track? */
+/* True if the node has the same value at all times, in its track or everywhere. */
 static bool is_known(const Packing *p, Ex e)
 {
     const Node *node = &p->dag->node[e];
