@@ -7,7 +7,7 @@
 #include "base/base.h"
 #include "gic_runtime.h"
 
-/* ---- usage.c: a command line that is none */
+/* ---- usage.c: errors in the command line */
 
 /* Print `program: error: message 'word'` and where to find help; exit status 2. word may be NULL. */
 _Noreturn void usage_fail(const char *program, const char *message, const char *word);
