@@ -71,7 +71,7 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x3ca0d223
+#define FIVE_LINK_H 0xff38969b
 
 #include "gic_runtime.h"
 
@@ -227,13 +227,12 @@ enum {
     FIVE_LINK_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct five_link {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[FIVE_LINK_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[FIVE_LINK_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
     gic_real start[GIC_STARTS][FIVE_LINK_START_ROOM];  /* work space: where Newton begins: the last good one, and the
@@ -253,24 +252,23 @@ typedef struct five_link {
     gic_real x[FIVE_LINK_COORDINATE_ROOM], xd[FIVE_LINK_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * FIVE_LINK_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
         recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[FIVE_LINK_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } five_link;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int five_link_setup(five_link *self);
 
-/* The same as if the file had these numbers (FIVE_LINK_PARAMETERS) as values of its tunable parameters; self->parameter
- * will do. */
+/* The same with these values of the tunable parameters (FIVE_LINK_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int five_link_setup_with(five_link *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: FIVE_LINK_STATES numbers. rate is
  * written only on GIC_OK. */
 int five_link_rhs(five_link *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int five_link_step(five_link *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -282,8 +280,8 @@ int five_link_poses(five_link *self, gic_real *pose);
 /* Present time, s. */
 gic_real five_link_time(const five_link *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *five_link_status_text(int status);
 const char *five_link_status_subset(const five_link *self);
 const char *five_link_status_state(const five_link *self);
@@ -295,7 +293,7 @@ void five_link_snapshot(const five_link *self, five_link *copy);
 void five_link_restore(five_link *self, const five_link *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int five_link_self_test(five_link *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -78,7 +78,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0xf1ff36a1
+#if HMMWV_FULL_H != 0xb4b07d9f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -91,15 +91,15 @@
 #define GIC_RESTRICT restrict
 #endif
 
-/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+/* A function that runs rarely: optimize it for size. */
 #ifdef __GNUC__
 #define GIC_COLD __attribute__((cold))
 #else
 #define GIC_COLD
 #endif
 
-/* A long function that stays one of its own although it is called once: merged with what calls it, GCC may give it
- * registers whose names take a byte more in every instruction, which costs 5 percent of a right-hand side. */
+/* A long function that is not inlined although it is called once: inlined, GCC may give it registers whose names take a
+ * byte more in every instruction, which costs 5 percent of a right-hand side. */
 #if defined __GNUC__ && !defined __clang__
 #define GIC_APART __attribute__((noinline))
 #else
@@ -139,17 +139,16 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
- * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
- * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
- * it. */
+/* Error of poses that Newton's iteration may leave, relative to a subset's size. 0: to rounding; 1e-6 saves
+ * corrections. A correction below this bound ends the iteration, so the error is smaller still where corrections
+ * shrink. Velocities and accelerations have errors of this size times the mechanism's amplification. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
- * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
- * size; 16 epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: the one that counts as rounding, and the factor by which rounding
+ * may grow near a singular configuration before recovery fails. far: square of the subset's distance from the base
+ * relative to its size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -158,11 +157,12 @@
 #define GIC_AMPLIFICATION R(1e6)
 #endif
 #define GIC_ENOUGH(far) GIC_MAX(R(GIC_RECOVERY_ERROR) * R(GIC_RECOVERY_ERROR), GIC_NEAREST(far))
-/* Corrections that do not shrink any more are rounding only where all digits are asked for. */
+/* Corrections that no longer shrink count as rounding only if full precision is asked for. */
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
-/* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
+/* Bounds of one recovery: number of corrections with old factors, and with new ones; square of a correction that may
+ * lead to another solution; number of pieces in which a change of the coordinates is followed, and of parts into which
+ * one piece may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
@@ -172,23 +172,23 @@
 /* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
  * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
  * about reach; a further correction with old factors changes about step times the larger of reach and step. A
- * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
- * shrinks is rounding, near a singular configuration a larger one. */
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, may lead to another solution. A small correction
+ * that no longer shrinks is rounding, near a singular configuration a larger one. */
 #define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
 #define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
 #define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
 #define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
 #define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
- * the first half of the present piece. */
+/* A change in `pieces` pieces, `usual` at first: go on to the next piece, of double length if pieces were halved; go on
+ * to the first half of the present piece. */
 #define GIC_NEXT_PIECE(piece, pieces, usual) \
     ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
 #define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+/* Tolerances of the checks, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
  * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
- * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
+ * magnitudes of their terms. They allow for rounding, in single precision also near a singular configuration. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -199,10 +199,10 @@
 #define GIC_BALANCE_RESIDUAL R(1e-10)
 #endif
 
-/* Evaluations between two that are checked. */
+/* Number of evaluations from one that is checked to the next. */
 #define GIC_CHECK_EVERY 200
 
-/* By how much an error that tests plant is off. */
+/* Size of an error that tests plant. */
 #ifndef GIC_PLANT_BY
 #define GIC_PLANT_BY R(1e-3)
 #endif
@@ -400,7 +400,7 @@ static int hmmwv_full_solve_rack(hmmwv_full *self, const gic_real *GIC_RESTRICT 
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_full_residual_rack(const gic_real *GIC_RESTRICT k,
     const hmmwv_full_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -619,7 +619,7 @@ static int hmmwv_full_solve_lca_f_l(hmmwv_full *self, const gic_real *GIC_RESTRI
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_full_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_full_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1012,7 +1012,7 @@ static int hmmwv_full_solve_wheel_f_l(hmmwv_full *self, const gic_real *GIC_REST
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_full_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_full_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1353,7 +1353,7 @@ static int hmmwv_full_solve_wheel_r_l(hmmwv_full *self, const gic_real *GIC_REST
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_full_residual_wheel_r_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_full_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1569,8 +1569,8 @@ static int hmmwv_full_recover_piece(hmmwv_full *self, hmmwv_full_links *links, c
 }
 
 /* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
- * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
- * start. */
+ * that fails is halved: poses may turn faster there than in the samples that the length of pieces comes from. *last:
+ * the last piece's start. */
 static int hmmwv_full_recover_way(hmmwv_full *self, hmmwv_full_links *links, const gic_real *way, int far,
     int32_t *last)
 {
@@ -1604,7 +1604,7 @@ static int hmmwv_full_recover_way(hmmwv_full *self, hmmwv_full_links *links, con
     }
 }
 
-/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
+/* Recover all bodies at self->x from the last good configuration, which is kept if a piece fails. */
 static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold)
 {
     hmmwv_full_links links;
@@ -1628,9 +1628,9 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
     for (i = 0; i < HMMWV_FULL_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_full_piece[i]);
     if (far)
-        self->head.unchecked = 0; /* a jump: no state that was checked is near */
-    /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
-     * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
+        self->head.unchecked = 0; /* after a jump no checked state is near */
+    /* A change in one piece by closed forms is outside the loop: clang would move numbers that never change out of the
+     * loop and keep them on the stack. Newton's iteration compiled by GCC is 3 percent quicker in the loop. */
     if (far || HMMWV_FULL_FOLLOWED > 0) {
         status = hmmwv_full_recover_way(self, &links, way, far, &last);
     } else {
@@ -1650,7 +1650,7 @@ static int hmmwv_full_recover(hmmwv_full *self, const gic_real turn[3], int cold
     return GIC_OK;
 }
 
-/* Coordinates and rates, from the state where they are free, from the inputs where they are driven. */
+/* Set coordinates and rates: free ones from the state, driven ones from the inputs. */
 static void hmmwv_full_gather(hmmwv_full *self, const gic_real *y)
 {
     const gic_real *const u = self->input;
@@ -1781,7 +1781,7 @@ static int hmmwv_full_road_height(const hmmwv_full *self, gic_real time, gic_rea
     return GIC_FINITE(out, 3);
 }
 
-/* A status about a subset and a number of the state, -1: about none. */
+/* Record the subset and the number of the state that a status is about (-1: none), and return the status. */
 static GIC_COLD int hmmwv_full_about(hmmwv_full *self, int status, int32_t subset, int32_t number)
 {
     self->head.subset = subset;
@@ -3811,8 +3811,8 @@ static void hmmwv_full_place(const hmmwv_full *self, const gic_real *y, const gi
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
- * subset whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives at the motions of the last recovery. Returns a subset
+ * whose residuals are above their tolerances, -1: none. */
 static GIC_COLD GIC_APART int hmmwv_full_residual(const hmmwv_full *self, gic_real largest[2])
 {
     hmmwv_full_links links;
@@ -3897,8 +3897,8 @@ static GIC_COLD GIC_APART int hmmwv_full_residual(const hmmwv_full *self, gic_re
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_full_dynamics. size:
- * magnitudes of the terms that it is the sum of. */
+/* tau: residual of the equations of motion at `rate`, computed body by body, independently of hmmwv_full_dynamics.
+ * size: sums of the magnitudes of its terms. */
 static GIC_COLD GIC_APART int hmmwv_full_balance(const hmmwv_full *self, gic_real time, const gic_real *y,
     const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
@@ -5185,7 +5185,7 @@ static GIC_COLD GIC_APART int hmmwv_full_balance(const hmmwv_full *self, gic_rea
     return GIC_OK;
 }
 
-/* The motions that were recovered last, against all constraints. */
+/* Check the motions of the last recovery against all constraints. */
 static GIC_COLD int hmmwv_full_check_constraints(hmmwv_full *self)
 {
     gic_real largest[2];
@@ -5198,7 +5198,8 @@ static GIC_COLD int hmmwv_full_check_constraints(hmmwv_full *self)
     return GIC_ERROR_RESIDUAL;
 }
 
-/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+/* Check the constraints, and a rate against the equations of motion. After a failure the next evaluation is checked
+ * too. */
 static GIC_COLD GIC_APART int hmmwv_full_check(hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e,
     const gic_real *rate)
 {
@@ -5236,7 +5237,7 @@ static int hmmwv_full_locate(hmmwv_full *self, gic_real time, const gic_real *y,
     return self->head.status = status;
 }
 
-/* The same, and the state's rate, which is none where the status is not GIC_OK. */
+/* Recover the state as hmmwv_full_locate, and compute its rate, which is valid only on GIC_OK. */
 static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *y, gic_real e[4],
     gic_real rate[HMMWV_FULL_STATE_ROOM])
 {
@@ -5245,14 +5246,14 @@ static int hmmwv_full_evaluate(hmmwv_full *self, gic_real time, const gic_real *
     self->head.rhs_count += status != GIC_ERROR_INPUT;
     if (status == GIC_OK)
         status = hmmwv_full_dynamics(self, time, y, e, rate);
-    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    /* the twist and the rates of coordinates, which are bounded, bound the rates of the numbers before the twist */
     if (status == GIC_OK && HMMWV_FULL_STATES > HMMWV_FULL_TWIST && !GIC_FINITE(rate + HMMWV_FULL_TWIST,
         HMMWV_FULL_STATES - HMMWV_FULL_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv_full_check(self, time, y, e, rate);
         if (status != GIC_OK)
-            self->head.flip = flip; /* what was found is no start */
+            self->head.flip = flip; /* go back to the start before this recovery */
     }
     return self->head.status = status;
 }
@@ -5267,9 +5268,8 @@ int hmmwv_full_rhs(hmmwv_full *self, gic_real time, const gic_real *state, gic_r
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
- * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
- * good. */
+/* AB3 of gic_step with two past rates, with sizes and offsets that the compiler knows. The new state is stored at once,
+ * since the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int hmmwv_full_march(hmmwv_full *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -5292,7 +5292,7 @@ static int hmmwv_full_march(hmmwv_full *self, gic_real time)
     return GIC_OK;
 }
 
-/* The inputs of the present time, which it returns. */
+/* Set the inputs of the present time, and return the time. */
 static gic_real hmmwv_full_present(hmmwv_full *self)
 {
     const gic_real time = hmmwv_full_time(self);
@@ -5302,7 +5302,7 @@ static gic_real hmmwv_full_present(hmmwv_full *self)
     return time;
 }
 
-/* The present state and its rate. */
+/* Evaluate the rate at the present state. */
 static int hmmwv_full_refresh(hmmwv_full *self, gic_real e[4])
 {
     gic_real result[HMMWV_FULL_STATE_ROOM];
@@ -5595,7 +5595,7 @@ int hmmwv_full_setup_with(hmmwv_full *self, const gic_real *parameter)
     const gic_real *turn;
     int i, body, status;
     for (i = 0; i < HMMWV_FULL_PARAMETERS; ++i)
-        wanted[i] = parameter[i]; /* they may be the instance's own */
+        wanted[i] = parameter[i]; /* `parameter` may be self->parameter */
     memset(self, 0, sizeof *self);
     self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_full_model.abi_version != GIC_ABI_VERSION || hmmwv_full_model.real_size != sizeof(gic_real))

@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x5c6b48a3
+#define HMMWV_TIRES_H 0x9c5c4b55
 
 #include "gic_runtime.h"
 
@@ -313,13 +313,12 @@ enum {
     HMMWV_TIRES_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct hmmwv_tires {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[HMMWV_TIRES_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[HMMWV_TIRES_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -340,8 +339,7 @@ typedef struct hmmwv_tires {
     gic_real x[HMMWV_TIRES_COORDINATE_ROOM], xd[HMMWV_TIRES_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * HMMWV_TIRES_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
         last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TIRES_GRIP * HMMWV_TIRES_ROLLING]; /* what the wheels do, HMMWV_TIRES_GRIP numbers each */
@@ -350,16 +348,16 @@ typedef struct hmmwv_tires {
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_tires_setup(hmmwv_tires *self);
 
-/* The same as if the file had these numbers (HMMWV_TIRES_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (HMMWV_TIRES_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int hmmwv_tires_setup_with(hmmwv_tires *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_TIRES_STATES numbers. rate is
  * written only on GIC_OK. */
 int hmmwv_tires_rhs(hmmwv_tires *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int hmmwv_tires_step(hmmwv_tires *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -371,8 +369,8 @@ int hmmwv_tires_poses(hmmwv_tires *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_tires_time(const hmmwv_tires *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *hmmwv_tires_status_text(int status);
 const char *hmmwv_tires_status_subset(const hmmwv_tires *self);
 const char *hmmwv_tires_status_state(const hmmwv_tires *self);
@@ -384,7 +382,7 @@ void hmmwv_tires_snapshot(const hmmwv_tires *self, hmmwv_tires *copy);
 void hmmwv_tires_restore(hmmwv_tires *self, const hmmwv_tires *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int hmmwv_tires_self_test(hmmwv_tires *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -81,7 +81,7 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0xfdfd23ad
+#define HMMWV_TMEASY_H 0xbce195d1
 
 #include "gic_runtime.h"
 
@@ -313,13 +313,12 @@ enum {
     HMMWV_TMEASY_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct hmmwv_tmeasy {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[HMMWV_TMEASY_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[HMMWV_TMEASY_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -340,8 +339,7 @@ typedef struct hmmwv_tmeasy {
     gic_real x[HMMWV_TMEASY_COORDINATE_ROOM], xd[HMMWV_TMEASY_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * HMMWV_TMEASY_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
         last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[HMMWV_TMEASY_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TMEASY_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TMEASY_GRIP * HMMWV_TMEASY_ROLLING]; /* what the wheels do, HMMWV_TMEASY_GRIP numbers each */
@@ -350,16 +348,16 @@ typedef struct hmmwv_tmeasy {
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_tmeasy_setup(hmmwv_tmeasy *self);
 
-/* The same as if the file had these numbers (HMMWV_TMEASY_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (HMMWV_TMEASY_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int hmmwv_tmeasy_setup_with(hmmwv_tmeasy *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_TMEASY_STATES numbers. rate is
  * written only on GIC_OK. */
 int hmmwv_tmeasy_rhs(hmmwv_tmeasy *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int hmmwv_tmeasy_step(hmmwv_tmeasy *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -371,8 +369,8 @@ int hmmwv_tmeasy_poses(hmmwv_tmeasy *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_tmeasy_time(const hmmwv_tmeasy *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *hmmwv_tmeasy_status_text(int status);
 const char *hmmwv_tmeasy_status_subset(const hmmwv_tmeasy *self);
 const char *hmmwv_tmeasy_status_state(const hmmwv_tmeasy *self);
@@ -384,7 +382,7 @@ void hmmwv_tmeasy_snapshot(const hmmwv_tmeasy *self, hmmwv_tmeasy *copy);
 void hmmwv_tmeasy_restore(hmmwv_tmeasy *self, const hmmwv_tmeasy *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int hmmwv_tmeasy_self_test(hmmwv_tmeasy *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

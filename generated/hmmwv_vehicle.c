@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0xb96f51f1
+#if HMMWV_VEHICLE_H != 0x4604e391
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -96,15 +96,15 @@
 #define GIC_RESTRICT restrict
 #endif
 
-/* What runs once in a while, and is worth little of a compiler's time and of memory. */
+/* A function that runs rarely: optimize it for size. */
 #ifdef __GNUC__
 #define GIC_COLD __attribute__((cold))
 #else
 #define GIC_COLD
 #endif
 
-/* A long function that stays one of its own although it is called once: merged with what calls it, GCC may give it
- * registers whose names take a byte more in every instruction, which costs 5 percent of a right-hand side. */
+/* A long function that is not inlined although it is called once: inlined, GCC may give it registers whose names take a
+ * byte more in every instruction, which costs 5 percent of a right-hand side. */
 #if defined __GNUC__ && !defined __clang__
 #define GIC_APART __attribute__((noinline))
 #else
@@ -144,17 +144,16 @@
 #define GIC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define R(x) GIC_R(x)
 
-/* How far poses may be off, relative to a subset's size: what Newton's iteration may leave. 0 is as near as numbers
- * are; 1e-6 saves corrections. A correction below it ends the iteration, so that what is returned as good is nearer
- * than that where corrections shrink. Velocities and accelerations are off by as much and what the mechanism makes of
- * it. */
+/* Error of poses that Newton's iteration may leave, relative to a subset's size. 0: to rounding; 1e-6 saves
+ * corrections. A correction below this bound ends the iteration, so the error is smaller still where corrections
+ * shrink. Velocities and accelerations have errors of this size times the mechanism's amplification. */
 #ifndef GIC_RECOVERY_ERROR
 #define GIC_RECOVERY_ERROR 0.0
 #endif
 
-/* Squares of corrections relative to a subset's size: what is rounding, and how much larger that becomes near a
- * singular configuration, before it is too near. far: square of the subset's distance from the base relative to its
- * size; 16 epsilon of the distance is rounding. */
+/* Squares of corrections relative to a subset's size: the one that counts as rounding, and the factor by which rounding
+ * may grow near a singular configuration before recovery fails. far: square of the subset's distance from the base
+ * relative to its size; 16 epsilon of the distance is rounding. */
 #ifdef GIC_FLOAT
 #define GIC_NEAREST(far) GIC_MAX(R(1e-11), R(9e-13) * (far))
 #define GIC_AMPLIFICATION R(1e4)
@@ -163,11 +162,12 @@
 #define GIC_AMPLIFICATION R(1e6)
 #endif
 #define GIC_ENOUGH(far) GIC_MAX(R(GIC_RECOVERY_ERROR) * R(GIC_RECOVERY_ERROR), GIC_NEAREST(far))
-/* Corrections that do not shrink any more are rounding only where all digits are asked for. */
+/* Corrections that no longer shrink count as rounding only if full precision is asked for. */
 #define GIC_AMPLIFIED (R(GIC_RECOVERY_ERROR) > R(0.0) ? R(1.0) : GIC_AMPLIFICATION)
 
-/* Bounds of one recovery: corrections with old factors, with new ones, size of a correction that may lead astray, and
- * pieces in which a change of the coordinates is followed, into how many parts one of them may be split. */
+/* Bounds of one recovery: number of corrections with old factors, and with new ones; square of a correction that may
+ * lead to another solution; number of pieces in which a change of the coordinates is followed, and of parts into which
+ * one piece may be split. */
 #define GIC_CHORDS 6
 #define GIC_PASSES 8
 #define GIC_LEAP_SQUARE R(0.25)
@@ -177,23 +177,23 @@
 /* Decisions of the iteration, for one subset or for several in the lanes of vectors. step: square of the last
  * correction relative to the subset's size; reach: square of the change of its coordinates. A prediction is off by
  * about reach; a further correction with old factors changes about step times the larger of reach and step. A
- * correction of GIC_LEAP_SQUARE or more, or one that is not a number, leads astray. A small correction that no longer
- * shrinks is rounding, near a singular configuration a larger one. */
+ * correction of GIC_LEAP_SQUARE or more, or one that is not a number, may lead to another solution. A small correction
+ * that no longer shrinks is rounding, near a singular configuration a larger one. */
 #define GIC_PREDICTED(reach, enough) (R(4.0) * (reach) * (reach) <= (enough))
 #define GIC_LEADS_ON(step) ((step) < GIC_LEAP_SQUARE)
 #define GIC_CORRECTED(step, larger, enough) (R(4.0) * (step) * (larger) <= (enough))
 #define GIC_IS_ENOUGH(step, enough) ((step) <= (enough))
 #define GIC_IS_ROUNDING(step, before, enough) (((step) <= GIC_AMPLIFIED * (enough)) & ((step) > (before) / R(16.0)))
 
-/* A change in `pieces` pieces, `usual` at first: on to the next piece, of double length where pieces were halved; on to
- * the first half of the present piece. */
+/* A change in `pieces` pieces, `usual` at first: go on to the next piece, of double length if pieces were halved; go on
+ * to the first half of the present piece. */
 #define GIC_NEXT_PIECE(piece, pieces, usual) \
     ((piece) % 2 == 0 && (pieces) > (usual) ? (void)((piece) /= 2, (pieces) /= 2) : (void)0, (void)++(piece))
 #define GIC_HALVE_PIECE(piece, pieces) ((void)((piece) = 2 * (piece) - 1, (pieces) *= 2))
 
-/* What checks let pass, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
+/* Tolerances of the checks, FORMAT.md section 14: residuals of the constraints relative to a subset's size (far: its
  * distance from the base relative to its size); of their derivatives and of the equations of motion relative to the
- * magnitudes of their terms. They are rounding, in single precision near a singular configuration too. */
+ * magnitudes of their terms. They allow for rounding, in single precision also near a singular configuration. */
 #ifdef GIC_FLOAT
 #define GIC_POSE_RESIDUAL(far) (GIC_MAX(R(1e-3), R(1e-5) * (far)) + R(8.0) * R(GIC_RECOVERY_ERROR))
 #define GIC_MOTION_RESIDUAL (R(1e-2) + R(64.0) * R(GIC_RECOVERY_ERROR))
@@ -204,10 +204,10 @@
 #define GIC_BALANCE_RESIDUAL R(1e-10)
 #endif
 
-/* Evaluations between two that are checked. */
+/* Number of evaluations from one that is checked to the next. */
 #define GIC_CHECK_EVERY 200
 
-/* By how much an error that tests plant is off. */
+/* Size of an error that tests plant. */
 #ifndef GIC_PLANT_BY
 #define GIC_PLANT_BY R(1e-3)
 #endif
@@ -506,7 +506,7 @@ static int hmmwv_vehicle_solve_rack(hmmwv_vehicle *self, const gic_real *GIC_RES
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_vehicle_residual_rack(const gic_real *GIC_RESTRICT k,
     const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -725,7 +725,7 @@ static int hmmwv_vehicle_solve_lca_f_l(hmmwv_vehicle *self, const gic_real *GIC_
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_vehicle_residual_lca_f_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1120,7 +1120,7 @@ static int hmmwv_vehicle_solve_wheel_f_l(hmmwv_vehicle *self, const gic_real *GI
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_vehicle_residual_wheel_f_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1464,7 +1464,7 @@ static int hmmwv_vehicle_solve_wheel_r_l(hmmwv_vehicle *self, const gic_real *GI
     return GIC_OK;
 }
 
-/* Largest constraint residual of such a subset, relative to its size; of the constraints' derivatives, relative to the
+/* Largest residual of the constraints of such a subset, relative to its size, and of their derivatives, relative to the
  * magnitudes of their terms. */
 static GIC_COLD void hmmwv_vehicle_residual_wheel_r_l(const gic_real *GIC_RESTRICT k,
     const hmmwv_vehicle_links *GIC_RESTRICT links, const gic_real *GIC_RESTRICT motion, gic_real *GIC_RESTRICT worst)
@@ -1682,8 +1682,8 @@ static int hmmwv_vehicle_recover_piece(hmmwv_vehicle *self, hmmwv_vehicle_links 
 }
 
 /* Follow a change of the coordinates in several pieces. The start `first` is kept until all pieces succeed. A piece
- * that fails is halved: poses may turn faster there than where the length of pieces was chosen. *last: the last piece's
- * start. */
+ * that fails is halved: poses may turn faster there than in the samples that the length of pieces comes from. *last:
+ * the last piece's start. */
 static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *links, const gic_real *way, int far,
     int32_t *last)
 {
@@ -1717,7 +1717,7 @@ static int hmmwv_vehicle_recover_way(hmmwv_vehicle *self, hmmwv_vehicle_links *l
     }
 }
 
-/* All bodies at self->x, followed from the last good configuration, which stays that where a piece fails. */
+/* Recover all bodies at self->x from the last good configuration, which is kept if a piece fails. */
 static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], int cold)
 {
     hmmwv_vehicle_links links;
@@ -1741,9 +1741,9 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     for (i = 0; i < HMMWV_VEHICLE_COORDINATES; ++i)
         far |= !(GIC_FABS(way[i]) < hmmwv_vehicle_piece[i]);
     if (far)
-        self->head.unchecked = 0; /* a jump: no state that was checked is near */
-    /* Closed forms for a way in one piece stand in no loop: clang would take numbers that never change out of it, and
-     * keep them on the stack. Newton's iteration by GCC is 3 percent quicker in one. */
+        self->head.unchecked = 0; /* after a jump no checked state is near */
+    /* A change in one piece by closed forms is outside the loop: clang would move numbers that never change out of the
+     * loop and keep them on the stack. Newton's iteration compiled by GCC is 3 percent quicker in the loop. */
     if (far || HMMWV_VEHICLE_FOLLOWED > 0) {
         status = hmmwv_vehicle_recover_way(self, &links, way, far, &last);
     } else {
@@ -1763,7 +1763,7 @@ static int hmmwv_vehicle_recover(hmmwv_vehicle *self, const gic_real turn[3], in
     return GIC_OK;
 }
 
-/* Coordinates and rates, from the state where they are free, from the inputs where they are driven. */
+/* Set coordinates and rates: free ones from the state, driven ones from the inputs. */
 static void hmmwv_vehicle_gather(hmmwv_vehicle *self, const gic_real *y)
 {
     const gic_real *const u = self->input;
@@ -2222,8 +2222,8 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
     return GIC_OK;
 }
 
-/* How the multibody system moves the wheels: 12 numbers each, centre, its velocity, spin axis, angular velocity
- * (world); then coordinates that formulas of wheels read. */
+/* Motion of the wheels by the multibody system, 12 numbers each: centre, its velocity, spin axis, angular velocity
+ * (world); then the coordinates that formulas of wheels read. */
 static void hmmwv_vehicle_link_wheels(const hmmwv_vehicle *self, const gic_real *y, const gic_real *e, gic_real *link)
 {
     const gic_real *const x = self->x, *const xd = self->xd, *const m = self->motion;
@@ -2484,7 +2484,7 @@ static int hmmwv_vehicle_engage(const hmmwv_vehicle *self, gic_real gear[5])
     return GIC_OK;
 }
 
-/* What it makes of the wheels' own rates: rate[] of the fast states, self->grip and self->watch. */
+/* Turn the rates of free wheels into those of driven ones: rate[] of the fast states, self->grip and self->watch. */
 static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast,
     gic_real *rate)
 {
@@ -2595,7 +2595,7 @@ static int hmmwv_vehicle_drive(hmmwv_vehicle *self, gic_real time, const gic_rea
     return GIC_OK;
 }
 
-/* All wheels at their links: rate[] of the fast states, and self->grip. */
+/* Evaluate all wheels at their links: rate[] of the fast states, and self->grip. */
 static int hmmwv_vehicle_grip(hmmwv_vehicle *self, gic_real time, const gic_real *link, const gic_real *fast,
     gic_real *rate)
 {
@@ -2639,7 +2639,7 @@ static int hmmwv_vehicle_grip(hmmwv_vehicle *self, gic_real time, const gic_real
     return status;
 }
 
-/* The wheels at a state of which the multibody system is recovered: rate[] of the fast states. */
+/* Evaluate the wheels at a state for which the multibody system is recovered: rate[] of the fast states. */
 static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
     gic_real *rate)
 {
@@ -2650,7 +2650,7 @@ static int hmmwv_vehicle_turn_wheels(hmmwv_vehicle *self, gic_real time, const g
     return hmmwv_vehicle_grip(self, time, link, y + HMMWV_VEHICLE_SLOW, rate);
 }
 
-/* Recovery, unless the last one was for the very same coordinates and velocities. */
+/* Recover the bodies, unless the last recovery was for the same coordinates and velocities. */
 static int hmmwv_vehicle_recover_once(hmmwv_vehicle *self, const gic_real turn[3])
 {
     const gic_real *const at = self->recovered_at;
@@ -2664,7 +2664,7 @@ static int hmmwv_vehicle_recover_once(hmmwv_vehicle *self, const gic_real turn[3
     return hmmwv_vehicle_recover(self, turn, 0);
 }
 
-/* A status about a subset and a number of the state, -1: about none. */
+/* Record the subset and the number of the state that a status is about (-1: none), and return the status. */
 static GIC_COLD int hmmwv_vehicle_about(hmmwv_vehicle *self, int status, int32_t subset, int32_t number)
 {
     self->head.subset = subset;
@@ -4948,8 +4948,8 @@ static void hmmwv_vehicle_place(const hmmwv_vehicle *self, const gic_real *y, co
 
 /* ---- checks: a wrong result is a status, whoever asks for it ----------------------------------------------------- */
 
-/* Largest residuals of the constraints and of their derivatives, of the motions that were recovered last. Returns a
- * subset whose are beyond what is promised, -1: there is none. */
+/* Largest residuals of the constraints and of their derivatives at the motions of the last recovery. Returns a subset
+ * whose residuals are above their tolerances, -1: none. */
 static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, gic_real largest[2])
 {
     hmmwv_vehicle_links links;
@@ -5042,8 +5042,8 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     return bad;
 }
 
-/* tau: residual of the equations of motion at `rate`, body by body: another way than hmmwv_vehicle_dynamics. size:
- * magnitudes of the terms that it is the sum of. */
+/* tau: residual of the equations of motion at `rate`, computed body by body, independently of hmmwv_vehicle_dynamics.
+ * size: sums of the magnitudes of its terms. */
 static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, gic_real time, const gic_real *y,
     const gic_real *e, const gic_real *rate, gic_real *tau, gic_real *size)
 {
@@ -6244,7 +6244,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_balance(const hmmwv_vehicle *self, g
     return GIC_OK;
 }
 
-/* The motions that were recovered last, against all constraints. */
+/* Check the motions of the last recovery against all constraints. */
 static GIC_COLD int hmmwv_vehicle_check_constraints(hmmwv_vehicle *self)
 {
     gic_real largest[2];
@@ -6257,7 +6257,8 @@ static GIC_COLD int hmmwv_vehicle_check_constraints(hmmwv_vehicle *self)
     return GIC_ERROR_RESIDUAL;
 }
 
-/* The same, and a rate against the equations of motion. What fails is checked again at the next evaluation. */
+/* Check the constraints, and a rate against the equations of motion. After a failure the next evaluation is checked
+ * too. */
 static GIC_COLD GIC_APART int hmmwv_vehicle_check(hmmwv_vehicle *self, gic_real time, const gic_real *y,
     const gic_real *e, const gic_real *rate)
 {
@@ -6296,7 +6297,7 @@ static int hmmwv_vehicle_locate(hmmwv_vehicle *self, gic_real time, const gic_re
     return self->head.status = status;
 }
 
-/* The same, and the state's rate, which is none where the status is not GIC_OK. */
+/* Recover the state as hmmwv_vehicle_locate, and compute its rate, which is valid only on GIC_OK. */
 static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_real *y, gic_real e[4],
     gic_real rate[HMMWV_VEHICLE_STATE_ROOM])
 {
@@ -6307,14 +6308,14 @@ static int hmmwv_vehicle_evaluate(hmmwv_vehicle *self, gic_real time, const gic_
         status = hmmwv_vehicle_turn_wheels(self, time, y, e, rate + HMMWV_VEHICLE_SLOW);
     if (status == GIC_OK)
         status = hmmwv_vehicle_dynamics(self, time, y, e, rate);
-    /* rates of the numbers before the twist are bounded as it is, and as rates of coordinates are */
+    /* the twist and the rates of coordinates, which are bounded, bound the rates of the numbers before the twist */
     if (status == GIC_OK && HMMWV_VEHICLE_STATES > HMMWV_VEHICLE_TWIST && !GIC_FINITE(rate + HMMWV_VEHICLE_TWIST,
         HMMWV_VEHICLE_STATES - HMMWV_VEHICLE_TWIST))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = hmmwv_vehicle_check(self, time, y, e, rate);
         if (status != GIC_OK)
-            self->head.flip = flip; /* what was found is no start */
+            self->head.flip = flip; /* go back to the start before this recovery */
     }
     return self->head.status = status;
 }
@@ -6329,9 +6330,8 @@ int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state,
     return status;
 }
 
-/* gic_step's AB3 with two past rates, with counts and places that the compiler knows. The new state comes into its
- * place at once, for the next right-hand side waits for it; the old one is kept until the new one is known to be
- * good. */
+/* AB3 of gic_step with two past rates, with sizes and offsets that the compiler knows. The new state is stored at once,
+ * since the next right-hand side waits for it; the old one is kept until the new one is known to be good. */
 static int hmmwv_vehicle_march(hmmwv_vehicle *self, gic_real time)
 {
     const gic_real weight = self->head.ahead / R(12.0);
@@ -6354,7 +6354,7 @@ static int hmmwv_vehicle_march(hmmwv_vehicle *self, gic_real time)
     return GIC_OK;
 }
 
-/* The inputs of the present time, which it returns. */
+/* Set the inputs of the present time, and return the time. */
 static gic_real hmmwv_vehicle_present(hmmwv_vehicle *self)
 {
     const gic_real time = hmmwv_vehicle_time(self);
@@ -6364,7 +6364,7 @@ static gic_real hmmwv_vehicle_present(hmmwv_vehicle *self)
     return time;
 }
 
-/* The present state and its rate. */
+/* Evaluate the rate at the present state. */
 static int hmmwv_vehicle_refresh(hmmwv_vehicle *self, gic_real e[4])
 {
     gic_real result[HMMWV_VEHICLE_STATE_ROOM];
@@ -6761,7 +6761,7 @@ int hmmwv_vehicle_setup_with(hmmwv_vehicle *self, const gic_real *parameter)
     const gic_real *turn;
     int i, body, status;
     for (i = 0; i < HMMWV_VEHICLE_PARAMETERS; ++i)
-        wanted[i] = parameter[i]; /* they may be the instance's own */
+        wanted[i] = parameter[i]; /* `parameter` may be self->parameter */
     memset(self, 0, sizeof *self);
     self->head.subset = self->head.condition = self->head.hold = self->head.grown = -1;
     if (hmmwv_vehicle_model.abi_version != GIC_ABI_VERSION || hmmwv_vehicle_model.real_size != sizeof(gic_real))
@@ -8875,7 +8875,7 @@ static gic_real hmmwv_vehicle_rolling_share(gic_real s)
     return s < R(1.0) ? s * (R(3.0) - R(2.0) * s) : R(1.0) / s;
 }
 
-/* Fast states with which no wheel slips; the integrator's history is forgotten. */
+/* Set the fast states such that no wheel slips; the integrator starts anew. */
 static int hmmwv_vehicle_any_roll(void *instance)
 {
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
@@ -8901,7 +8901,7 @@ static int hmmwv_vehicle_any_roll(void *instance)
 
 /* ---- changes of gear --------------------------------------------------------------------------------------------- */
 
-/* After a step: 1 where the gear changes. */
+/* After a step: 1 if the gear changes. */
 static int hmmwv_vehicle_any_shift(void *instance)
 {
     hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;

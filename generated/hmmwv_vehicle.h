@@ -82,7 +82,7 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0xb96f51f1
+#define HMMWV_VEHICLE_H 0x4604e391
 
 #include "gic_runtime.h"
 
@@ -329,13 +329,12 @@ enum {
     HMMWV_VEHICLE_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct hmmwv_vehicle {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[HMMWV_VEHICLE_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[HMMWV_VEHICLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -356,8 +355,7 @@ typedef struct hmmwv_vehicle {
     gic_real x[HMMWV_VEHICLE_COORDINATE_ROOM], xd[HMMWV_VEHICLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * HMMWV_VEHICLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
         last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[HMMWV_VEHICLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_VEHICLE_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_VEHICLE_GRIP * HMMWV_VEHICLE_ROLLING]; /* what the wheels do, HMMWV_VEHICLE_GRIP numbers each */
@@ -367,16 +365,16 @@ typedef struct hmmwv_vehicle {
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int hmmwv_vehicle_setup(hmmwv_vehicle *self);
 
-/* The same as if the file had these numbers (HMMWV_VEHICLE_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (HMMWV_VEHICLE_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int hmmwv_vehicle_setup_with(hmmwv_vehicle *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: HMMWV_VEHICLE_STATES numbers. rate
  * is written only on GIC_OK. */
 int hmmwv_vehicle_rhs(hmmwv_vehicle *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int hmmwv_vehicle_step(hmmwv_vehicle *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -388,8 +386,8 @@ int hmmwv_vehicle_poses(hmmwv_vehicle *self, gic_real *pose);
 /* Present time, s. */
 gic_real hmmwv_vehicle_time(const hmmwv_vehicle *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *hmmwv_vehicle_status_text(int status);
 const char *hmmwv_vehicle_status_subset(const hmmwv_vehicle *self);
 const char *hmmwv_vehicle_status_state(const hmmwv_vehicle *self);
@@ -401,7 +399,7 @@ void hmmwv_vehicle_snapshot(const hmmwv_vehicle *self, hmmwv_vehicle *copy);
 void hmmwv_vehicle_restore(hmmwv_vehicle *self, const hmmwv_vehicle *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int hmmwv_vehicle_self_test(hmmwv_vehicle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -28,7 +28,7 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0xb2302ad1
+#define PENDULUM_H 0xcef05b55
 
 #include "gic_runtime.h"
 
@@ -99,13 +99,12 @@ enum {
     PENDULUM_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct pendulum {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[PENDULUM_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[PENDULUM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of motion */
     gic_real start[GIC_STARTS][PENDULUM_START_ROOM];  /* work space: where Newton begins: the last good one, and the
@@ -125,24 +124,23 @@ typedef struct pendulum {
     gic_real x[PENDULUM_COORDINATE_ROOM], xd[PENDULUM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * PENDULUM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
         recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } pendulum;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int pendulum_setup(pendulum *self);
 
-/* The same as if the file had these numbers (PENDULUM_PARAMETERS) as values of its tunable parameters; self->parameter
- * will do. */
+/* The same with these values of the tunable parameters (PENDULUM_PARAMETERS numbers) instead of the file's; `parameter`
+ * may be self->parameter. */
 int pendulum_setup_with(pendulum *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: PENDULUM_STATES numbers. rate is
  * written only on GIC_OK. */
 int pendulum_rhs(pendulum *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int pendulum_step(pendulum *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -154,8 +152,8 @@ int pendulum_poses(pendulum *self, gic_real *pose);
 /* Present time, s. */
 gic_real pendulum_time(const pendulum *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *pendulum_status_text(int status);
 const char *pendulum_status_subset(const pendulum *self);
 const char *pendulum_status_state(const pendulum *self);
@@ -167,7 +165,7 @@ void pendulum_snapshot(const pendulum *self, pendulum *copy);
 void pendulum_restore(pendulum *self, const pendulum *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int pendulum_self_test(pendulum *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -47,7 +47,7 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x828c341b
+#define QUARTER_CAR_H 0x7e7be607
 
 #include "gic_runtime.h"
 
@@ -131,13 +131,12 @@ enum {
     QUARTER_CAR_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct quarter_car {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[QUARTER_CAR_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[QUARTER_CAR_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -158,24 +157,23 @@ typedef struct quarter_car {
     gic_real x[QUARTER_CAR_COORDINATE_ROOM], xd[QUARTER_CAR_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * QUARTER_CAR_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
         last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } quarter_car;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int quarter_car_setup(quarter_car *self);
 
-/* The same as if the file had these numbers (QUARTER_CAR_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (QUARTER_CAR_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int quarter_car_setup_with(quarter_car *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: QUARTER_CAR_STATES numbers. rate is
  * written only on GIC_OK. */
 int quarter_car_rhs(quarter_car *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int quarter_car_step(quarter_car *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -187,8 +185,8 @@ int quarter_car_poses(quarter_car *self, gic_real *pose);
 /* Present time, s. */
 gic_real quarter_car_time(const quarter_car *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *quarter_car_status_text(int status);
 const char *quarter_car_status_subset(const quarter_car *self);
 const char *quarter_car_status_state(const quarter_car *self);
@@ -200,7 +198,7 @@ void quarter_car_snapshot(const quarter_car *self, quarter_car *copy);
 void quarter_car_restore(quarter_car *self, const quarter_car *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int quarter_car_self_test(quarter_car *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -66,7 +66,7 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0xb41f1bb5
+#define SOLID_AXLE_H 0x766a7f69
 
 #include "gic_runtime.h"
 
@@ -219,13 +219,12 @@ enum {
     SOLID_AXLE_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct solid_axle {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[SOLID_AXLE_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[SOLID_AXLE_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -246,24 +245,23 @@ typedef struct solid_axle {
     gic_real x[SOLID_AXLE_COORDINATE_ROOM], xd[SOLID_AXLE_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * SOLID_AXLE_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the last
         recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[SOLID_AXLE_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } solid_axle;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int solid_axle_setup(solid_axle *self);
 
-/* The same as if the file had these numbers (SOLID_AXLE_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (SOLID_AXLE_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int solid_axle_setup_with(solid_axle *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: SOLID_AXLE_STATES numbers. rate is
  * written only on GIC_OK. */
 int solid_axle_rhs(solid_axle *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int solid_axle_step(solid_axle *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -275,8 +273,8 @@ int solid_axle_poses(solid_axle *self, gic_real *pose);
 /* Present time, s. */
 gic_real solid_axle_time(const solid_axle *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *solid_axle_status_text(int status);
 const char *solid_axle_status_subset(const solid_axle *self);
 const char *solid_axle_status_state(const solid_axle *self);
@@ -288,7 +286,7 @@ void solid_axle_snapshot(const solid_axle *self, solid_axle *copy);
 void solid_axle_restore(solid_axle *self, const solid_axle *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int solid_axle_self_test(solid_axle *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

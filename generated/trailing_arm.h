@@ -69,7 +69,7 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xe6da9eff
+#define TRAILING_ARM_H 0xe32a35b9
 
 #include "gic_runtime.h"
 
@@ -229,13 +229,12 @@ enum {
     TRAILING_ARM_PLACES_END = 0
 };
 
-/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. What is
- * between `start` and `x` belongs to the caller (FORMAT.md section 10 has order and units of the state); the rest is
- * work space. Code in lanes is some 5 percent quicker with instances that begin at multiples of 64 bytes. */
+/* One instance: everything it needs and no pointer into itself. The caller owns it; a copy is a snapshot. The members
+ * between `start` and `x` are for the caller (FORMAT.md section 10 has order and units of the state); the others are
+ * work space. Code in lanes is some 5 percent quicker if instances begin at multiples of 64 bytes. */
 typedef struct trailing_arm {
     gic_head head;
-    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* what follows is for vectors, and begins at a multiple of 64
-        bytes */
+    gic_real fill[GIC_FILL(sizeof(gic_head))];     /* so that vectors below begin at multiples of 64 bytes */
     gic_real motion[TRAILING_ARM_MOTION_ROOM];            /* work space: bodies relative to the base */
     gic_real inertia[TRAILING_ARM_INERTIA_ROOM];          /* work space: what the subsets add to the equations of
         motion */
@@ -256,24 +255,23 @@ typedef struct trailing_arm {
     gic_real x[TRAILING_ARM_COORDINATE_ROOM], xd[TRAILING_ARM_COORDINATE_ROOM]; /* dual coordinates and their rates */
     gic_real recovered_at[2 * TRAILING_ARM_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the
         last recovery */
-    int32_t recovered;                             /* 1 + the start that it left, which a failed step can go back
-        behind; 0: it was not good */
+    int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } trailing_arm;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
 int trailing_arm_setup(trailing_arm *self);
 
-/* The same as if the file had these numbers (TRAILING_ARM_PARAMETERS) as values of its tunable parameters;
- * self->parameter will do. */
+/* The same with these values of the tunable parameters (TRAILING_ARM_PARAMETERS numbers) instead of the file's;
+ * `parameter` may be self->parameter. */
 int trailing_arm_setup_with(trailing_arm *self, const gic_real *parameter);
 
 /* rate = d state / dt at `time`; inputs are read from self->input. state and rate: TRAILING_ARM_STATES numbers. rate is
  * written only on GIC_OK. */
 int trailing_arm_rhs(trailing_arm *self, gic_real time, const gic_real *state, gic_real *rate);
 
-/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On another status than GIC_OK state and time are as
- * before. */
+/* One step of `step` seconds, `method` GIC_AB3 or GIC_RK4. On a status other than GIC_OK state and time are
+ * unchanged. */
 int trailing_arm_step(trailing_arm *self, gic_real step, gic_method method);
 
 /* self->output and self->rate at the present state and time. */
@@ -285,8 +283,8 @@ int trailing_arm_poses(trailing_arm *self, gic_real *pose);
 /* Present time, s. */
 gic_real trailing_arm_time(const trailing_arm *self);
 
-/* What a status means; which subset of bodies and which number of the state the last status was about, and which
- * condition parameters violate, NULL: none. */
+/* Meaning of a status; names of the subset of bodies and of the number of the state that the last status is about; the
+ * condition that parameters violate. NULL: none. */
 const char *trailing_arm_status_text(int status);
 const char *trailing_arm_status_subset(const trailing_arm *self);
 const char *trailing_arm_status_state(const trailing_arm *self);
@@ -298,7 +296,7 @@ void trailing_arm_snapshot(const trailing_arm *self, trailing_arm *copy);
 void trailing_arm_restore(trailing_arm *self, const trailing_arm *copy);
 
 /* Measure how well the code satisfies the equations that it was generated from, at the present state.
- * GIC_ERROR_RESIDUAL: not as well as promised; other functions check that too, now and then. */
+ * GIC_ERROR_RESIDUAL: a residual is above its tolerance; steps check this from time to time too. */
 int trailing_arm_self_test(trailing_arm *self, gic_self_test *result);
 
 /* The same functions for programs that handle any model. */

@@ -252,9 +252,10 @@ int gic_road_iso8608_setup(gic_road_grid *road, const gic_iso8608 *profile, gic_
     if (spacing <= GIC_R(0.0) || spacing >= profile->track)
         return GIC_ERROR_ARGUMENT;
 
-    /* White noise integrated once has a density that falls with the square of n. Integrators leak, at wavelengths above
-     * 400 m, or heights would grow with the length of the road. Each track sums two parts: noise of its own, whose
-     * integrator leaks above five track widths already, and what such a one loses of noise common to both. */
+    /* White noise integrated once has a density that falls with the square of n. Integrators leak, at wavelengths
+     * above 400 m, or heights would grow with the length of the road. Each track sums two parts: noise of its own,
+     * whose integrator leaks above five track widths already, and the part of the common noise that such an
+     * integrator loses. */
     const gic_real n0 = GIC_R(0.1), density = GIC_R(16e-6) * (gic_real)(1 << 2 * (profile->road_class - 'A'));
     const gic_real slow = PI * spacing / GIC_R(400.0), fast = PI * spacing / (GIC_R(5.0) * profile->track);
     const gic_real slow_kept = (GIC_R(1.0) - slow) / (GIC_R(1.0) + slow);

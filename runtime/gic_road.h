@@ -103,19 +103,19 @@ int gic_road_grid_check(const gic_road_grid *road);
 
 /* A random road of a class of ISO 8608: along each of two tracks at y = track / 2 and -track / 2 the displacement's
  * spectral density is G(n) = Gd (0.1 / n)^2, n in cycles/m, Gd = 16, 64, 256 ... 1e-6 m^3 for classes A, B, C to H. It
- * holds from wavelengths of 100 m to seven spacings of the profile's points (within 10 percent at both). The tracks
- * are alike in wavelengths far above five times `track` and independent far below. Level and at height 0 up to
- * `start`, rising to full roughness over `fade`; constant behind start + length. */
+ * holds from wavelengths of 100 m to seven spacings of the profile's points (within 10 percent at both). The tracks are
+ * alike in wavelengths far above five times `track` and independent far below. Level and at height 0 up to `start`,
+ * rising to full roughness over `fade`; constant beyond start + length. */
 typedef struct gic_iso8608 {
     char road_class; /* 'A' to 'H' */
     uint64_t seed;
     gic_real start, length, track, fade; /* m; fade may be 0 */
 } gic_iso8608;
 
-/* Fill `height` with 2 x count heights at `count` points a track, length / (count - 1) apart, and `road` with all that
- * it needs, but for friction, of which it has none. Uses sums, products, quotients and roots alone, so that every
- * machine with IEEE arithmetic and without contraction finds the same bits. GIC_ERROR_ARGUMENT when the class is
- * unknown, count < 2, length or track not positive, fade negative, or the spacing not below the track. */
+/* Fill `height` with 2 x count heights at `count` points a track, length / (count - 1) apart, and set up `road`,
+ * without friction. Uses sums, products, quotients and roots alone, so that every machine with IEEE arithmetic and
+ * without contraction finds the same bits. GIC_ERROR_ARGUMENT when the class is unknown, count < 2, length or track not
+ * positive, fade negative, or the spacing not below the track. */
 #define gic_road_iso8608_setup GIC_NAME(gic_road_iso8608_setup)
 int gic_road_iso8608_setup(gic_road_grid *road, const gic_iso8608 *profile, gic_real *height, int32_t count);
 

@@ -10,14 +10,14 @@
 #include <math.h>
 #include <string.h>
 
-/* For people and optimizing compilers: about a line of text. */
+/* For people and optimizing compilers: expressions of about one line. */
 const Style style_readable = {.leaves = 6, .doubles = false, .whole_self_test = true};
 /* For a compiler that keeps no value in a register from one statement to the next, and whose own time counts. */
 const Style style_direct = {.leaves = 30, .doubles = true, .whole_self_test = false};
 /* For vector extensions of C, in which sums and products take numbers beside vectors, and functions do not. */
 const Style style_lanes = {.leaves = 6, .doubles = false, .whole_self_test = false, .lanes = true};
 
-/* Names of types and of functions for one number, for lanes of vehicles, for vectors of so many lanes. */
+/* Names of types and of functions for one number, for lanes of vehicles, for vectors of `width` lanes. */
 static const struct {
     int width;
     const char *real, *function;
@@ -26,7 +26,7 @@ static const struct {
                   {8, "gic_lane_8", "LANE_8"},
                   {16, "gic_lane_16", "LANE_16"}};
 
-/* Of a style without width, or of vectors of so many. */
+/* For a style without width, or for vectors of `width` lanes. */
 static const char *real_name(const Style *style, int width)
 {
     for (size_t i = 0; i < sizeof width_name / sizeof *width_name; ++i)
@@ -71,19 +71,19 @@ typedef struct Emitter {
     const char **title; /* of sections that have begun */
 } Emitter;
 
-/* Lanes of what a node becomes; 0: one number, or one of each vehicle. */
+/* Number of lanes of a node's value; 0: one number, or one of each vehicle. */
 static int width_of(const Emitter *m, Ex e)
 {
     return m->style->width ? m->style->width : m->dag->node[e].wide;
 }
 
-/* Is it a vector, of whatever? */
+/* True for a vector of subsets or of vehicles. */
 static bool is_vector(const Emitter *m, Ex e)
 {
     return m->style->lanes || m->dag->node[e].wide;
 }
 
-/* The functions of vectors of that width begin so. */
+/* Prefix of the functions for vectors of that width. */
 static const char *function_name(int width)
 {
     for (size_t i = 0; i < sizeof width_name / sizeof *width_name; ++i)
@@ -167,7 +167,8 @@ static int constant_slot(Emitter *m, Ex e)
 
 static void write_text(Emitter *m, Text *line, Ex e, int strength);
 
-/* Must a node be spread over the lanes of a vector to be one? Constants of vectors have a number a lane already. */
+/* True if a node is one number that must be spread over the lanes of a vector. Constants of vectors have one number for
+ * each lane already. */
 static bool must_spread(const Emitter *m, Ex e)
 {
     const Node *node = &m->dag->node[e];
@@ -418,7 +419,7 @@ static void write_failure(const Emitter *m, const Check *check, int indent)
         text_print(m->out, "%*sreturn %s;\n", indent, "", status_name(check->status));
 }
 
-/* Some lane of a vector fails: which one? */
+/* Find the lane of a vector that fails. */
 static void write_failures(const Emitter *m, const Check *check, const char *vector)
 {
     if (!check->lane || !is_about(check)) {
@@ -497,7 +498,7 @@ static bool *find_early(Emitter *m)
     return early;
 }
 
-/* Is no other temporary called so, and nothing that the file or its headers define? */
+/* True if no other temporary has this name, nor anything that the file or its headers define. */
 static bool is_free(const Emitter *m, const char *name)
 {
     if (!strncmp(name, own_prefix(m), strlen(own_prefix(m))) || !strchr(name, '_') || strstr(name, "__"))
@@ -565,7 +566,7 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
     }
     for (int i = 0; i < block->stores; ++i)
         plan_temporaries(&m, block->store[i].value);
-    /* a target may be an input of another store: first all values, then all targets */
+    /* a target may be an input of another store, so all values come before all targets */
     for (int i = 0; i < block->stores; ++i) {
         const Ex e = block->store[i].value;
         if (m.planned[e] || block->dag->node[e].level < LEVEL_VARIABLE)

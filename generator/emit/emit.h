@@ -19,16 +19,16 @@ typedef struct Constants {
 
 /* How the text looks. No style changes the order of operations: results are the same to the last bit. */
 typedef struct Style {
-    int leaves;           /* in one expression at most, a function's name counted as one: also bounds its nesting */
-    bool doubles;         /* numbers are plain: 0.5; else of either type: R(0.5) */
-    bool whole_self_test; /* else it measures constraints alone */
-    bool lanes; /* numbers are vectors with one vehicle a lane: a check that fails concerns its lanes, and goes on */
-    int width;  /* with `lanes`: they are vectors of so many, with one subset a lane; 0: with one vehicle a lane */
-    const int *known_stride; /* [knowns] with a width: numbers from one number of a known to the next, each a row of it;
+    int leaves;              /* in one expression at most, a function's name counted as one: also bounds its nesting */
+    bool doubles;            /* literals are doubles: 0.5; else of either number type: R(0.5) */
+    bool whole_self_test;    /* false: the self-test measures constraints alone */
+    bool lanes;              /* numbers are vectors; a check that fails closes its lanes, and the function goes on */
+    int width;               /* with `lanes`: lanes of a vector, with one subset a lane; 0: one vehicle a lane */
+    const int *known_stride; /* [knowns] with a width: from one number of a known to its next, each a row of lanes;
                               * negative: one body is the known of all lanes */
-    bool lane_constants;     /* with `lanes`: constants of members are vectors too, not only numbers of all lanes */
-    const struct Naming *naming; /* indices as enumerators, and temporaries with names; NULL: numbers alone */
-    const char *prefix;          /* of the names of functions and tables that the file defines; NULL: none */
+    bool lane_constants;     /* with `lanes`: constants of members are vectors; false: one number for all lanes */
+    const struct Naming *naming; /* enumerators for indices, names of temporaries; NULL: plain numbers */
+    const char *prefix;          /* prefix of the functions and tables in the file; NULL: none */
 } Style;
 
 extern const Style style_readable, style_direct, style_lanes;
@@ -40,7 +40,8 @@ const char *style_real(const Style *style);
  * expression/schedule.c orders them, checks as soon as their values are there, stores at the end (a target may be read
  * before). Constants met on the way get slots. */
 void block_emit(Text *out, const Block *block, const Style *style, Constants *constants, int indent);
-/* What its checks are about, as far as they are, in order: {status, subset, number of the state}, */
+/* Initializers of the checks that name a subset or a number of the state, in order: {status, subset, number of the
+ * state}, */
 void emit_abouts(Text *out, const Block *block, int indent);
 
 /* ---- template.c: fixed text with insertion points */
@@ -84,14 +85,14 @@ void generate(Pool *pool, const Formulation *f, const Style *style, const char *
 
 /* ---- batch.c: many vehicles at once */
 
-/* So many vehicles, `lanes` of them in each vector. */
+/* Number of vehicles, of which `lanes` share a vector. */
 typedef struct Batch {
     int vehicles, lanes;
 } Batch;
 
-/* What the model has that can't be done in lanes, NULL: nothing. */
+/* The feature of the model that batches do not support, as text; NULL: all are supported. */
 const char *batch_missing(const Formulation *formulation);
-/* The C for many vehicles, and its header, which includes `model_header`, that of one vehicle. */
+/* The C for many vehicles, and its header, which includes `model_header`, the header for one vehicle. */
 void generate_batch(Pool *pool, const Formulation *formulation, const Batch *batch, const char *templates,
                     const char *model_header, const char *header, Text *c, Text *h);
 

@@ -20,21 +20,21 @@ typedef struct Generation {
     const Style *style;
     const char *templates, *header, *upper;
     const char *guard;    /* macro of the header */
-    uint32_t pair;        /* its value, which the C asks for: no half of another pair passes; 0: not known yet */
+    uint32_t pair;        /* its value, which the C checks, so that no other run's header passes; 0: not known yet */
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
     Constants packed;     /* of the equations of motion in lanes */
 } Generation;
 
-/* model_file.c: what g->pair becomes: a number that all of the header gives, by its template and what that needs. */
+/* model_file.c: a checksum of the whole header, for g->pair. */
 uint32_t header_number(const Generation *g, const char *name, const Insertions *points, void *context);
 void write_guard(void *context, Text *out, int indent);
 /* element_text.c: names of numbers in arrays, for code that people read. */
 typedef enum NamingScope {
     SCOPE_WHOLE, /* blocks of the whole vehicle */
-    SCOPE_CLASS, /* of a class of subsets: indices are those within one of them */
+    SCOPE_CLASS, /* of a class of subsets: indices within one subset */
     SCOPE_WHEEL, /* of one wheel */
-    SCOPE_FAST   /* of all fast states: rate[] and acc[] are theirs */
+    SCOPE_FAST   /* of all fast states: rate[] and acc[] are indexed by fast states */
 } NamingScope;
 
 typedef struct Naming {
@@ -42,27 +42,26 @@ typedef struct Naming {
     const char *upper;    /* enumerators begin so */
     const Formula *class; /* of a class's blocks */
     NamingScope scope;
-    /* [bodies], [subsets], [coordinates], [wheels] in capitals; NULL: two are the same, so that all stay numbers */
+    /* [bodies], [subsets], [coordinates], [wheels] names in capitals; NULL: two are equal, so indices stay numbers */
     const char **body, **subset, **coordinate, **wheel;
 } Naming;
 
 const Naming *naming_new(Pool *pool, const Formulation *formulation, const char *upper);
 /* The enumerators that are not in the header: insertion point "layout". */
 void write_layout(void *context, Text *out, int indent);
-/* A coordinate, where the motion of a body or the inertia of a subset begins, and where a wheel's numbers do in an
- * array
- * ("LINK"), by their enumerators. */
+/* Enumerators of a coordinate, of the first number of a body's motion or of a subset's inertia, and of a wheel's first
+ * number in an array ("LINK"). */
 const char *coordinate_text(Pool *pool, const Naming *naming, int coordinate);
 const char *body_motion_text(const Generation *g, int body);
 const char *subset_inertia_text(const Generation *g, int subset);
 const char *wheel_place_text(const Generation *g, const char *array, int wheel, int place);
-/* An input, a state and a subset by their enumerators. */
+/* Enumerators of an input, a state and a subset. */
 const char *input_text(Pool *pool, const Naming *naming, int input);
 const char *state_text(Pool *pool, const Naming *naming, int state);
 const char *subset_text(Pool *pool, const Naming *naming, int subset);
-/* Words as an identifier. */
+/* An identifier made of the words of a text. */
 const char *variable_name(Pool *pool, const char *s);
-/* What a temporary is called that is stored there, NULL: nothing in particular. */
+/* Name of a temporary whose value is stored in this element; NULL: it has no name of its own. */
 const char *element_variable(Pool *pool, const Naming *naming, Element e);
 /* An element of an array as C text, motion[7], with the index as an enumerator where there are names; its address,
  * motion + 7. */
@@ -75,15 +74,15 @@ char *wrap_lines(Pool *pool, const char *text, size_t *size);
 
 /* One line of text. */
 void line(Text *out, int indent, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Elements of an array that would be empty: one. */
+/* Length of an array with `count` elements: at least 1. */
 int room(int count);
-/* Numbers in the state, fast ones too. */
+/* Numbers in the state, slow and fast. */
 int states(const Generation *g);
 /* A string as a C literal; every second question mark is escaped, so that no trigraph arises. */
 const char *quoted(Pool *pool, const char *s);
-/* Capitals, and everything that is no letter or digit an underscore. */
+/* In capitals, with an underscore for everything but letters and digits. */
 const char *capital(Pool *pool, const char *s);
-/* The table `name` of a class's constants, a row a member. */
+/* The table `name` of a class's constants, one row for each member. */
 void write_constants(Generation *g, Text *out, const char *name, const Dag *dag, const Constants *k,
                      const char *const *member);
 /* A line of the table of operations. */
@@ -94,11 +93,11 @@ extern const Insertions code_points;
 /* classes.c: the insertion points of subset.c.in for the class g->class, context: the Generation; all classes. */
 extern const Insertions subset_points;
 void write_classes(void *context, Text *out, int indent);
-/* The constants of that class that text so far refers to. */
+/* The constants of g->class that the text refers to so far. */
 void write_class_constants(Generation *g, Text *out);
-/* Are the members of a class solved side by side? */
+/* True if the members of a class are solved side by side in lanes. */
 bool class_in_lanes(const Generation *g, int class);
-/* How many bodies are followed by Newton's iteration. */
+/* Number of bodies that Newton's iteration recovers. */
 int followed_bodies(const Plan *plan);
 
 /* recovery.c: calls of the subsets' functions, in recover_piece and residual; of those that find reactions;
@@ -108,8 +107,8 @@ void write_recovery_calls(void *context, Text *out, int indent);
 /* C for the change of a coordinate in one piece, m or rad: the difference, or where an angle may have whole turns in it
  * the text `unwinding` with the difference for its %s. */
 const char *change_text(const Generation *g, const char *unwinding, int coordinate);
-/* Lines that take whole turns out of way[], the changes since the start, where one is out of reach with them; lanes: of
- * many vehicles. */
+/* Lines that remove whole turns from way[], the changes since the start, if a change is too large; lanes: for many
+ * vehicles. */
 void write_unwinding(const Generation *g, Text *out, int indent, bool lanes);
 void write_residuals(void *context, Text *out, int indent);
 void write_react_calls(void *context, Text *out, int indent);
@@ -120,67 +119,67 @@ void write_initial(void *context, Text *out, int indent);
 
 /* lanes.c: insertion points of templates of lanes. */
 extern const Insertions lane_class_points, lane_width_points, lane_fold_points;
-/* Of a plan in lanes: vectors; links of subsets side by side; the function of class g->class; its
- * call, where a subset is the first of its row. */
+/* For a plan in lanes: vector types; links of subsets side by side; the function of class g->class; its call, at the
+ * first subset of a row. */
 void write_lane_types(Generation *g, Text *out);
 void write_lane_road(Generation *g, Text *out);
 void write_lane_links(Generation *g, Text *out);
 void write_lane_class(Generation *g, Text *out);
 void write_lane_call(const Generation *g, Text *out, int indent, int subset);
-/* What the equations of motion in lanes need in front of them. */
+/* Definitions that the equations of motion in lanes need. */
 void write_packed(Generation *g, Text *out);
-/* Numbers of one subset as an array without gaps: where they stand, or copied to `room`. */
+/* Numbers of one subset as an array without gaps: in place, or copied to `room`. */
 const char *alone_text(const Generation *g, const char *room, const char *array, const char *offset, int stride,
                        int count);
 
-/* tables.c: what the descriptor points to. */
+/* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);
 
 /* specialized.c: insertion points of checks of assumptions, and of the road. */
 extern const Insertions assumption_points, road_points;
-/* Of code for one scene, nothing of other code but for `condition`. */
+/* For the code of one scene; for other code only write_condition writes text. */
 int conditions(const Generation *g);                          /* texts of conditions and assumptions */
-void write_assumption_texts(Generation *g, Text *out);        /* behind those of conditions */
-void write_narrowing(Generation *g, Text *out);               /* for the comment in front */
+void write_assumption_texts(Generation *g, Text *out);        /* they follow the texts of conditions */
+void write_narrowing(Generation *g, Text *out);               /* for the comment at the head of the file */
 void write_road(Generation *g, Text *out);                    /* the function that looks it up */
 const char *friction_template(const Generation *g);           /* of the function that looks friction up */
 void write_assumptions(void *context, Text *out, int indent); /* the functions that check them */
-void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of it */
-void write_images(void *context, Text *out, int indent);    /* what wheels do whose images are computed */
-void write_condition(void *context, Text *out, int indent); /* which text the last status is about */
+void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of this function */
+void write_images(void *context, Text *out, int indent);    /* copies the numbers of wheels from their mirror images */
+void write_condition(void *context, Text *out, int indent); /* the text that the last status is about */
 
 /* wheels.c, wheel_lanes.c, powertrain.c: insertion points of their templates. */
 extern const Insertions wheels_points, wheel_points, dual_rate_points;
 extern const Insertions wheel_lanes_points, wheel_vector_points;
 extern const Insertions powertrain_points;
 
-/* wheels.c: nothing where no wheel has a tire, but for the end of the descriptor. */
+/* wheels.c: these write nothing if no wheel has a tire, except the end of the descriptor. */
 void write_wheels(void *context, Text *out, int indent); /* functions of the wheels, before the equations of motion */
-void write_wheel_functions(void *context, Text *out, int indent); /* what the descriptor calls */
+void write_wheel_functions(void *context, Text *out, int indent); /* functions for the descriptor */
 void write_dual_rate(void *context, Text *out, int indent);
 void write_wheel_sizes(Generation *g, Text *out, int indent);
 void write_wheel_members(void *context, Text *out, int indent); /* of the instance */
 void wheel_counts(Generation *g, Text *out, const Figures *figures);
 
-/* A block in which rate[] are rates of fast states, of one wheel or of all. */
+/* The statements of a block in which rate[] are rates of fast states, of one wheel or of all. */
 void write_fast_block(const Generation *g, Text *out, const Block *block, NamingScope scope, Constants *constants,
                       int indent);
 
-/* wheel_lanes.c: in how many lanes the wheels of a class are computed, 1: one after another. */
+/* wheel_lanes.c: number of lanes in which the wheels of a class are computed; 1: one after another. */
 int wheel_lanes(const Generation *g, const WheelClass *class);
 /* The types and functions of all widths, before the classes; a class's function with its constants; the calls of it. */
 void write_wheel_vectors(Generation *g, Text *out);
 void write_wheel_class_lanes(Generation *g, Text *out, const WheelClass *class);
 void write_wheel_lane_calls(Generation *g, Text *out, int indent, const WheelClass *class);
-/* What the numbers of a class's arrays are, as a comment. */
+/* The comment that describes the numbers of a class's arrays. */
 void write_wheel_comment(const Generation *g, Text *out, const WheelClass *class);
 /* contact[] of a wheel's function. */
 void write_contact_array(Text *out, int indent, const char *real);
 
-/* powertrain.c: nothing where there is none. */
+/* powertrain.c: these write nothing if the model has no powertrain. */
 void write_powertrain(void *context, Text *out, int indent);  /* its functions, after those of each wheel */
-void write_drive(void *context, Text *out, int indent);       /* the call of them after all wheels */
-void write_shift(Generation *g, Text *out);                   /* what the descriptor calls */
+void write_drive(void *context, Text *out, int indent);       /* their call after all wheels */
+void write_shift(Generation *g, Text *out);                   /* functions for the descriptor */
 void write_start_gears(void *context, Text *out, int indent); /* discrete states at set-up */
 void write_powertrain_sizes(Generation *g, Text *out, int indent);
 void write_powertrain_members(Generation *g, Text *out, int indent); /* of the instance */

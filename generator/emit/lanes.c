@@ -14,7 +14,7 @@
 
 /* ---- types ---------------------------------------------------------------------------------------------------- */
 
-/* A step of adding so many lanes while transposing them. */
+/* One step of a sum over `lanes` lanes that transposes them. */
 typedef struct FoldStep {
     int lanes, step;
 } FoldStep;
@@ -185,7 +185,7 @@ typedef struct LaneRow {
     int index, first, lanes;
 } LaneRow;
 
-/* Subset of a lane; behind the last member once more that. */
+/* Subset of a lane; lanes after the last member repeat it. */
 static const Subset *row_subset(const LaneRow *row, int lane)
 {
     int member = row->first + lane;
@@ -204,7 +204,7 @@ static int known_stride(const LaneRow *row, int lane, int known)
     return row->g->plan->stride[subset];
 }
 
-/* How a row finds a known: as in Style; 0: in a copy of its own. */
+/* Distance between two numbers of a known, as in Style; 0: the row copies them. */
 static int known_reading(const LaneRow *row, int known)
 {
     int stride = known_stride(row, 0, known), offset = known_offset(row, 0, known);
@@ -363,8 +363,7 @@ void write_lane_class(Generation *g, Text *out)
     g->style = usual;
 }
 
-/* ---- calls
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- calls */
 
 /* A number a lane, of an array. */
 static const char *numbers_text(const LaneRow *row, const char *array, const int *place)
@@ -443,7 +442,7 @@ static void write_derived(const LaneRow *row, Text *out, int indent, int count)
     line(out, indent, "row.derived = derived;");
 }
 
-/* The solution is kept where it is for the same numbers; what the start has of it moves on. */
+/* Keep a solution that was for the same numbers; its part of the start is copied to the next start. */
 static void write_kept(const LaneRow *row, Text *out, int indent, int members)
 {
     const Plan *plan = row->g->plan;
@@ -523,8 +522,7 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
     return pool_print(g->pool, "%s_alone(%s, %s + %s, %d, %d)", g->model->name, room, array, offset, stride, count);
 }
 
-/* ---- equations of motion
- * --------------------------------------------------------------------------------------------- */
+/* ---- equations of motion */
 
 void write_packed(Generation *g, Text *out)
 {

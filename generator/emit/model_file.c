@@ -101,8 +101,7 @@ static void write_banner(void *context, Text *out, int indent)
     text_print(out, " */\n");
 }
 
-/* ---- header: sizes and places
- * ---------------------------------------------------------------------------------------- */
+/* ---- header: sizes and places */
 
 int room(int count)
 {

@@ -87,8 +87,8 @@ static void write_same(const Generation *g, Text *out, const Subset *subset)
     text_print(out, "%s%s", all, own.size ? own.s : "");
 }
 
-/* The solution of a subset is kept where it is for the same numbers; what the start has of it moves on. Returns the
- * indent of the other branch. */
+/* Keep a subset's solution that was for the same numbers; its part of the start is copied to the next start. Returns
+ * the indent of the other branch. */
 static int open_kept(Generation *g, Text *out, int indent, const Subset *subset, int s)
 {
     const int offset = g->plan->start_offset[s], numbers = g->plan->formula[subset->class]->layout.start_size;
@@ -213,7 +213,7 @@ void write_residuals(void *context, Text *out, int indent)
     }
 }
 
-/* Against the computational sequence: what a subset puts on others is known before they are asked. */
+/* In reverse computational sequence: the wrenches on a subset are known before it is solved. */
 void write_react_calls(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -244,7 +244,7 @@ void write_react_calls(void *context, Text *out, int indent)
     }
 }
 
-/* How many coordinates from this one on stand one behind the other in the state too, with their rates. */
+/* Number of coordinates from this one on that are consecutive in the state too, with their rates. */
 static int gathered_together(const Generation *g, int first)
 {
     const Plan *plan = g->plan;

@@ -144,7 +144,7 @@ static _Noreturn void fail_unknown(Pool *pool, const Source *source, size_t offs
               "unknown insertion point '@%s@'", name);
 }
 
-/* Where a line of a template begins that has an insertion point, from *line on, or NULL. Moves *line behind it. */
+/* The next line of a template with an insertion point, from *line on, or NULL. Moves *line past it. */
 static const char *next_insertion(Pool *pool, const Source *source, const char **line, size_t *offset)
 {
     const char *const end = source->bytes + source->size;

@@ -82,7 +82,7 @@ typedef struct Expansion {
     Constants constants;
 } Expansion;
 
-/* The wheel of a lane; those behind the last one once more the row's first. */
+/* The wheel of a lane; lanes after the last wheel repeat the row's first one. */
 static int lane_member(const Expansion *x, int row, int lane)
 {
     int member = x->lanes * row + lane;

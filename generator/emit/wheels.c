@@ -21,8 +21,7 @@ void write_fast_block(const Generation *g, Text *out, const Block *block, Naming
     block_emit(out, block, &style, constants, indent);
 }
 
-/* ---- one function a class
- * -------------------------------------------------------------------------------------------- */
+/* ---- one function a class */
 
 /* A class whose template is being expanded. */
 typedef struct Expansion {
@@ -133,8 +132,7 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     }
 }
 
-/* ---- all wheels
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- all wheels */
 
 static void write_calls(void *context, Text *out, int indent)
 {
@@ -214,8 +212,7 @@ void write_wheels(void *context, Text *out, int indent)
         template_expand(g->pool, out, g->templates, "wheels.c.in", g->model->name, NULL, &wheels_points, g);
 }
 
-/* ---- dual rate
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- dual rate */
 
 /* Rows of the table of wheels that roll. */
 static void write_rolling(void *context, Text *out, int indent)

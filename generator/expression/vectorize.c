@@ -67,8 +67,7 @@ static void find_tracks(Packing *p)
     }
 }
 
-/* ---- packs
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- packs */
 
 /* The same number at all times? */
 bool pack_is_fixed(const Packing *p, Ex e)
@@ -200,16 +199,16 @@ static Ex noted(Packing *p, Ex e)
     return e;
 }
 
-/* ---- sums over tracks
- * ------------------------------------------------------------------------------------------------ */
+/* ---- sums over tracks */
 
-/* Is what is added here a sum that takes part with its terms? */
+/* True if an operand of a sum is a sum whose terms are added one by one. */
 static bool is_open(const Packing *p, Ex e)
 {
     return is_sum(&p->from->node[e]) && p->uses[e] == 1 && (p->over[e] || p->from_track[e] >= 0);
 }
 
-/* The terms of a sum over tracks, in order; of one that is used elsewhere too those that it came to. */
+/* The terms of a sum over tracks, in order; a partial sum that is used elsewhere too contributes its own final
+ * terms. */
 static Terms expand(Packing *p, Ex root)
 {
     Terms terms = {0};
@@ -240,7 +239,7 @@ static Ex add_term(Packing *p, Ex sum, Term term)
     return noted(p, term.minus ? ex_sub(p->dag, sum, term.e) : ex_add(p->dag, sum, term.e));
 }
 
-/* A term of one track, as it is sorted: those of one pack together. */
+/* A term of one track; sorting brings the terms of one pack together. */
 typedef struct Lane {
     int group, track, place;
     Term term;
@@ -344,8 +343,7 @@ static void make_sum(Packing *p, Ex e)
     p->same[e] = sum;
 }
 
-/* ---- from graph to graph
- * ------------------------------------------------------------------------------------------------ */
+/* ---- from graph to graph */
 
 Ex pack_apply(Dag *dag, const Node *node, Ex a, Ex b, Ex c)
 {
@@ -394,10 +392,9 @@ static void make_dag(Packing *p)
     }
 }
 
-/* ---- vectors
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- vectors */
 
-/* Worth a vector: several members, and where lanes are left over nothing that takes long or may fail there. */
+/* A vector pays for several members; with unused lanes only for operations that are quick and cannot fail in them. */
 static void find_usable(Packing *p)
 {
     static const bool harmless[OP_COUNT] = {[OP_INPUT] = true, [OP_NEG] = true, [OP_ADD] = true, [OP_SUB] = true,
@@ -412,8 +409,7 @@ static void find_usable(Packing *p)
     }
 }
 
-/* ---- the block
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- the block */
 
 static bool is_alike(const Check *a, const Check *b)
 {
@@ -421,8 +417,8 @@ static bool is_alike(const Check *a, const Check *b)
            a->condition == b->condition;
 }
 
-/* A pack is checked in all lanes at once: the checks of its members that are alike to one of them. NULL where one of
- * them has none. */
+/* The checks of a pack's members that are like `wanted`, one in each lane, so that all lanes are checked at once. NULL
+ * if a member has no such check. */
 static const Check *const *checks_of_group(const Packing *p, const Group *group, const Check *wanted)
 {
     const Check **check = pool_alloc(p->pool, (size_t)p->lanes * sizeof *check);
@@ -461,7 +457,7 @@ Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int in
                  .same = pool_alloc(pool, nodes * sizeof(Ex)),
                  .terms = pool_alloc(pool, nodes * sizeof(Terms))};
     for (int i = 0; i < roots; ++i)
-        ++p.uses[root[i]], ++p.uses[root[i]]; /* what is asked for is there by itself */
+        ++p.uses[root[i]], ++p.uses[root[i]]; /* roots have values of their own */
     find_tracks(&p);
     make_dag(&p);
     find_usable(&p);

@@ -16,14 +16,14 @@ typedef struct LaneInput {
     double value;
 } LaneInput;
 
-/* vectorize_sums.c: which sums over lanes are made together: [sums] groups, -1: alone. order [wanted]: those that may
- * be, in the order in which they are needed. depth [sums]: how many others, one behind the other, a sum comes after;
- * sums of one depth don't wait for each other. */
+/* vectorize_sums.c: group the sums over lanes that are added together. Returns [sums] group of each, -1: alone. order
+ * [wanted]: sums that may be grouped, in the order in which they are needed. depth [sums]: length of the longest chain
+ * of sums that a sum depends on; sums of one depth do not depend on each other. */
 int *fold_groups(Pool *pool, int sums, int wanted, const int *order, const int *depth, int lanes);
-/* The sums over the lanes of so many vectors, one in each lane; behind them the last one again. */
+/* The sums over the lanes of `count` vectors, one sum in each lane; further lanes repeat the last one. */
 Ex fold(Dag *dag, const Ex *vector, int count);
 
-/* The same block with vectors of so many lanes for what it does alike to several tracks. */
+/* The block with operations that are alike in several tracks packed into vectors of `lanes` lanes. */
 Block *block_pack(Pool *pool, const Block *block, const LaneInput *input, int inputs, int lanes);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Lane packing, from packs to vectors: the graph in which a pack that is worth it is one vector, whatever else is
- * needed is a number, and what one needs of the other is taken out of its lane, added up over lanes or set together. */
+ * Lane packing, from packs to vectors. In the graph that is built here profitable packs become vectors and everything
+ * else stays scalar; extract, reduce and insert nodes connect the two. */
 #include "base/base.h"
 #include "base/plant.h"
 #include "expression/expression.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The same number at all times, be it of one track? */
+/* True if the node has the same value at all times, in its track or everywhere. */
 static bool is_known(const Packing *p, Ex e)
 {
     const Node *node = &p->dag->node[e];

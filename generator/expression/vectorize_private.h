@@ -8,7 +8,7 @@
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 
-/* What an operand is, the same in all tracks of a pack: a pack; a number; any literal or parameter; a node's index. */
+/* Kind of an operand, the same in all tracks of a pack: a pack; a number; any literal or parameter; a node's index. */
 typedef enum Kind { KIND_NONE, KIND_PACK, KIND_NUMBER, KIND_ANY, KIND_INDEX } Kind;
 
 typedef struct Operand {
@@ -16,7 +16,7 @@ typedef struct Operand {
     uint32_t which;
 } Operand;
 
-/* Nodes of one shape, met again and again in one track: the first of every track are a group, the second, ... */
+/* Nodes of one shape. The first such node of every track make one group, the second ones the next group, and so on. */
 typedef struct Shape {
     uint64_t input; /* colour of an input, else 0 */
     Op op;
@@ -45,7 +45,7 @@ typedef struct Terms {
     Term *term;
 } Terms;
 
-/* The sum of what stands in several lanes. */
+/* The sum of numbers in several lanes. */
 typedef struct LaneSum {
     Ex node;  /* an input that stands for it */
     Ex *part; /* [lanes] 0: none */
@@ -79,22 +79,20 @@ typedef struct Packing {
     bool *number_made, *vector_made;
 } Packing;
 
-/* What is known about an input: that it belongs to a track, or is fixed; NULL: neither. */
+/* The entry of an input that belongs to a track or is fixed; NULL: neither. */
 const LaneInput *pack_input(const Packing *p, const Node *node);
-/* Is a node of p->dag the same number at all times? */
+/* True if a node of p->dag has the same value at all times. */
 bool pack_is_fixed(const Packing *p, Ex e);
 /* The operation of `node`, which may be of another graph, on these operands of `dag`. */
 Ex pack_apply(Dag *dag, const Node *node, Ex a, Ex b, Ex c);
 
-/* ---- vectorize_build.c, once all packs are known
- * ----------------------------------------------------------------------
- */
+/* ---- vectorize_build.c, once all packs are known */
 
-/* Which sums over lanes are made together: p->fold. */
+/* Set p->fold: the sums over lanes that are added together. */
 void pack_find_folds(Packing *p);
-/* A graph for the result, p->out, in which nothing is yet. */
+/* Make the graph of the result, p->out, empty. */
 void pack_begin(Packing *p);
-/* The number in p->out that a node of p->from came to, with all that it needs. */
+/* Make the number in p->out that corresponds to a node of p->from, with all nodes that it needs. */
 Ex pack_number(Packing *p, Ex from);
 
 #endif

@@ -13,7 +13,7 @@ int *fold_groups(Pool *pool, int sums, int wanted, const int *order, const int *
         group[i] = -1;
     for (int i = 0; i < wanted; ++i)
         most = depth[order[i]] > most ? depth[order[i]] : most;
-    /* what a sum of one group is needed for may be needed for a sum of a greater depth only */
+    /* results of one group enter only sums of greater depth */
     for (int d = 0; d <= most; ++d)
         for (int i = 0; i < wanted;) {
             int member[lanes], count = 0;

@@ -2,6 +2,7 @@
  * Screws of joints, their rank, and a walk along a motion that the joints allow. */
 #include "base/base.h"
 #include "model/model.h"
+#include "sequence/rank.h"
 #include "sequence/screws.h"
 
 #include <math.h>
@@ -151,36 +152,6 @@ static int put_rows(const Relax *relax, const Link *link, const Pose3 *place, do
     return rows.count;
 }
 
-/* Rank of A [rows][n], which is overwritten; *least: its smallest pivot. */
-static int rank_of(int rows, int n, double *A, double *least)
-{
-    bool used[n + 1];
-    memset(used, 0, sizeof used);
-    *least = 1;
-    for (int k = 0; k < rows && k < n; ++k) {
-        int row = -1, column = -1;
-        double largest = rank_zero;
-        for (int i = k; i < rows; ++i)
-            for (int j = 0; j < n; ++j)
-                if (!used[j] && fabs(A[n * i + j]) > largest)
-                    largest = fabs(A[n * i + j]), row = i, column = j;
-        if (row < 0)
-            return k;
-        *least = fmin(*least, largest);
-        used[column] = true;
-        for (int j = 0; row != k && j < n; ++j) {
-            const double swap = A[n * k + j];
-            A[n * k + j] = A[n * row + j], A[n * row + j] = swap;
-        }
-        for (int i = k + 1; i < rows; ++i) {
-            const double factor = A[n * i + column] / A[n * k + column];
-            for (int j = 0; factor != 0 && j < n; ++j)
-                A[n * i + j] -= factor * A[n * k + j];
-        }
-    }
-    return rows < n ? rows : n;
-}
-
 int screws_rank(const Relax *relax, int configuration, int count, int without, const Link *other, double *least)
 {
     const Pose3 *place = relax->place + configuration * relax->bodies;
@@ -190,7 +161,7 @@ int screws_rank(const Relax *relax, int configuration, int count, int without, c
             rows += put_rows(relax, &relax->link[i], place, relax->A + relax->n * rows, NULL);
     if (other)
         rows += put_rows(relax, other, place, relax->A + relax->n * rows, NULL);
-    return rank_of(rows, relax->n, relax->A, least);
+    return matrix_rank(rows, relax->n, rank_zero, relax->A, NULL, least);
 }
 
 /* ---- configurations -------------------------------------------------------------------------------------- */

@@ -40,7 +40,7 @@ static void keep_wanted(Pool *pool, Model *model, const bool *wanted)
     model->outputs = outputs;
 }
 
-/* Are geometric parameters what they are in the file, where the model's numbers are? */
+/* True if geometric parameters have the values of the file, which the model's numbers are for. */
 static bool keeps_geometry(const Model *model, const double *parameter)
 {
     for (int i = 0; i < model->parameters; ++i)
@@ -128,7 +128,7 @@ static const char *split_name(Pool *pool, const Sequence *sequence, const char *
     }
 }
 
-/* Leave in class c the members that are like its first, and make a class of the others, behind all. */
+/* Keep in class c the members that are like its first one; the others become a new class after all others. */
 static void split_class(Narrower *n, Sequence *sequence, int c)
 {
     Class *class = &sequence->class[c];
@@ -267,7 +267,7 @@ static void narrow_class(Narrower *n, int c)
     remember(n, class, formula);
 }
 
-/* In computational order, so that what a class hands on is known before it is read. */
+/* In computational order, so that the constants of a class are known before another class reads them. */
 static void narrow_subsets(Narrower *n)
 {
     const Sequence *sequence = n->plan->sequence;
@@ -324,7 +324,7 @@ static void give_ports(Narrower *n)
     }
 }
 
-/* What holds for all of the model, as the whole's graphs read it. */
+/* Known numbers of the whole model, as graphs of the whole vehicle read them. */
 static void give_whole(Narrower *n)
 {
     const Model *model = n->model;
@@ -362,7 +362,7 @@ static void give_whole(Narrower *n)
                "self->head.road != NULL");
 }
 
-/* What subsets hand on as constants. */
+/* Known constants among the results of subsets. */
 static void give_subsets(Narrower *n)
 {
     for (int i = 0; i < n->plan->motion_size; ++i)
@@ -383,8 +383,7 @@ static const Block *narrow_block(Narrower *n, const Givens *givens, const Block 
     return out;
 }
 
-/* ---- wheels with tires, powertrain
- * ------------------------------------------------------------------------------------ */
+/* ---- wheels with tires, powertrain */
 
 static const Store *store_of(const Block *block, Element target)
 {
@@ -423,7 +422,7 @@ static void narrow_wheel_class(Narrower *n, const Block *torque, WheelClass *cla
     class->balance = partial_block(&p, &class->balance);
 }
 
-/* What a powertrain does to a wheel whose image is computed comes with the image. */
+/* Drop the powertrain's stores for wheels whose numbers are copied from their mirror images. */
 static void drop_images(Narrower *n, Block *drive)
 {
     int stores = 0;
@@ -443,7 +442,7 @@ static void drop_images(Narrower *n, Block *drive)
     drive->stores = stores;
 }
 
-/* What nobody sees of a powertrain that drives nothing stands still. */
+/* In neutral, powertrain states that no output shows are frozen. */
 static void rest_powertrain(Narrower *n, Block *drive)
 {
     const int speed = n->model->powertrain->fast + POWERTRAIN_SPEED;
@@ -510,7 +509,8 @@ static void mark_inertia(const Block *block, bool *read)
     }
 }
 
-/* What subsets would add to equations that are not there: of odd unknowns, of coordinates that stand still. */
+/* Drop the terms of subsets in equations that were removed: those of odd unknowns and of coordinates that stand
+ * still. */
 static void drop_inertia(Narrower *n)
 {
     const Formulation *f = n->out;
@@ -535,7 +535,7 @@ static void drop_inertia(Narrower *n)
     }
 }
 
-/* What functions and tables emitted code still needs. */
+/* Find the functions and tables that emitted code still needs. */
 static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
@@ -607,12 +607,12 @@ static const Mirror *find_mirror(Narrower *n, Solve solve)
     return *why ? NULL : mirror;
 }
 
-/* NULL: the sides are no images. */
+/* NULL: the sides are not mirror images. */
 static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve solve, Recovery recovery)
 {
     n->whole = givens_new(n->pool);
     n->fast = givens_new(n->pool);
-    /* what a scene holds still is told by the coordinates that a body depends on, all the way to the base */
+    /* constant motions are found from all coordinates between a body and the base, which the reduced form has */
     n->general = formulate(n->pool, n->model, split_classes(n, sequence),
                            solve == SOLVE_AUGMENTED ? solve : SOLVE_REDUCED, recovery);
     const Plan *plan = n->general->plan;
@@ -645,7 +645,7 @@ static const Formulation *narrow(Narrower *n, const Sequence *sequence, Solve so
 const Formulation *formulate_narrow(Pool *pool, const Model *model, const Sequence *sequence, Solve solve,
                                     Recovery recovery, const Facts *facts)
 {
-    /* what a scene saves is nothing against what a chain does */
+    /* for a chain the articulated form saves more than a scene does */
     if (!facts || formulation_chains(pool, model, sequence, solve))
         return formulate(pool, model, sequence, solve, recovery);
     Narrower n = {.pool = pool, .facts = facts, .model = narrow_model(pool, model, facts)};

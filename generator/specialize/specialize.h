@@ -18,13 +18,13 @@
 
 /* The model with its base held where its body frame is at `position` and `euler`, world. */
 const Model *model_hold(Pool *pool, const Model *model, const double position[3], const double euler[4]);
-/* The model with these free coordinates driven, by inputs behind those that it has. */
+/* The model with these free coordinates driven, by inputs that follow its own. */
 const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, int count);
 
 /* ---- massless.c: light bodies without mass, an approximation; without a tuning */
 
-/* The model in which bodies of less than `below` kg have neither mass nor inertia. *names: which, in a list for people;
- * NULL: none. */
+/* The model in which bodies of less than `below` kg have neither mass nor inertia. *names: their names as a text for
+ * messages; NULL: there are no such bodies. */
 const Model *model_lighten(Pool *pool, const Model *model, double below, const char **names);
 /* The largest part of its kinetic energy that a motion of the free coordinates loses by that, base and driven
  * coordinates held, at the design and some configurations in the coordinates' ranges. 1: a motion is left without
@@ -33,8 +33,8 @@ double model_lost(Pool *pool, const Model *model, double below);
 
 /* ---- partial_evaluation.c: blocks with some of their inputs known */
 
-/* What stands for an input of a graph, numbers, one for each member of the graph's class; or another
- * input or its opposite. */
+/* Replacement of an input of a graph: numbers, one for each member of the graph's class; or another input or its
+ * opposite. */
 typedef struct Given {
     Element input;       /* ARRAY_none: the slot is free */
     const double *value; /* [members], or one where `alike`; NULL: `other` */
@@ -61,7 +61,7 @@ typedef struct Partial {
     Dag *to;
     const Givens *givens;
     const Plane *plane; /* NULL: the road is looked up */
-    bool across;        /* it is looked up once for both sides, and level from one to the other */
+    bool across;        /* the road is looked up once for both sides, and has no slope from one to the other */
     const Model *model;
     Normal *normal; /* of `to`, NULL: not needed yet */
     Ex *made;       /* [nodes of from] 1 + the node of `to`, 0: not yet */
@@ -71,13 +71,13 @@ Partial partial_new(Pool *pool, const Dag *from, const Givens *givens, const Pla
                     const Model *model);
 /* The block with what is given folded in. Checks that constants satisfy are dropped. */
 Block partial_block(Partial *partial, const Block *block);
-/* Does any value of the block need an operation of this kind? */
+/* True if a value of the block needs an operation of this kind. */
 bool block_uses(const Block *block, Op op);
 
 /* ---- specialize.c: a model's formulas for one scene */
 
-/* specialize_mirror.c: what a mirror makes of a wheel's fast state, of a number of its grip[] (but the contact point's
- * y): its sign. */
+/* specialize_mirror.c: sign, 1 or -1, that the mirror gives a wheel's fast state or a number of its grip[] (except the
+ * contact point's y). */
 double wheel_fast_sign(int state);
 double wheel_grip_sign(int number);
 

@@ -30,24 +30,20 @@ typedef struct Narrower {
 void *narrow_copy(Pool *pool, const void *array, size_t count, size_t size);
 void narrow_assume(Narrower *n, AssumptionAbout about, const char *text, const char *broken);
 
-/* ---- specialize_mirror.c: one side for both
- * ---------------------------------------------------------------------------
- */
+/* ---- specialize_mirror.c: one side for both */
 
 /* Why subsets and reference points of one side are not the images of the other's; NULL: they are. */
 const char *narrow_unpaired(const Narrower *n);
-/* What is taken for granted, and which numbers are images of which; of paired subsets. */
+/* Add the assumptions of mirror symmetry, and the relations between the numbers of paired subsets. */
 void narrow_mirror(Narrower *n);
-/* Let number `at` of an array be sign times number `of`; of itself: 0 where that is negative. */
+/* Let number `at` of an array be sign times number `of`; with of == at and a negative sign it is 0. */
 void narrow_give(Givens *givens, Array array, int at, int of, double sign);
-/* Which accelerations are images of which. */
+/* The accelerations that are mirror images of others. */
 Reduction *narrow_reduction(Narrower *n);
 /* The equations of motion in the unknowns of one side and the middle. */
 const Block *narrow_dynamics(Narrower *n);
 
-/* ---- specialize_even.c: proof that both sides have the same formulas
- * --------------------------------------------------
- */
+/* ---- specialize_even.c: proof that both sides have the same formulas */
 
 /* Why a symmetric state may not stay one: forces, tires or torques that are not proved to be mirror images at every
  * symmetric state and time; NULL: they are. */

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "sequence/rank.h"
 #include "sequence/redundant.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
@@ -32,47 +33,11 @@ static void scaled_jacobian(const Work *w, int sample, bool transposed, double *
     }
 }
 
-/* Elimination with full pivoting of A [n][n]; combination [n][n]: each remaining row as a combination of rows of A.
- * Returns the rank; rows from there on are zero. */
-static int eliminate(int n, double *A, double *combination)
-{
-    memset(combination, 0, (size_t)(n * n) * sizeof *combination);
-    for (int i = 0; i < n; ++i)
-        combination[n * i + i] = 1;
-    bool used[n];
-    memset(used, 0, sizeof used);
-    for (int k = 0; k < n; ++k) {
-        int row = -1, column = -1;
-        double largest = rank_zero;
-        for (int i = k; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                if (!used[j] && fabs(A[n * i + j]) > largest)
-                    largest = fabs(A[n * i + j]), row = i, column = j;
-        if (row < 0)
-            return k;
-        used[column] = true;
-        for (int j = 0; j < n; ++j) {
-            double t = A[n * k + j];
-            A[n * k + j] = A[n * row + j], A[n * row + j] = t;
-            t = combination[n * k + j];
-            combination[n * k + j] = combination[n * row + j], combination[n * row + j] = t;
-        }
-        for (int i = k + 1; i < n; ++i) {
-            double factor = A[n * i + column] / A[n * k + column];
-            for (int j = 0; factor != 0 && j < n; ++j) {
-                A[n * i + j] -= factor * A[n * k + j];
-                combination[n * i + j] -= factor * combination[n * k + j];
-            }
-        }
-    }
-    return n;
-}
-
 static int rank_at(const Work *w, int sample)
 {
-    double A[w->n * w->n], combination[w->n * w->n];
+    double A[w->n * w->n];
     scaled_jacobian(w, sample, false, A);
-    return eliminate(w->n, A, combination);
+    return matrix_rank(w->n, w->n, rank_zero, A, NULL, NULL);
 }
 
 /* Unknowns that can move while all equations hold: the null space of J, summed up [n]. Returns the rank. */
@@ -81,7 +46,7 @@ static int free_motion(const Work *w, int sample, double *motion)
     int n = w->n;
     double A[n * n], combination[n * n];
     scaled_jacobian(w, sample, true, A);
-    int rank = eliminate(n, A, combination);
+    int rank = matrix_rank(n, n, rank_zero, A, combination, NULL);
     memset(motion, 0, (size_t)n * sizeof *motion);
     for (int i = rank; i < n; ++i)
         for (int j = 0; j < n; ++j)
@@ -95,7 +60,7 @@ static void involved(const Work *w, int sample, bool transposed, bool *part)
     int n = w->n;
     double A[n * n], combination[n * n];
     scaled_jacobian(w, sample, transposed, A);
-    int rank = eliminate(n, A, combination);
+    int rank = matrix_rank(n, n, rank_zero, A, combination, NULL);
     memset(part, 0, (size_t)n * sizeof *part);
     for (int i = rank; i < n; ++i) {
         double largest = 0;

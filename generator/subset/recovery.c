@@ -255,8 +255,7 @@ static Factors *factor(Work *w)
               "the equations of body '%s' are too near to singular", w->model->body[w->first->body[0]].name);
 }
 
-/* ---- blocks
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- blocks */
 
 /* q moved by a twist: linear in the step, normalized to second order, so that repeated corrections converge to unit
  * length. */

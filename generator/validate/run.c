@@ -372,9 +372,7 @@ static void recover(Run *run)
     find_residual(run);
 }
 
-/* ---- wheels with tires
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- wheels with tires */
 
 static void play_wheel(Run *run, int class, int member, int wheel)
 {

@@ -276,9 +276,7 @@ static void place_inputs(const Validator *v, Random *random, int index, int k)
     }
 }
 
-/* ---- states of a scene
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- states of a scene */
 
 static void place_scene_inputs(const Validator *v, Random *random, int index, int k)
 {

@@ -276,9 +276,7 @@ static void compare_columns(Comparison *c, int first)
         run_follow(c->scene, held, compare_corrections, c);
 }
 
-/* ---- other values of geometric parameters
- * -----------------------------------------------------------------------------
- */
+/* ---- other values of geometric parameters */
 
 /* Set the model's numbers for these parameters. False: they are impossible. */
 static bool tune(const Model *model, const double *parameter)

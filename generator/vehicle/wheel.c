@@ -365,8 +365,7 @@ static void classes_find(Pool *pool, const Model *model, Wheels *wheels)
         class_build(pool, model, &wheels->class[c]);
 }
 
-/* ---- what moves wheels, and turns them
- * ------------------------------------------------------------------------------- */
+/* ---- what moves wheels, and turns them */
 
 /* Add the free coordinates that a formula reads to link[]. */
 static void link_coordinates(Linking *l, const Law *law)

@@ -22,8 +22,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Factors of Phi_u outlive an evaluation. Each of the instances in use has its own, so that what is asked of one leaves
- * no trace in another: a run, and the copy of it that computes outputs. */
+/* Factors of Phi_u are kept from one evaluation to the next. Each instance in use has its own, so that calls on one
+ * (the copy that computes outputs) do not change another (the run). */
 enum { SHARES = 2 };
 
 typedef struct Share {
@@ -44,7 +44,7 @@ typedef struct Gcp {
     double *b; /* [rows of the partition] */
 } Gcp;
 
-/* What an instance remembers. */
+/* Numbers that an instance keeps. */
 typedef struct Memory {
     double *chosen;  /* [columns] of its partition */
     double *usual;   /* of its partition; 0: none was ever chosen, for set-up failed */
@@ -92,7 +92,7 @@ static bool refactor(World *world, Partition *partition, EngineProfile *profile)
     return good;
 }
 
-/* Phi at the present q, normalizations (p^T p - 1) / 2 behind it. */
+/* Phi at the present q, followed by the normalizations (p^T p - 1) / 2. */
 static void find_values(World *world, double *b)
 {
     for (int t = 0; t < world->constraints; ++t)

@@ -110,8 +110,8 @@ static double correct(World *world, const Part *part, const double *b)
     return fmax(linear / part->size, angular);
 }
 
-/* Corrections with the old factors until what a further one would change is below `enough`. turn: how far these
- * factors' directions are from the present ones. */
+/* Corrections with the old factors until a further one would be below `enough`. turn: how far these factors' directions
+ * are from the present ones. */
 static int follow(const Interpreted *context, Instance *self, const Part *part, double *old, double turn, double enough)
 {
     World *world = context->world;

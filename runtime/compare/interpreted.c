@@ -180,7 +180,7 @@ static void load(const Instance *self, double time)
     world->gear = gear_of(self);
 }
 
-/* Are the gears some that the transmission has? */
+/* True if the transmission has these gears. */
 static bool gears_exist(const Instance *self)
 {
     const Powertrain *powertrain = context_of(self)->world->model->powertrain;

@@ -21,14 +21,14 @@ typedef struct Interpreted {
     size_t own_offset;  /* bytes; before it the tunable parameters as set-up was given them */
     size_t setup_offset;
     struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
-    /* design: NULL where an engine knows the geometry of the file alone. The World's numbers are new, and its bodies
-     * stand where they were drawn, or at the solution for numbers nearby. Find the design configuration, and what the
-     * engine derives from it; the World is left there. */
+    /* design: find the design configuration after the World's numbers have changed, and the engine's numbers that
+     * follow from it. On entry bodies are where they were drawn, or at the solution for similar numbers; on return the
+     * World is at the design. NULL: the engine has only the geometry of the file. */
     int (*design)(const struct Interpreted *context, Instance *self);
     /* start: the engine's numbers at setup, where `state`, `input` and `parameter` of the instance have their initial
      * values. place: bodies and coordinates of the World, with their rates, at a slow state. evaluate: World and rate[]
      * of a slow state. For both the instance's inputs are loaded, for evaluate fast states too. All return a status and
-     * may set head.subset. What the engine remembers changes only to what is good at some configuration on the way. */
+     * may set head.subset. The engine stores only starts that are good at some configuration on the way. */
     int (*start)(const struct Interpreted *context, Instance *self);
     int (*place)(const struct Interpreted *context, Instance *self, const double *state);
     int (*evaluate)(const struct Interpreted *context, Instance *self, const double *state, double *rate);
@@ -38,7 +38,8 @@ typedef struct Interpreted {
 /* A context with descriptor for an assembled model. own: how many numbers of its own an instance has. */
 Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *sequence, size_t own);
 Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *context);
-/* State and rate of FORMAT.md section 10 from the World, fast states behind; e of the base is its p. */
+/* State and rate of FORMAT.md section 10 from the World, without the fast states, which follow there; e of the base is
+ * its p. */
 void interpreted_standard(const Interpreted *context, double *standard, double *rate);
 double *instance_own(const Instance *self);
 /* For functions of gic_model. load: World's time, inputs and what else it starts from, after a look at whether all

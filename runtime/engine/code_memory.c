@@ -31,7 +31,7 @@ typedef struct Graph {
     const char *runtime; /* its text */
 } Graph;
 
-/* The name in a text in quotes behind `key`: "model.c:name.part.0" is of `name`. NULL: the key is not there. */
+/* The name in the quoted text after `key`: `name` for "model.c:name.part.0". NULL: the key is not there. */
 static const char *quoted_name(Pool *pool, const char *line, const char *key)
 {
     const char *at = strstr(line, key);
@@ -63,7 +63,7 @@ static Graph graph_read(Pool *pool, const char *text, const char *any)
     return g;
 }
 
-/* Is the function called through the descriptor by the runtime? */
+/* True if the runtime calls the function through the descriptor. */
 static bool is_pointed(const Graph *g, const char *name)
 {
     const size_t length = strlen(g->any);
@@ -113,7 +113,7 @@ static void ask_constants(Text *probe, const char *code, const char *numbers)
     }
 }
 
-/* Adds up what the assembly says. */
+/* Sums of the sizes in the assembly. */
 static void answers_read(const char *assembly, CodeMemory *memory, int real)
 {
     for (const char *at = assembly; (at = strstr(at, mark)) != NULL;) {

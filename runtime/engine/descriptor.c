@@ -138,7 +138,7 @@ static void set_names(Pool *pool, const Model *model, const Sequence *sequence, 
     code->body_name = body;
 }
 
-/* Arrays one behind another. */
+/* Arrays one after another. */
 static void place_arrays(gic_model *code)
 {
     const size_t states = (size_t)(code->slow_count + code->fast_count);

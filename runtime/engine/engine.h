@@ -111,7 +111,7 @@ double *instance_array(gic_head *self, size_t offset);
 
 /* The default command: $CC or cc. */
 const char *compiler_default(void);
-/* Our options of the compiler, behind the command's and before the user's. */
+/* Compiler options that the programs add, after those in the command and before the user's. */
 extern const char build_flags[];
 /* The words of command, our options (build_flags for code that is loaded) and the user's, split at blanks. */
 const char **compiler_words(Pool *pool, const char *compiler, const char *ours, const char *flags, int *count);
@@ -130,8 +130,8 @@ const char *compiler_identity(Pool *pool, const char *const *words, int count);
 
 /* engine_cc.c: generated code, compiled or taken from the cache, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
-/* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, behind build_flags. NULL: can't
- * be had, *why. */
+/* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, after build_flags. NULL: not
+ * available, *why says the reason. */
 const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *options, const Batch *batch,
                            const char *flags, const gic_batch_model **many, const char **why);
 /* code_memory.c: what emitted code of a model, its header called <model>.h if it has a name, takes in memory. Asks

@@ -18,8 +18,8 @@
 const char *cache_folder(Pool *pool, const char **why);
 /* A key for the texts that determine an object; the list ends with NULL. */
 const char *cache_key(Pool *pool, const char *const *text);
-/* The path of a kept object, or NULL. The seal tells damage, not forgery: an object that somebody else owns or may
- * write is none, nor is a link; like a damaged one it is removed. */
+/* The path of a kept object, or NULL. The seal tells damage, not forgery: an object that another user owns or may
+ * write, or a link, is not used; like a damaged one it is removed. */
 const char *cache_find(Pool *pool, const char *folder, const char *key);
 /* Keep a copy of the object at `path`, then drop what exceeds `most` bytes. False, with errno, where that can't be. */
 bool cache_keep(Pool *pool, const char *folder, const char *key, const char *path, int64_t most);

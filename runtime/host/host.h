@@ -7,7 +7,7 @@
 #include "base/base.h"
 #include "gic_runtime.h"
 
-/* ---- usage.c: a command line that is none */
+/* ---- usage.c: errors in the command line */
 
 /* Print `program: error: message 'word'` and where to find help; exit status 2. word may be NULL. */
 _Noreturn void usage_fail(const char *program, const char *message, const char *word);
@@ -123,7 +123,7 @@ const char *unit_quantity(const char *unit);
 const char *quantity_text(Pool *pool, const char *unit);
 /* Exit with a message if gnuplot is missing; call before the run that the picture is of. */
 void plot_check(Pool *pool);
-/* For scripts of gnuplot: a text in quotes, with a blank in front of a `>` behind `]]`. */
+/* For scripts of gnuplot: a text in quotes, with a blank between `]]` and a `>`. */
 void plot_text(Text *text, const char *s);
 
 enum { PLOT_NO_FILE = -3 /* beside the values of process_run */ };

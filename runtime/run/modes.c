@@ -149,8 +149,8 @@ static void expand(const Deflation *d, const Spectrum *s, size_t k, gsl_vector *
 }
 
 /* Participation of every number in a mode: |left_i right_i|, which knows no units, summed over places and their rates,
- * relative to the sum. A left eigenvector has nothing neutral in it; a right one gets what it has of that from A, once
- * a layer. */
+ * relative to the sum. Left eigenvectors have no components along neutral directions; those of a right eigenvector
+ * follow from A, one Jordan layer at a time. */
 static void find_shares(const Linear *linear, const gsl_matrix *A, const Deflation *d, const Spectrum *right, size_t k,
                         const Spectrum *left, double *share)
 {

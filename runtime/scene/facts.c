@@ -237,8 +237,7 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     return facts;
 }
 
-/* ---- the scene, for such code
- * ----------------------------------------------------------------------------------------- */
+/* ---- the scene, for such code */
 
 /* -1: code for the scene does not compute it. */
 static int signal_place(const Scene *scene, int i, const gic_model *code, int outputs)

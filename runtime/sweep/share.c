@@ -34,7 +34,7 @@ typedef struct Worker {
     int pipe;   /* -1: it is finished, */
     int status; /* as waitpid() says */
     int said;   /* its standard error: what ends all of them is told once */
-    Text heard; /* what came and is no whole parcel yet */
+    Text heard; /* bytes of a parcel that is not complete */
 } Worker;
 
 int share_processes(void)
@@ -82,7 +82,7 @@ static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
 /* ---- whom they work for -------------------------------------------------------------------------------------------
  */
 
-/* One more than there are. False: there is no process to be had. */
+/* Start one more process. False: the system starts no more. */
 static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker *all, size_t workers)
 {
     Worker *worker = &all[workers];
@@ -113,7 +113,8 @@ static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker
     return worker->process > 0;
 }
 
-/* The results among what a worker has sent: whole parcels, whose texts stay where they are. Returns how many. */
+/* Take the complete parcels from the bytes that a worker has sent; texts of results point into them. Returns their
+ * number. */
 static int open_parcels(Pool *pool, Worker *worker, Result **result, int results)
 {
     const Text heard = worker->heard;
@@ -134,7 +135,7 @@ static int open_parcels(Pool *pool, Worker *worker, Result **result, int results
     return results;
 }
 
-/* What has come from a worker, if anything; or it has ended. */
+/* Read the bytes that have come from a worker, or notice its end. */
 static void hear(Worker *worker)
 {
     char bytes[65536];
@@ -149,7 +150,7 @@ static void hear(Worker *worker)
         ;
 }
 
-/* What a worker that failed has said, or what happened to it. */
+/* The message of a worker that failed, or how it ended. */
 static _Noreturn void fail_as(Pool *pool, const Worker *worker)
 {
     if (WIFSIGNALED(worker->status))
@@ -192,7 +193,7 @@ bool share_runs(Pool *pool, const Share *share, size_t processes)
                 continue;
             hear(&worker[w]);
             open -= worker[w].pipe < 0;
-            if (!broken && !stopped && worker[w].status) /* how we ended them is no news */
+            if (!broken && !stopped && worker[w].status) /* their end by end_all() is no failure */
                 broken = &worker[w];
             results = open_parcels(pool, &worker[w], &result, results);
         }

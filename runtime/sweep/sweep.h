@@ -55,12 +55,13 @@ typedef struct Result {
 
 typedef struct Share {
     int64_t count;
-    const int64_t *run; /* [count] those to be made */
-    int lock;           /* a file that is for the caller's process alone */
+    const int64_t *run; /* [count] runs to be made */
+    int lock;           /* a file descriptor that processes made by share_runs() close */
     int together;       /* most runs that are made at once */
-    /* In one of the processes: make runs. False: someone asked to stop. */
+    /* Called in one of the processes: make runs. False: a request to stop came. */
     bool (*make)(void *context, const int64_t *run, int runs, Result *result);
-    /* In the caller's: results that came, perhaps none, at least ten times a second. False: stop. */
+    /* Called in the caller's process with the results that came, perhaps 0, at least ten times a second. False:
+     * stop. */
     bool (*take)(void *context, const Result *result, int results);
     void *context;
 } Share;
@@ -69,13 +70,14 @@ enum { SHARE_PROCESSES_MOST = 256 };
 
 /* Processes to run at once: $OMP_NUM_THREADS, or one for each processor. */
 int share_processes(void);
-/* Make all runs in up to so many processes; texts of results are the pool's. False: take() wanted to stop. A process
- * that fails ends the program with a message. */
+/* Make all runs in at most `processes` processes; texts of results belong to the pool. False: take() asked to stop. A
+ * process that fails ends the program with a message. */
 bool share_runs(Pool *pool, const Share *share, size_t processes);
 
 /* ---- journal.c: what is finished --------------------------------------------------------------------- */
 
-/* Rows of finished runs, each in the file before the next batch begins: a kill loses none of them. */
+/* Rows of finished runs, each written to the file before the next batch begins, so that a kill loses no finished
+ * run. */
 typedef struct Journal {
     Pool *pool;
     const char *path;

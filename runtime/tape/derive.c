@@ -75,7 +75,7 @@ int tape_assemble(Instance *self, const double turn[3])
         if (status == GIC_OK && piece == engine->first_piece)
             status = play(self, engine->design, 0);
     }
-    /* what does not fit shall not run: it passes for changed since set-up */
+    /* a geometry that does not fit must not run: make it look changed since set-up */
     for (int i = 0; status != GIC_OK && i < derived; ++i)
         number[i] = number[i] > 0 ? -1 : 1;
     return status;

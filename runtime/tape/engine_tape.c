@@ -173,7 +173,7 @@ static int evaluate(Instance *self, double time, const double *y, double e[4], d
     if (status == GIC_OK && --self->head.unchecked < 0) {
         status = check(self, time, y, e, engine->result);
         if (status != GIC_OK)
-            self->head.flip = flip; /* what was found is no start */
+            self->head.flip = flip; /* go back to the start before this recovery */
     }
     if (status == GIC_OK)
         memcpy(rate, engine->result, (size_t)count * sizeof *rate);

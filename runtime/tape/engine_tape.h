@@ -27,14 +27,14 @@ typedef struct TapeWheel {
     const Tape *contact, *tire, *balance;
 } TapeWheel;
 
-/* What a subset is connected to, as in model.c.in, and addresses of all arrays of its class's blocks. */
+/* Numbers that a subset reads, as in model.c.in, and addresses of all arrays of its class's blocks. */
 typedef struct TapeLinks {
     double **array, *x, *rate, *change, turn[3], ahead[1];
     bool cold, again, *same; /* the last: [coordinates] */
 } TapeLinks;
 
-/* What all instances of a model share: tapes, tables, places in an instance (bytes), and scratch that no call leaves
- * anything in. So one thread at a time may compute. */
+/* Shared by all instances of a model: tapes, tables, offsets in an instance (bytes), and scratch whose contents no
+ * later call uses. So only one thread at a time may compute. */
 typedef struct TapeEngine {
     gic_model code;
     EngineProfile *profile; /* rows A and D: within blocks, functions and solver are one */
@@ -83,8 +83,8 @@ static inline double *tape_start(Instance *self)
     return tape_array(self, tape_of(self)->start_offset[self->head.flip]);
 }
 
-/* Arrays of a class's blocks, with m0, m1, ... and as many w0, w1, ... behind, and of the blocks about the whole
- * mechanism; names as in Formula and Whole of vehicle/vehicle.h. */
+/* Arrays of a class's blocks, followed by m0, m1, ... and as many w0, w1, ..., and arrays of the blocks about the whole
+ * mechanism; names as in ARRAY_LIST of expression/expression.h. */
 /* versions of clang-format break such lists in different ways */
 /* clang-format off */
 #define CLASS_ARRAYS(X) \
@@ -106,22 +106,22 @@ TapeLinks tape_links_new(Pool *pool, const Formulation *f);
 /* The same file: all but the functions of the descriptor. */
 TapeEngine *tape_open(Pool *pool, const Model *model, Solve solve, Recovery recovery);
 
-/* recover.c: all bodies at the coordinates of the instance, followed from the last good configuration; and the
- * largest residuals of all subsets there, of the constraints and of their derivatives; -1, or a subset whose are beyond
- * what is promised. */
+/* recover.c: tape_recover: all bodies at the coordinates of the instance, from the last good configuration.
+ * tape_residual: the largest residuals of all subsets there, of the constraints and of their derivatives; returns a
+ * subset whose residuals are above their tolerances, -1: none. */
 int tape_recover(Instance *self, const double turn[3], bool cold);
-/* The last recovery was of another geometry: none of it is kept by the next one. */
+/* The geometry has changed: the next recovery uses nothing of the last one. */
 void tape_forget(Instance *self);
 int tape_residual(Instance *self, double largest[2]);
 
-/* The same file: links->array filled as far as it is about what a subset is connected to. */
+/* Also recover.c: set the entries of links->array for the numbers that a subset reads. */
 void tape_link(Instance *self, TapeLinks *links, const Subset *subset);
 
-/* derive.c: the design configuration with the instance's parameters, numbers that follow them, and whether they
- * are those of set-up still. */
+/* derive.c: the design configuration and the derived numbers with the instance's parameters; true if these are still
+ * those of set-up. */
 int tape_assemble(Instance *self, const double turn[3]);
 bool tape_is_tuned(Instance *self);
-/* The tapes for that; after all others. */
+/* Record the tapes for that, after all others. */
 void tape_record_derived(Pool *pool, TapeEngine *engine);
 
 /* react.c: multipliers of the subsets that outputs need, at the present rate; e: Euler parameters of the base. */
@@ -134,25 +134,23 @@ void tape_gather(Instance *self, const double *y);
  * (which is also pose, tau and energy); NULL: not used. */
 int tape_whole(Instance *self, const Tape *tape, double time, const double *y, const double *e, double *rate,
                double *acc, double *out);
-/* The state recovered; inputs of the present time, which it returns; the present state recovered, its rate in the
- * instance. */
+/* tape_locate: recover a state. tape_present: set the inputs of the present time, and return the time. */
 int tape_locate(Instance *self, double time, const double *y, double e[4]);
 double tape_present(Instance *self);
-/* What such a tape reads and writes. */
+/* The arrays that such a tape reads and writes. */
 void tape_arrays(Instance *self, const double *time, const double *y, const double *e, double *rate, double *acc,
                  double *out, double *array[WHOLE_COUNT]);
-/* The present state recovered, its rate in the instance. */
+/* Recover the present state, and store its rate in the instance. */
 int tape_refresh(Instance *self, double e[4]);
 
 /* wheels.c: the templates wheels.c.in and dual_rate.c.in, over tapes. */
 void tape_record_wheels(Pool *pool, TapeEngine *engine, const Element *array);
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate);
-/* The same in dual numbers. array, slope: what tape_arrays() gives, of an instance at the state and of its derivatives;
- * rate (and the grip) are written there, as far as they are those of the fast states. slope_frame: as many numbers as
- * the engine's frame. */
+/* The same in dual numbers. array, slope: arrays of tape_arrays() for an instance at the state and for its derivatives;
+ * the rates of the fast states and the grip are written there. slope_frame: as many numbers as the engine's frame. */
 int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
                           double *slope_frame);
-/* Recovery, unless the last one was for the very same coordinates and velocities. */
+/* Recover the bodies, unless the last recovery was for the same coordinates and velocities. */
 int tape_recover_once(Instance *self, const double turn[3]);
 /* For the descriptor. */
 int tape_link_wheels(void *self, double time, const double *slow, double *link);

@@ -143,7 +143,7 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */
 
-/* What the descriptor's arrays are followed by. */
+/* Arrays after those of the descriptor. */
 static void lay_out(TapeEngine *engine)
 {
     gic_model *code = &engine->code;

@@ -12,7 +12,7 @@ static double chain(double factor, double change)
     return change == 0 ? 0 : factor * change;
 }
 
-/* Is x, which changes by dx, at 0 but for what rounding and an equilibrium's accuracy leave? */
+/* True if x, which changes by dx, is 0 within rounding and the accuracy of an equilibrium. */
 static bool meets(const TapeWorld *world, double x, double dx)
 {
     const bool met = dx != 0 && fabs(x) <= world->near * fabs(dx);
@@ -42,7 +42,7 @@ static double min_change(const TapeWorld *world, double a, double b, double da, 
     return a < b ? da : db;
 }
 
-/* Is the first of two branches the one that holds where x, which changes by dx, is positive? */
+/* True if x is positive; at 0, if its change dx is positive. */
 static bool is_positive(const TapeWorld *world, double x, double dx)
 {
     return meets(world, x, dx) ? dx > 0 : x > 0;

@@ -7,7 +7,8 @@
 #include "tape/record.h"
 #include "vehicle/vehicle.h"
 
-/* One subset; what it puts on the bodies solved before it is taken from theirs. spare: for those that nobody needs. */
+/* Multipliers of one subset; its wrenches on the bodies solved before are subtracted from theirs. spare: room for
+ * wrenches that are not needed. */
 static void react_subset(Instance *self, TapeLinks *links, int s, double *spare)
 {
     const TapeEngine *engine = tape_of(self);
@@ -38,7 +39,7 @@ int tape_react(Instance *self, const double e[4])
     double spare[6] = {0};
     int status = tape_whole(self, engine->wrenches, gic_time(self), tape_array(self, engine->code.state_offset), e,
                             tape_array(self, engine->code.rate_offset), NULL, NULL);
-    /* against the computational sequence: what a subset puts on others is known before they are asked */
+    /* in reverse computational sequence: the wrenches on a subset are known before it is solved */
     for (int s = sequence->subsets - 1; s >= 0 && status == GIC_OK; --s)
         if (sequence->subset[s].class >= 0 && engine->reacts[s])
             react_subset(self, &links, s, spare);

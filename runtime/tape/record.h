@@ -9,7 +9,7 @@
 #include "expression/expression.h"
 #include "gic_runtime.h"
 
-/* What a tape can do beyond the graph's own operations: a product and a sum in one, each rounded. */
+/* Operations of a tape that graphs do not have: a product and a sum in one, each rounded. */
 enum { TAPE_MUL_ADD = OP_COUNT, TAPE_MUL_SUB, TAPE_SUB_MUL, TAPE_KINDS };
 
 /* So many operations of one kind, one after the other. */
@@ -30,8 +30,8 @@ typedef struct TapeCheck {
     int condition, subset, state; /* that it is about, -1: none */
 } TapeCheck;
 
-/* A block ready to run. Its numbers live in a frame: constants, inputs, then what is computed, in slots that are used
- * again. Operands are slots: the result, then the arguments; OP_TABLE has its index and OP_ROAD three results. */
+/* A block ready to run. Its numbers live in a frame: constants, inputs, then results, in slots that are reused.
+ * Operands are slots: the result, then the arguments; OP_TABLE has its index and OP_ROAD three results. */
 typedef struct Tape {
     int slots, constants;
     double *constant; /* [members][constants] */
@@ -42,15 +42,15 @@ typedef struct Tape {
     TapeCheck *check;
 } Tape;
 
-/* What a tape needs besides numbers. */
+/* Tables, road and counters that a tape uses besides numbers. */
 typedef struct TapeWorld {
     const gic_table *table;
     const gic_road *road; /* NULL: flat at z = 0 */
     int32_t lane;
     double time;
-    gic_head *head; /* where checks that are about something say of what; NULL: the block has none of them */
+    gic_head *head; /* checks store their subset and number of the state here; NULL: no check has any */
     double near;    /* of tape_play_dual(): a kink counts as met where this share of the direction reaches it */
-    int *kinks;     /* counts kinks that were met; NULL: nobody does */
+    int *kinks;     /* counts kinks that were met; NULL: not counted */
 } TapeWorld;
 
 /* record.c. `array`: an element of each array that the block reads and writes; tape_play() takes the addresses of the

@@ -80,7 +80,7 @@ static int solve_subset(Instance *self, TapeLinks *links, int s, double *old, do
 #include "templates/recovery_loop.c"
 }
 
-/* Is the last solution of a subset the one for the numbers that it has now? */
+/* True if the last solution of a subset was for the same numbers. */
 static bool is_kept(const TapeEngine *engine, const TapeLinks *links, int s)
 {
     const Sequence *sequence = engine->formulation->plan->sequence;

@@ -28,14 +28,14 @@ void tape_record_wheels(Pool *pool, TapeEngine *engine, const Element *array)
                                        .balance = tape_record(pool, &wheels->class[c].balance, array, WHOLE_COUNT)};
 }
 
-/* What blocks about wheels read and write: numbers, and where slope_frame is not NULL their derivatives along one
- * direction beside them. */
+/* Arrays that blocks about wheels read and write: numbers and, if slope_frame is not NULL, their derivatives along one
+ * direction. */
 typedef struct Turning {
     const TapeEngine *engine;
     TapeWorld world;
     double *array[2][WHOLE_COUNT]; /* of numbers, of derivatives */
     double *slope_frame;
-    int64_t *in_air; /* counts wheels that are; NULL: nobody does */
+    int64_t *in_air; /* counts wheels in the air; NULL: not counted */
 } Turning;
 
 static int play(const Turning *t, const Tape *tape, int member)
