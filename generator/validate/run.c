@@ -83,20 +83,17 @@ static void find_constants(Run *run)
     }
 }
 
-/* Poses of the bodies in the assembled model relative to the base: reference points and Euler parameters. */
+/* Poses of the bodies in the assembled model, where recovery starts: reference points and Euler parameters, relative to
+ * the body that a subset is solved in the frame of. */
 static void find_design(Run *run)
 {
-    const Body *base = &run->model->body[BODY_BASE];
-    double A[9], B[9], arm[3], c[3], q[7];
-    mat_from_euler(base->euler, B);
+    const Sequence *sequence = run->plan->sequence;
     for (int b = 0; b < run->model->bodies; ++b) {
-        const Body *body = &run->model->body[b];
-        mat_from_euler(body->euler, A);
-        apply3(A, run->plan->origin[b], arm);
-        for (int i = 0; i < 3; ++i)
-            c[i] = arm[i] + body->position[i] - base->position[i];
-        apply3_transposed(B, c, q);
-        euler_relative(base->euler, body->euler, q + 3);
+        const int s = sequence->body_subset[b];
+        const bool solved = b != BODY_BASE && sequence->subset[s].class >= 0;
+        double q[7];
+        sampling_design(run->formulation->sampling, run->model, run->plan->origin,
+                        solved ? subset_anchor(run->model, sequence, s) : BODY_BASE, b, q);
         for (int i = 0; i < 7; ++i)
             for (int k = 0; k < STATES; ++k)
                 run->programs->design[7 * b + i][k] = q[i];

@@ -183,9 +183,9 @@ static int recover_positions(const Interpreted *context, Instance *self)
         if (!(step < leap))
             return GIC_ERROR_NEWTON;
         set_positions(world, q);
-        /* what the next correction would be */
+        /* what the next correction would be: known from two corrections with the same factors */
         const double ratio = step / before;
-        if (step <= enough || (i && ratio < slow && step * ratio <= enough)) {
+        if (step <= enough || (before < INFINITY && ratio < slow && step * ratio <= enough)) {
             ++self->head.newton_count;
             self->head.largest_step = fmax(self->head.largest_step, step * step);
             return GIC_OK;

@@ -60,6 +60,7 @@ done
 sound "$models/hmmwv.veh"
 found image "$root/tests/data/validation/links.veh"
 sound "$root/tests/data/validation/links.veh"
+sound --recovery newton "$root/tests/data/validation/carried.veh"
 
 # lanes: always the first one; a number in the packed equations of motion
 found lane --lanes 4 "$models/hmmwv.veh"
