@@ -105,7 +105,7 @@ static bool law_is_sure(const World *world, const Law *law, bool *signals)
 bool world_signals_are_sure(const World *world)
 {
     const Model *model = world->model;
-    bool sure = true, signals;
+    bool sure = true, signals = false;
     for (int f = 0; f < model->forces; ++f)
         for (int k = 0; k < 6; ++k)
             sure = sure && law_is_sure(world, model->force[f].law[k], &signals);
