@@ -36,6 +36,28 @@ bool file_is_special(const char *path)
     return !stat(path, &is) && !S_ISREG(is.st_mode) && !S_ISDIR(is.st_mode);
 }
 
+/* Identity of the folder in which `path` stands, and the name there. */
+static const char *find_folder(const char *path, struct stat *folder)
+{
+    const char *slash = strrchr(path, '/');
+    Pool *pool = pool_new();
+    const char *name = slash ? pool_print(pool, "%.*s", (int)(slash - path + 1), path) : ".";
+    const bool there = !stat(name, folder);
+    pool_free(pool);
+    return there ? slash ? slash + 1 : path : NULL;
+}
+
+bool files_are_one(const char *path, const char *other)
+{
+    if (!path || !other || !strcmp(path, "-") || !strcmp(other, "-") || file_is_special(path))
+        return false;
+    struct stat a, b;
+    if (!stat(path, &a) && !stat(other, &b))
+        return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+    const char *name = find_folder(path, &a), *other_name = find_folder(other, &b);
+    return name && other_name && a.st_dev == b.st_dev && a.st_ino == b.st_ino && !strcmp(name, other_name);
+}
+
 bool path_ends(const char *path, const char *end)
 {
     const size_t n = strlen(path), m = strlen(end);

@@ -176,7 +176,7 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
         modes_report(pool, scene, request, found);
 }
 
-/* Refuse outputs that are inputs of the run. */
+/* Refuse outputs that are inputs of the run, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
     const char *const output[] = {request->results, request->picture, request->page};
@@ -184,6 +184,11 @@ static void check_outputs(const Request *request, const Model *model, const Scen
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
             continue;
+        if (i > 0 && files_are_one(output[i], request->results))
+            usage_fail("gicrun",
+                       i == 1 ? "--plot needs another file than the results, which go to"
+                              : "--animate needs another file than the results, which go to",
+                       request->results);
         file_check(output[i]);
         source_keep(model->source, output[i]);
         source_keep(&states, output[i]);

@@ -70,6 +70,20 @@ cp whole.veh whole.h
 check "a header over the model" kept whole.h "$gicgen" whole.h -o whole.c
 check "a sweep over the road" kept road.csv "$gicsweep" -q whole.veh rough.scene --vary angle=0:1:2 -o road.csv
 
+# ---- two outputs of one name
+
+# alone OPTION FILE NAME: -o FILE and OPTION NAME, another name of FILE, are refused, and nothing is written
+alone() {
+    "$gicrun" -q --engine tape pendulum.veh pendulum.scene -o "$2" "$1" "$3" >"$work/out" 2>"$work/err"
+    [ $? -eq 2 ] && [ ! -s "$2" ] && grep -q "error: $1 needs another file than the results, which go to '$2'" "$work/err"
+}
+check "a picture in the place of the results" alone --plot both.svg both.svg
+check "a page in the place of the results" alone --animate both.html ./parts/../both.html
+: >there.html && ln there.html same.html
+check "a page in the place of results that are there" alone --animate there.html same.html
+check "a picture beside the results" eval \
+    '"$gicrun" -q --engine tape pendulum.veh pendulum.scene -o parts/both.svg --plot both.svg 2>"$work/err" && [ -s both.svg ]'
+
 # ---- files that are something else: their place is told, not what stands there
 
 printf '%s\n' 'root:secret:0:0:root:/root:/bin/sh' 'daemon:secret:1:1:' '[secret]' >passwd
