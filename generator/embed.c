@@ -6,9 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *base_name(const char *path)
+/* Of a template what comes after `templates/`, of another file what comes after the last slash. */
+static const char *short_name(const char *path)
 {
+    static const char folder[] = "templates/";
     const char *slash = strrchr(path, '/');
+    if (!strncmp(path, folder, sizeof folder - 1))
+        return path + sizeof folder - 1;
     return slash ? slash + 1 : path;
 }
 
@@ -41,7 +45,7 @@ int main(int count, char **path)
         print_bytes(path[i], i);
     puts("\nconst Embedded embedded[] = {");
     for (int i = 1; i < count; ++i)
-        printf("    {\"%s\", file_%d, sizeof file_%d - 1},\n", base_name(path[i]), i, i);
+        printf("    {\"%s\", file_%d, sizeof file_%d - 1},\n", short_name(path[i]), i, i);
     puts("    {NULL, NULL, 0},\n};");
     if (fflush(stdout) || ferror(stdout))
         fail("standard output");

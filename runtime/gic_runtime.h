@@ -29,12 +29,16 @@ extern "C" {
 #define GIC_ABI_VERSION 7
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
- * names of the runtime's functions differ between the two, so that mixing them fails at link time. */
+ * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
+ * before, the same for runtime and generated code, gives these functions other names. */
 #ifdef GIC_FLOAT
 typedef float gic_real;
-#define GIC_NAME(name) name##_float
 #else
 typedef double gic_real;
+#endif
+#if defined GIC_FLOAT && !defined GIC_NAME
+#define GIC_NAME(name) name##_float
+#elif !defined GIC_NAME
 #define GIC_NAME(name) name
 #endif
 #define GIC_R(x) ((gic_real)(x))

@@ -54,6 +54,10 @@ typedef struct Embedded {
 
 extern const Embedded embedded[];
 
+/* The template `name` from the folder `templates`, or built in where that is NULL: a source, so that messages can show
+ * its lines. */
+const Source *template_source(Pool *pool, const char *templates, const char *name);
+
 /* Where a template's line is nothing but `@name@` in a comment (of C or of HTML), `write` prints what belongs there,
  * with that line's indent. */
 typedef struct Insertion {

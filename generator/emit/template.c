@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A template as a source, so that messages can show its lines. */
-static const Source *template_source(Pool *pool, const char *templates, const char *name)
+const Source *template_source(Pool *pool, const char *templates, const char *name)
 {
     Source *source = pool_alloc(pool, sizeof *source);
     source->path = templates ? pool_print(pool, "%s/%s", templates, name) : name;

@@ -49,6 +49,24 @@ static void add_embedded(Members *members, const char *folder, const char *name)
     member_add(members, pool_print(members->pool, "%s%s", folder, name), bytes, size);
 }
 
+/* A file of the layer of FMI, the same for all models. */
+static void add_layer(Members *members, const char *templates, const char *name)
+{
+    const Source *source = template_source(members->pool, templates, pool_print(members->pool, "fmu/%s", name));
+    member_add(members, pool_print(members->pool, "sources/%s", name), source->bytes, source->size);
+}
+
+static void add_runtime(Members *members, const char *templates, const Description *d)
+{
+    Text header = {.pool = members->pool}, runtime = {.pool = members->pool};
+    size_t size;
+    const char *bytes = embedded_text("gic_runtime.h", &size);
+    text_add(&runtime, bytes, size);
+    write_runtime_header(&header, templates, d, &runtime);
+    add_text(members, "sources/gic_runtime.h", &header);
+    add_embedded(members, "sources/", "gic_runtime.c");
+}
+
 /* The drawing as PNG, where Graphviz is there. */
 static void add_picture(Members *members, int version, const Formulation *f)
 {
@@ -88,13 +106,13 @@ static void add_files(Members *members, int version, const Formulation *f, const
     generate(pool, f, &style_readable, templates, pool_print(pool, "%s.h", name), &c, &h);
     Text draft = {.pool = pool};
     describe(&draft, &d);
-    write_model_header(&draft, &d);
+    write_model_header(&draft, templates, &d);
     const uint64_t code = text_hash(c.s, c.size), description = text_hash(draft.s, draft.size);
     d.token = pool_print(pool, "{%08x-%04x-%04x-%04x-%012llx}", (unsigned)(code >> 32), (unsigned)(code >> 16) & 0xffff,
                          (unsigned)code & 0xffff, (unsigned)(description >> 48),
                          (unsigned long long)description & 0xffffffffffff);
     describe(&xml, &d);
-    write_model_header(&header, &d);
+    write_model_header(&header, templates, &d);
     const CodeMemory memory = code_memory(pool, f->model->name, &c, &h);
     report_print(&page, path, templates, f, &c, &memory);
     add_text(members, "modelDescription.xml", &xml);
@@ -102,11 +120,10 @@ static void add_files(Members *members, int version, const Formulation *f, const
     add_text(members, pool_print(pool, "sources/%s.c", name), &c);
     add_text(members, pool_print(pool, "sources/%s.h", name), &h);
     add_text(members, "sources/fmu_model.h", &header);
-    static const char *const fixed[] = {"gic_runtime.c", "gic_runtime.h", "fmu_core.c", "fmu_core.h", "fmu_road.c"};
-    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
-        add_embedded(members, "sources/", fixed[i]);
-    add_embedded(members, "sources/", api_name);
-    add_embedded(members, "sources/", pool_print(pool, "%s_api.h", api));
+    add_runtime(members, templates, &d);
+    const char *const layer[] = {"fmu_core.c", "fmu_core.h", "fmu_road.c", api_name, pool_print(pool, "%s_api.h", api)};
+    for (size_t i = 0; i < sizeof layer / sizeof *layer; ++i)
+        add_layer(members, templates, layer[i]);
     add_embedded(members, "documentation/licenses/", "LICENSE");
     if (version == 3) {
         Text build = {.pool = pool}, terminals = {.pool = pool};

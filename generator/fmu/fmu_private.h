@@ -117,8 +117,9 @@ void describe_terminals(Text *out, const Variables *all);
 
 /* ---- sources.c: what the C layer of an FMU includes */
 
-/* fmu_model.h. */
-void write_model_header(Text *out, const Description *d);
+/* fmu_model.h and gic_runtime.h. `templates`: folder of the templates, NULL: built in. */
+void write_model_header(Text *out, const char *templates, const Description *d);
+void write_runtime_header(Text *out, const char *templates, const Description *d, const Text *runtime);
 
 /* ---- binaries.c, archive.c */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * fmu_model.h: what the fixed C files of an FMU include. */
+ * The headers of an FMU that name its model: fmu_model.h, which its fixed C files include, and gic_runtime.h. */
 #include "emit/emit.h"
 #include "fmu/fmu_private.h"
 
@@ -130,10 +130,33 @@ static const Insertion header_point[] = {{"token", write_token},
                                          {"wheel center", write_wheel_center},
                                          {NULL, NULL}};
 
-static const Insertions header_points = {(const char *const[]){"fmu_model.h.in", NULL}, header_point, NULL};
+static const Insertions header_points = {(const char *const[]){"fmu/fmu_model.h.in", NULL}, header_point, NULL};
 
-void write_model_header(Text *out, const Description *d)
+static void expand(Text *out, const char *templates, const Insertions *points, const Description *d,
+                   const void *context)
 {
-    templates_check(out->pool, NULL, (const Insertions *const[]){&header_points, NULL});
-    template_expand(out->pool, out, NULL, "fmu_model.h.in", d->f->model->name, NULL, &header_points, (void *)d);
+    templates_check(out->pool, templates, (const Insertions *const[]){points, NULL});
+    template_expand(out->pool, out, templates, points->template[0], d -> f -> model -> name, NULL, points,
+                    (void *)context);
+}
+
+void write_model_header(Text *out, const char *templates, const Description *d)
+{
+    expand(out, templates, &header_points, d, d);
+}
+
+static void write_runtime(void *context, Text *out, int indent)
+{
+    const Text *runtime = context;
+    (void)indent;
+    text_add(out, runtime->s, runtime->size);
+}
+
+static const Insertion runtime_point[] = {{"runtime", write_runtime}, {NULL, NULL}};
+
+static const Insertions runtime_points = {(const char *const[]){"fmu/gic_runtime.h.in", NULL}, runtime_point, NULL};
+
+void write_runtime_header(Text *out, const char *templates, const Description *d, const Text *runtime)
+{
+    expand(out, templates, &runtime_points, d, runtime);
 }

@@ -17,6 +17,7 @@ call() {
     animate* | jit.c.in) return 1 ;;
     batch*) set -- --batch 4 "$model" -o made.c ;;
     main.c.in) set -- --main "$model" -o made.c ;;
+    fmu/*) set -- --fmu 2 "$model" -o made.fmu ;;
     report.html.in) set -- --report made.html "$model" ;;
     *) set -- "$model" -o made.c ;;
     esac
@@ -37,9 +38,8 @@ points() {
         paste - - | tr '\t' ' '
 }
 
-for template in "$root"/templates/*; do
-    [ -f "$template" ] || continue
-    file=$(basename "$template")
+for template in "$root"/templates/*.in "$root"/templates/fmu/*.in; do
+    file=${template#"$root"/templates/}
     call "$file" || continue
     rm -f made.*
     points "$template" >list
@@ -51,7 +51,7 @@ for template in "$root"/templates/*; do
         [ "${#name}" -lt 3 ] || grep -q -F -e "did you mean '@" err
         verdict $? "no name is suggested for '@q$name@': $(cat err)"
         # where no other line has the name, none gets its text
-        if [ "$(cat "$root"/templates/*.in | grep -c -F "@$name@")" -eq 1 ]; then
+        if [ "$(cat "$root"/templates/*.in "$root"/templates/fmu/*.in | grep -c -F "@$name@")" -eq 1 ]; then
             sed "${line}d" "$template" >"templates/$file"
             call "$file"
             [ "$status" -eq 1 ] && grep -q -F -e "no template has the insertion point '@$name@'" err
