@@ -217,6 +217,13 @@ check 'what the demonstration needs, and neither MPI nor Fortran' \
     sh -c "grep -q gnuplot-nox '$work/calls' && ! grep -qi -e mumps -e mpi -e fortran '$work/calls'"
 check 'the lines of apt-get are in its log' grep -q 'lines of apt-get' "$work/log/install.log"
 check 'and not on the screen' sh -c "! grep -q 'lines of apt-get' '$work/out' '$work/err'"
+# the package of every header, so that a header that came along with something else is noticed
+grep -rhE '^# *include <' --include='*.[ch]' "$root/generator" "$root/runtime" | grep -v -e dmumps_c -e windows.h | sort -u >"$work/headers.c"
+cc -std=c11 -D_POSIX_C_SOURCE=200809L -M "$work/headers.c" | grep -o '/usr/include/[^ ]*' >"$work/headers"
+check 'there are headers of libraries' grep -q 'yaml\.h' "$work/headers"
+xargs dpkg -S <"$work/headers" 2>&1 | sed 's/:.*//' | sort -u | grep -v '^linux-libc-dev$' >"$work/owners"
+listed() { while read -r owner; do grep -q -w -e "$owner" "$work/calls" || { echo "not installed: $owner"; return 1; }; done <"$work/owners"; }
+check 'the packages of all headers' listed
 printf '#!/bin/sh\necho "E: no such package" && exit 100\n' | tool apt-get
 check 'where it fails the script does' sh -c "! PATH='$work/apt:$PATH' BUILD='$work/log' sh '$root/tests/install.sh' >'$work/out' 2>'$work/err'"
 check 'and shows why, and where the rest is' sh -c "grep -q 'E: no such package' '$work/err' && grep -q 'install.log' '$work/err'"
