@@ -192,6 +192,7 @@ typedef struct Table {
     double *x, *y, *slope;
     bool cubic;
     bool onward; /* beyond the ends: linear with the end's slope; else constant */
+    bool read;   /* a formula or another entry names it */
 } Table;
 
 /* ---- interpolate.c: tables of FORMAT.md section 7 */

@@ -134,7 +134,12 @@ static const Law *truth(Parser *p, const Law *t, bool yes)
 
 static const Law *reference(Parser *p, LawOp op, int index, const char *name)
 {
-    const Law *stands = op == LAW_PARAMETER ? p->names->model->parameter[index].law : NULL;
+    const Model *model = p->names->model;
+    const Law *stands = op == LAW_PARAMETER ? model->parameter[index].law : NULL;
+    if (op == LAW_PARAMETER)
+        model->parameter[index].read = true;
+    if (op == LAW_INPUT)
+        model->input[index].read = true;
     return node(p, (Law){.op = op, .index = index, .name = name, .size = stands ? stands->size : 0});
 }
 
@@ -260,6 +265,7 @@ static const Law *parse_call(Parser *p, const char *where, const char *name)
             if (count != 1)
                 fail(p, where, "a table is a function of one number", "table '%s' takes 1 argument, not %d", name,
                      count);
+            model->table[i].read = true;
             return node(p, (Law){.op = LAW_TABLE, .index = i, .arg = {arg[0]}, .name = model->table[i].name});
         }
     const char **known = NULL;
@@ -310,7 +316,8 @@ static const Law *parse_name(Parser *p)
         if (!strcmp(name, p->names->local[i])) {
             if (!p->names->hide)
                 has_one_meaning(p, where, name, "a quantity of this element");
-            return reference(p, LAW_LOCAL, i, p->names->local[i]);
+            const Law *local = reference(p, LAW_LOCAL, i, p->names->local[i]);
+            return p->item->mirrored && (p->names->odd >> i & 1) ? negative(p, local) : local;
         }
     for (int i = 0; i < model->parameters; ++i)
         if (!strcmp(name, model->parameter[i].name))

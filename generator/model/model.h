@@ -41,9 +41,11 @@ typedef struct LawNames {
     const char *const *local;  /* local names of this formula, or NULL */
     int locals;
     bool hide;          /* local names hide equal names of the model; else a formula that uses such a name is refused */
+    unsigned odd;       /* bit i: local name i changes its sign in the mirror */
     bool constant;      /* only numbers and parameters are allowed */
     const char *remedy; /* the remedy if another name is used */
-    SignalReads *reads; /* where names are noted that may be signals; NULL: formulas here read no signals */
+    SignalReads *reads; /* where names are noted that may be signals; NULL: such a name is unknown at once */
+    const char *barred; /* "formulas of wheels", which may read no signals: signals noted are refused; NULL: allowed */
 } LawNames;
 
 /* A name in a formula that is none of the names known when the formula is read: one of a signal, which the reader finds
@@ -148,7 +150,9 @@ typedef struct Coordinate {
 
 typedef struct Input {
     const char *name, *unit;
+    Place at;
     double initial;
+    bool read; /* a formula names it, or it belongs to a driven coordinate */
 } Input;
 
 typedef struct Parameter {
@@ -159,6 +163,7 @@ typedef struct Parameter {
     int index;      /* tunable: index among tunable parameters */
     const Law *law; /* formula of tunable parameters; NULL: none */
     bool geometric; /* tunable and used by points, axes, masses and so on: it acts at set-up only */
+    bool read;      /* a formula names it */
 } Parameter;
 
 /* An external force and torque on a body, supplied at run time. */

@@ -141,7 +141,9 @@ static void driven_inputs(Reader *reader, Coordinate *coordinate)
         model->input[model->inputs++] = (Input){
             .name = pool_print(reader->pool, "%s%s", coordinate->name, suffix[i]),
             .unit = unit[coordinate->type == COORDINATE_ANGLE][i],
+            .at = coordinate->at,
             .initial = i == 0 ? coordinate->initial : 0,
+            .read = true,
         };
 }
 
@@ -155,23 +157,22 @@ void inputs_read(Reader *reader, const Item *map)
     const char **name = pool_alloc(reader->pool, sizeof *name * room);
     Place *at = pool_alloc(reader->pool, sizeof *at * room);
     for (int i = 0; i < model->coordinates; ++i)
-        if (model->coordinate[i].driven) {
+        if (model->coordinate[i].driven)
             driven_inputs(reader, model->coordinate + i);
-            for (int k = model->coordinate[i].input; k < model->inputs; ++k)
-                at[k] = model->coordinate[i].at;
-        }
     for (int i = 0; i < count; ++i) {
         Value value[INPUT_KEYS];
         section_read(reader, &input_section, 0, entry + i, value);
-        at[model->inputs] = entry[i].at;
         model->input[model->inputs++] = (Input){
             .name = entry[i].name,
             .unit = value[INPUT_UNIT].item ? value[INPUT_UNIT].text : "1",
+            .at = entry[i].at,
             .initial = value[INPUT_DEFAULT].number[0],
         };
     }
-    for (int i = 0; i < model->inputs; ++i)
+    for (int i = 0; i < model->inputs; ++i) {
         name[i] = model->input[i].name;
+        at[i] = model->input[i].at;
+    }
     generated_names_check(reader, "input", name, at, model->inputs);
 }
 

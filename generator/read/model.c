@@ -123,6 +123,7 @@ const Model *model_read(Pool *pool, const char *path)
     wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
     signals_close(&reader);
+    unread_tell(&reader);
     model->drawn = model->body;
     tuning_close(model);
     return model;

@@ -122,11 +122,20 @@ static const char *of(Reader *reader, const Key *key, const char *what)
     return pool_print(reader->pool, "%s of %s", key->name, what);
 }
 
+/* What formulas of the powertrain read. */
+static LawNames law_names(Reader *reader)
+{
+    return (LawNames){.model = reader->model, .reads = &reader->reads, .barred = "formulas of the powertrain"};
+}
+
 static void engine_read(Reader *reader, const Item *item, Powertrain *powertrain)
 {
     static const char what[] = "the engine", *const local[] = {"speed", "throttle"};
-    const LawNames plain = {.model = reader->model},
-                   names = {.model = reader->model, .local = local, .locals = 2, .hide = true};
+    const LawNames plain = law_names(reader);
+    LawNames names = law_names(reader);
+    names.local = local;
+    names.locals = 2;
+    names.hide = true;
     Value value[ENGINE_KEYS];
     section_read(reader, &engine_section, 0, &(Entry){"engine", what, item->at, item}, value);
     powertrain->inertia = value[ENGINE_INERTIA].number[0];
@@ -193,7 +202,7 @@ static void gears_read(Reader *reader, const Value *value, Powertrain *powertrai
 static const Law **shifts_read(Reader *reader, const Item *map, const Value *value, int key, int count)
 {
     const char *what = of(reader, &transmission_key[key], "the transmission");
-    const LawNames names = {.model = reader->model};
+    const LawNames names = law_names(reader);
     const Law **law = pool_alloc(reader->pool, (size_t)(count + 1) * sizeof *law);
     const Item *item = value[key].item;
     if (!item && count)
@@ -219,7 +228,7 @@ static int start_gear(const Model *model, const Powertrain *powertrain)
 static void transmission_read(Reader *reader, const Item *item, Powertrain *powertrain)
 {
     static const char what[] = "the transmission";
-    const LawNames names = {.model = reader->model};
+    const LawNames names = law_names(reader);
     Value value[SHIFT_KEYS];
     section_read(reader, &transmission_section, 0, &(Entry){"transmission", what, item->at, item}, value);
     gears_read(reader, value, powertrain);
@@ -303,7 +312,7 @@ static void differential_read(Tree *tree, int index)
     static const int of_two[] = {SPLIT_SPLIT, SPLIT_LOCK};
     Reader *reader = tree->reader;
     const Entry *entry = &tree->entry[index];
-    const LawNames names = {.model = reader->model};
+    const LawNames names = law_names(reader);
     Differential *differential = &tree->differential[index];
     Value value[SPLIT_KEYS];
     if (wheel_named(reader->model, entry->name) >= 0)

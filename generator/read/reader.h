@@ -243,6 +243,11 @@ void signals_read(Reader *reader, const Item *map);
  * themselves. */
 void signals_close(Reader *reader);
 
+/* ---- unread.c ---- */
+
+/* Warn of entries that no formula and no other entry refers to. Call when all is read. */
+void unread_tell(const Reader *reader);
+
 /* ---- tires.c, tir_file.c, wheels.c ---- */
 
 void tires_read(Reader *reader, const Item *map);

@@ -413,6 +413,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
         break;
     case KEY_TABLE:
         value->index[0] = find(reader, item, what, "table", model->table, model->tables, sizeof *model->table);
+        model->table[value->index[0]].read = true;
         break;
     case KEY_SIGNAL:
         value->index[0] = find(reader, item, what, "signal", model->signal, model->signals, sizeof *model->signal);

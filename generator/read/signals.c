@@ -113,7 +113,14 @@ static void names_find(Reader *reader)
         bool odd;
         read->law->index = signal_find(reader, read->name, &odd);
         if (read->law->index < 0)
-            law_name_unknown(reader->pool, &read->names, read->what, read->name, read->at, known, count);
+            law_name_unknown(reader->pool, &read->names, read->what, read->name, read->at, known,
+                             read->names.barred ? 0 : count);
+        if (read->names.barred)
+            diag_fail(read->at,
+                      "read coordinates, rate(coordinate), inputs, parameters, tables or time here, or compute it in a "
+                      "force element, whose formulas read outputs",
+                      "%s: '%s' is an output or a signal, which %s do not read", read->what, read->name,
+                      read->names.barred);
         read->law->number = odd && read->mirrored ? -1 : 1;
     }
 }
@@ -237,21 +244,6 @@ static void signal_visit(void *user, const Law *law)
     --order->ways;
 }
 
-static void warn_unread(const Reader *reader, int signal)
-{
-    const Model *model = reader->model;
-    bool used = false;
-    for (int i = 0; i < reader->reads.count; ++i)
-        used = used || reader->reads.read[i].law->index == signal;
-    for (int i = 0; i < model->outputs; ++i)
-        used = used || (model->output[i].type == OUTPUT_SIGNAL && model->output[i].index == signal);
-    if (!used)
-        diag_warn(model->signal[signal].at,
-                  pool_print(reader->pool, "take it away, or show it: `outputs: {%s: {type: signal, signal: %s}}`",
-                             model->signal[signal].name, model->signal[signal].name),
-                  "nothing reads signal '%s'", model->signal[signal].name);
-}
-
 void signals_close(Reader *reader)
 {
     Model *model = reader->model;
@@ -268,6 +260,4 @@ void signals_close(Reader *reader)
             laws_visit(&order, &order.signal[i], &model->signal[i].law, 1);
             order.signal[i].visit = DONE;
         }
-    for (int i = 0; i < named; ++i)
-        warn_unread(reader, i);
 }

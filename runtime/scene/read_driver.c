@@ -140,6 +140,20 @@ static int find_input(Pool *pool, const Model *model, const Item *map, const cha
               "the model has no input '%s' for the driver", name);
 }
 
+/* An input that a pedal's position, 0 to 1, can be. */
+static int find_pedal(Pool *pool, const Model *model, const Item *map, const char *key)
+{
+    const int index = find_input(pool, model, map, key, key);
+    const char *unit = model->input[index].unit;
+    const Item *item = doc_find(map, key);
+    if (strcmp(unit, "1") != 0)
+        diag_fail(item ? item->at : map->at,
+                  pool_print(pool, "give the model an input of unit 1 for it, and multiply it by %s in the formula",
+                             unit),
+                  "the driver moves '%s' from 0 to 1, but the model has it in %s", model->input[index].name, unit);
+    return index;
+}
+
 static bool is_driven(const Model *model, int input)
 {
     for (int i = 0; i < model->coordinates; ++i)
@@ -168,8 +182,8 @@ static void read_speed(Pool *pool, const Model *model, const Item *item, Driver 
     CHECK_KEYS(item, "the driver's speed", "target", "accelerator", "brake", "gain", "integral", "full");
     driver->speed = (Profile){.unit = "m/s", .model = model};
     profile_read(pool, scene_need(item, "target", "the driver's speed"), "speed", &driver->speed);
-    driver->accelerator = find_input(pool, model, item, "accelerator", "accelerator");
-    driver->brake = find_input(pool, model, item, "brake", "brake");
+    driver->accelerator = find_pedal(pool, model, item, "accelerator");
+    driver->brake = find_pedal(pool, model, item, "brake");
     driver->gain = positive(item, "gain", 1);
     driver->integral = not_negative(item, "integral", 0.1);
     driver->full[0] = 3;

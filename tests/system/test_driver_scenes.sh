@@ -14,6 +14,8 @@ base: hull
 inputs: {accelerator: {unit: "1"}, brake: {unit: "1"}, steer: {unit: rad}}
 bodies:
   hull: {mass: 10, com: [0, 0, 1], inertia: [1, 1, 1]}
+forces:
+  all: {type: load, body: hull, in: hull, force: [accelerator - brake, steer, 0]}
 outputs:
   hull: {type: position, body: hull}
 END
@@ -56,6 +58,7 @@ change 's/gain: 1/integral: -1/' 6:33 'must not be negative'
 change 's/full: \[3, 8\]/full: [3, 0]/' 6:38 'full must be positive'
 change 's/full: \[3, 8\]/full: [3]/' 6:38 'full'
 change 's/gain: 1/brake: brakes/' 6:30 "no input 'brakes'"
+change 's/gain: 1/brake: steer/' 6:30 "the driver moves 'steer' from 0 to 1, but the model has it in rad"
 change 's/gain: 1/gains: 1/' 6:23 "unknown key 'gains'"
 change 's/period: 0.02/period: 0.012/' 5:11 'multiple of step'
 change 's/period: 0.02/reach: 0/' 5:10 'must be positive'

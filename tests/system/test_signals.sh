@@ -3,7 +3,7 @@
 # test_signals.sh GICGEN GICRUN: formulas of forces that read outputs and signals (FORMAT.md section 7.1). Drag against
 # the closed solutions of coasting with linear and with quadratic drag; runs against the engine gic, which orders and
 # evaluates formulas by itself; a vehicle whose forces read tires and powertrain; images of formulas in the mirror; names
-# with a prefix; scenes that stop by a signal; a signal that nothing reads. Accelerations against quad precision are in
+# with a prefix; scenes that stop by a signal; entries that nothing reads. Accelerations against quad precision are in
 # test_accelerations, random mechanisms with such formulas in test_random_mechanisms.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
@@ -197,6 +197,46 @@ verdict $? "a run until a signal has a value: $(column air_speed until.csv | tai
 sed '/air_speed: {type/d; s/force: .*/force: [-v.x, 0, 0]}}/' coast.veh >unread.veh
 "$gicgen" unread.veh -o unread.c 2>said && grep -q "unread.veh:8:11: warning: nothing reads signal 'air_speed'" said
 verdict $? "a signal that nothing reads: $(head -n 1 said)"
+
+# ---- entries that nothing reads: one warning each at its place, none of a mirror image whose original is read
+cat >idle.veh <<'END'
+gicgen: 1
+model: idle
+base: car
+bodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+parameters:
+  alone: {value: 1, tunable: true}
+  plain: 2
+  mass: {value: 3, tunable: true}
+  high: {value: 1, tunable: true}
+  after: 2 * mass
+  side_l: {value: 1, tunable: true}
+  pair_l: {value: 1, tunable: true}
+tables:
+  spare: {x: [0, 1], y: [0, 1]}
+  curve: {x: [0, 1], y: [0, 1]}
+  spring: {x: [-1, 1], y: [-1, 1]}
+inputs: {spare: {}, wind: {}}
+points: {top: [0, 0, high]}
+forces:
+  push: {type: load, body: car, point: top, force: ["mass * curve(wind)", "side_l", 0]}
+  hold: {type: spring_damper, bodies: [ground, car], points: [[0, 0, -1], [0, 0, 0]], table: spring}
+END
+"$gicgen" --dump-model idle.veh -o idle.json 2>said
+sed -n 's/^idle.veh:\([0-9]*:[0-9]*\): warning: /\1: /p' said >warned
+cat >wanted <<'END'
+17:10: nothing in the model reads input 'spare'
+6:3: nothing in the model reads tunable parameter 'alone'
+10:3: nothing in the model reads tunable parameter 'after'
+12:3: nothing in the model reads tunable parameter 'pair_l'
+14:3: nothing in the model reads table 'spare'
+END
+cmp -s warned wanted && [ -s idle.json ] && [ "$(grep -c '  remedy: take it away, unless a scene reads it' said)" -eq 5 ]
+verdict $? "entries that nothing reads: $(cat said)"
+quiet() { "$gicgen" --dump-model "$1" -o quiet.json 2>said && ! grep -q 'warning: nothing' said; }
+for shipped in "$root"/models/*.veh "$root"/models/tutorial/[0-9]*.veh; do
+    check "$(basename "$shipped") reads all that it has" quiet "$shipped"
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ * Warnings about entries that nothing reads: tunable parameters, tables, inputs and signals (FORMAT.md section 6). */
+#include "base/base.h"
+#include "model/model.h"
+#include "read/reader.h"
+
+/* A mirror image stands in no file, so that nobody can take it away alone. */
+static bool is_image(Place at)
+{
+    return at.source && at.source->mirrored;
+}
+
+static void tell(Place at, const char *thing, const char *name)
+{
+    if (!is_image(at))
+        diag_warn(at, "take it away, unless a scene reads it", "nothing in the model reads %s '%s'", thing, name);
+}
+
+static bool signal_is_read(const Reader *reader, int signal)
+{
+    const Model *model = reader->model;
+    for (int i = 0; i < reader->reads.count; ++i)
+        if (reader->reads.read[i].law->index == signal)
+            return true;
+    for (int i = 0; i < model->outputs; ++i)
+        if (model->output[i].type == OUTPUT_SIGNAL && model->output[i].index == signal)
+            return true;
+    return false;
+}
+
+void unread_tell(const Reader *reader)
+{
+    const Model *model = reader->model;
+    for (int i = 0; i < model->inputs; ++i)
+        if (!model->input[i].read)
+            tell(model->input[i].at, "input", model->input[i].name);
+    for (int i = 0; i < model->parameters; ++i)
+        if (!model->parameter[i].read && (model->parameter[i].tunable || model->parameter[i].law))
+            tell(model->parameter[i].at, "tunable parameter", model->parameter[i].name);
+    for (int i = 0; i < model->tables; ++i)
+        if (!model->table[i].read)
+            tell(model->table[i].at, "table", model->table[i].name);
+    for (int i = 0; i < model->signals; ++i) {
+        const Signal *signal = &model->signal[i];
+        if (signal->law && !is_image(signal->at) && !signal_is_read(reader, i))
+            diag_warn(signal->at,
+                      pool_print(reader->pool, "take it away, or show it: `outputs: {%s: {type: signal, signal: %s}}`",
+                                 signal->name, signal->name),
+                      "nothing reads signal '%s'", signal->name);
+    }
+}
