@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicgen: the command line. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "host/host.h"

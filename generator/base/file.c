@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Whole files, read and written. */
-#include "base/base.h"
+#include "base/file.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Tables: the same interpolation as gic_table_value() of the runtime. */
-#include "base/base.h"
+#include "base/table.h"
 
 #include <math.h>
 

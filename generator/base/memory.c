@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Memory pools. */
-#include "base/base.h"
+#include "base/pool.h"
 
 #include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Messages for people: a place, what is wrong there, the line with a caret, what to write instead. */
-#include "base/base.h"
+#include "base/message.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Numbers as C source. */
-#include "base/base.h"
+#include "base/text.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

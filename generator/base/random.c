@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Random numbers that are the same on every machine. */
-#include "base/base.h"
+#include "base/random.h"
 
 #include <errno.h>
 #include <sys/stat.h>

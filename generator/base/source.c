@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Input files and those that they name. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 
 #include <string.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Files written under a temporary name and renamed, and the signals that are held back meanwhile. */
 #define _DEFAULT_SOURCE /* mkstemps */
-#include "base/base.h"
+#include "base/file.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Texts that grow. */
-#include "base/base.h"
+#include "base/text.h"
 
 #include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Vectors of 3 and matrices of 9 numbers, row-major, for inner loops. Results may not alias arguments unless said
- * otherwise. */
+ * Vectors double[3], matrices double[9], row-major, and Euler parameters (e0, e1, e2, e3). Results may not alias
+ * arguments unless said otherwise. */
 #ifndef BASE_VEC3_H
 #define BASE_VEC3_H
 
@@ -90,5 +90,10 @@ static inline void euler_product(const double p[4], const double q[4], double ou
     for (int i = 1; i < 4; ++i)
         out[i] += p[0] * q[i] + q[0] * p[i];
 }
+
+/* ---- vector.c */
+
+void mat_from_euler(const double p[4], double A[9]);                       /* A(p) of FORMAT.md section 1 */
+void euler_relative(const double p0[4], const double p[4], double out[4]); /* Euler parameters of A(p0)^T A(p) */
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Rotation matrices and Euler parameters. */
-#include "base/base.h"
+#include "base/vec3.h"
 
 void mat_from_euler(const double p[4], double A[9])
 {

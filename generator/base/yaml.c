@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * YAML into a tree of items with their places, and checked access to it. An alias shares the tree of its anchor, so
  * a document is never larger than its file; a walk over the tree visits at most a few values for each byte. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Code for many vehicles at once: the same blocks as for one, each number a vector with one vehicle a lane. */
-#include "base/base.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"

@@ -2,7 +2,7 @@
  * Blocks as C text. A node that is used once is written where it is used, up to a small size, so that a line says
  * something; everything else is a temporary. Statements come depth-first from the results, which keeps few values alive
  * at a time. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The functions of a class of subsets: recovery, residuals, reactions, with the constants of the members. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Elements of arrays as C text: their indices as enumerators, and what temporaries are called that are stored there. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"
 #include "model/powertrain_numbers.h"

@@ -4,10 +4,11 @@
 #ifndef EMIT_EMIT_H
 #define EMIT_EMIT_H
 
-#include "base/base.h"
+#include "base/text.h"
 #include "expression/expression.h"
-#include "model/model.h"
-#include "vehicle/vehicle.h"
+
+typedef struct Model Model;             /* model/model.h */
+typedef struct Formulation Formulation; /* vehicle/vehicle.h */
 
 /* ---- block_text.c: blocks as C text */
 

@@ -4,7 +4,7 @@
 #ifndef EMIT_EMIT_PRIVATE_H
 #define EMIT_EMIT_PRIVATE_H
 
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "expression/expression.h"
 #include "model/model.h"

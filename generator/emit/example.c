@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * An example program that calls the emitted code of one model (`gicgen --main`). */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "model/model.h"
 

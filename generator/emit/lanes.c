@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Code in which members of a class are solved side by side, in the lanes of vectors: vehicle/lanes.c says where their
  * numbers stand. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"

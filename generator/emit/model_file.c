@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What fills the insertion points of the templates. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The text of the recovery of the whole vehicle: its subsets in computational sequence. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit_private.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

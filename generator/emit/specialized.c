@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What generated files say about the one scene that they are for. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "model/model.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The constant tables that the descriptor of emitted code points to: names, units, places. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit_private.h"
 #include "model/model.h"
 #include "vehicle/vehicle.h"

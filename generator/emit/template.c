@@ -3,7 +3,8 @@
  * replaced, and a line that begins with a comment's opening and a minus sign is a remark that is not copied. A table
  * of names and functions says what replaces such a line; a name that the table does not have is an error, and so is a
  * name of the table that no template has. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "emit/emit.h"
 
 #include <ctype.h>

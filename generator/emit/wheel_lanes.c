@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Wheels with the same tire side by side in the lanes of vectors. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What the generated files say about wheels with tires. */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"

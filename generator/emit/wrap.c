@@ -3,7 +3,7 @@
  * than a line becomes adjacent strings in parentheses, without which compilers take them for a comma that was
  * forgotten.
  */
-#include "base/base.h"
+#include "base/text.h"
 #include "emit/emit_private.h"
 
 #include <ctype.h>

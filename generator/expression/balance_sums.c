@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Sums added in the order in which their terms become ready, instead of the one in which formulas list them: no term
  * that is late waits for others to be added to it. As many operations as before, or fewer where constants meet. */
-#include "base/base.h"
 #include "expression/expression.h"
 
 #include <string.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Straight-line code before it is text. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 

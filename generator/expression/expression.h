@@ -4,7 +4,12 @@
 #ifndef EXPRESSION_EXPRESSION_H
 #define EXPRESSION_EXPRESSION_H
 
-#include "base/base.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct Table Table; /* base/table.h */
 
 /* ---- graph.c: the expression graph */
 

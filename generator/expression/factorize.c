@@ -3,7 +3,6 @@
  * has no search and no branch. Only entries that are constants serve as pivots by themselves; the rest is solved in the
  * irreducible diagonal blocks of its structure (factorize_block.c), whose determinants vanish where the matrix is
  * singular and nowhere else. Samples choose between orders that are all valid. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/factorize.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Straight-line factorizations L D L^T of symmetric matrices of expressions, which need no search for pivots. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/factorize.h"
 

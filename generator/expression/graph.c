@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The expression graph: hash-consed nodes, folding and simplification on construction, sample values. */
-#include "base/base.h"
+#include "base/table.h"
 #include "expression/expression.h"
 
 #include <math.h>

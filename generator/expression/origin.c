@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What the constants of a class are, in words: quantities of the model by name, and what is computed from them when the
  * code is generated. For comments only. */
-#include "base/base.h"
+#include "base/text.h"
 #include "expression/expression.h"
 
 #include <string.h>

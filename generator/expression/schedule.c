@@ -2,7 +2,6 @@
  * The order of the statements of a block, by when their operands are there and by how long the way is from them to the
  * end: what long chains wait for begins early, and what nothing waits for fills the gaps. Processors look ahead by a
  * few hundred operations alone, and compilers leave such statements more or less as they stand. */
-#include "base/base.h"
 #include "expression/expression.h"
 
 #include <limits.h>

@@ -3,7 +3,6 @@
  * corners of a vehicle, say). Nodes of different tracks that are the same operation on packs, on the same numbers, or
  * on literals are a pack; what depends on more than one track is one number. Sums over tracks first add up each track's
  * terms, which are packs, and then those: their order changes, and nothing else. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 #include "expression/vectorize_private.h"

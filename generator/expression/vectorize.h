@@ -3,7 +3,6 @@
 #ifndef EXPRESSION_VECTORIZE_H
 #define EXPRESSION_VECTORIZE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 
 /* An input that belongs to one track, `lanes` tracks beside each other being the lanes of a vector. Inputs of the same

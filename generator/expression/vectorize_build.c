@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Lane packing, from packs to vectors. In the graph that is built here profitable packs become vectors and everything
  * else stays scalar; extract, reduce and insert nodes connect the two. */
-#include "base/base.h"
 #include "base/plant.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"

@@ -4,7 +4,6 @@
 #ifndef EXPRESSION_VECTORIZE_PRIVATE_H
 #define EXPRESSION_VECTORIZE_PRIVATE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 

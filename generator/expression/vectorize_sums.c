@@ -2,7 +2,6 @@
  * Sums over the lanes of vectors, as many at a time as there are lanes: adding while transposing, W vectors become one
  * with a sum a lane after W - 1 additions, where one by one each takes log2 W additions of its own and as many moves.
  */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 

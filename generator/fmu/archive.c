@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The zip archive: the same bytes for the same files, with names sorted and one date for all. */
+#include "base/file.h"
 #include "fmu/fmu_private.h"
 
 #include <minizip/zip.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Shared libraries for the platforms that there are compilers for. */
+#include "base/file.h"
 #include "engine/engine.h"
 #include "fmu/fmu_private.h"
 #include "host/host.h"

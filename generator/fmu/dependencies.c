@@ -2,6 +2,7 @@
  * Which states and inputs outputs and derivatives depend on, by the leaves of their formulas. What is not certain
  * counts as dependence on everything. */
 #include "fmu/fmu_private.h"
+#include "sequence/sequence.h"
 
 #include <string.h>
 

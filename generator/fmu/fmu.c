@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * An FMU: description, sources, binaries, page, picture and licence in one archive. */
+#include "base/file.h"
 #include "fmu/fmu.h"
 #include "emit/emit.h"
 #include "engine/engine.h"

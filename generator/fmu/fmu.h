@@ -4,7 +4,6 @@
 #ifndef FMU_FMU_H
 #define FMU_FMU_H
 
-#include "base/base.h"
 #include "scene/scene.h"
 #include "vehicle/vehicle.h"
 

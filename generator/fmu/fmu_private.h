@@ -4,6 +4,7 @@
 #ifndef FMU_FMU_PRIVATE_H
 #define FMU_FMU_PRIVATE_H
 
+#include "base/text.h"
 #include "fmu/fmu.h"
 #include "model/model.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The variables of an FMU, in the order of modelDescription.xml. Names are those of gicrun: outputs as they are, the
  * others in groups: input, parameter, port, state, solver. */
+#include "base/file.h"
 #include "emit/emit.h"
 #include "fmu/fmu_private.h"
 

@@ -2,9 +2,12 @@
  * Formulas: a text like `-k * deflection - 40e3 * max(0, strut - 0.3)` into a tree, by recursive descent. Precedence,
  * weakest first: or, and, not, comparison, + -, * /, sign, ^ (from the right). A condition is a number too: true where
  * it is positive. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Functions of the model alone: names of its types, and properties of its parts. */
 #include "model/model.h"
+#include "model/tunable.h"
 
 bool force_is_spring(const Force *force)
 {

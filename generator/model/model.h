@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * model: the contents of a `.veh` file with all references resolved; formulas; numbers that follow tunable
- * parameters. */
+ * model: the contents of a `.veh` file with all references resolved; formulas. SI units. */
 #ifndef MODEL_MODEL_H
 #define MODEL_MODEL_H
 
-#include "base/base.h"
-#include "expression/expression.h"
+#include "base/message.h"
+
+#include <stdbool.h>
+
+typedef struct Item Item;   /* base/yaml.h */
+typedef struct Table Table; /* base/table.h */
 
 /* ---- formula.c: formulas of force laws, as FORMAT.md section 6 defines them */
 
@@ -353,7 +356,7 @@ typedef struct Model {
     Table *table;
     Port *port;
     Signal *signal;
-    struct Tuning *tuning; /* tunable.c; NULL: only numbers of force laws are tunable */
+    struct Tuning *tuning; /* tunable.h; NULL: only numbers of force laws are tunable */
     const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
 } Model;
 
@@ -370,62 +373,6 @@ extern const char *const output_type_name[OUTPUT_TYPES];
 /* States of a free base, as FORMAT.md section 10 names them: pose, then twist. */
 enum { BASE_STATES = 13 };
 extern const char *const base_state_name[BASE_STATES];
-
-/* A law as an expression; tunable parameters are p[i]. The first form takes a law of numbers, parameters and tables;
- * the second makes the operation at the top of a law (not an input, coordinate, time or local name) with these
- * arguments. */
-Ex law_expression(Dag *dag, const Model *model, const Law *law);
-Ex law_top(Dag *dag, const Model *model, const Law *law, const Ex arg[3]);
-
-/* ---- tunable.c: numbers that follow tunable parameters */
-
-/* A number that must be greater than 0 (`zero`: at least 0) for all values of the parameters. */
-typedef struct Condition {
-    Ex value;
-    bool zero;
-    const char *text; /* "mass of body 'arm' must be greater than zero" */
-} Condition;
-
-typedef struct TunedNumber {
-    const double *at;
-    Ex formula;
-} TunedNumber;
-
-/* A Model has its numbers for the parameter values of the file. For other values set-up evaluates these formulas, which
- * are nodes of a graph of their own, found by the address of the number in the Model. Inputs of the graph: p[i], the
- * tunable parameters; `rest`, the remaining share of the way from the drawing to the given lengths. */
-typedef struct Tuning {
-    Dag *dag;
-    int numbers, conditions;
-    int late; /* conditions from this one on are checked by blocks of emitted code: on masses, on the assembly mode */
-    TunedNumber *number;
-    Condition *condition;
-    bool assembles; /* some length differs from the drawing's: formulas depend on `rest` */
-} Tuning;
-
-/* Conditions from Tuning.late on. Their formula is the literal 1, since numbers alone do not decide them. */
-enum { LATE_MASSES, LATE_MODE, LATE_CONDITIONS };
-
-Tuning *tuning_new(Pool *pool);
-/* The formula of a number of the model; 0 if it follows no parameter. The second function returns a literal in place of
- * 0. */
-Ex tuned_number(const Model *model, const double *at);
-Ex tuned_or_fixed(const Model *model, const double *at);
-/* The formula of the difference of the numbers at a and b; 0 if it follows no parameter. */
-Ex tuned_difference(const Model *model, const double *a, const double *b);
-/* Set the formulas of `count` numbers, replacing earlier ones; a formula that is 0 or a literal is removed. */
-void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
-/* Give `count` copies of numbers the formulas of the originals. */
-void tuning_copy(const Model *model, const double *to, const double *from, int count);
-void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);
-/* Call after reading: determines which parameters are geometric. A model without geometric ones gets no tuning. */
-void tuning_close(Model *model);
-
-/* Numbers that emitted code keeps in derived[], as formulas of a Tuning: geometric parameters first. */
-typedef struct Derived {
-    int count;
-    Ex *formula;
-} Derived;
 
 /* True if an output is of a type, or a signal whose formula reads such an output. */
 bool output_reads(const Model *model, const Output *output, OutputType type);

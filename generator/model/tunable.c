@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Numbers that follow tunable parameters: their formulas, found by the numbers' addresses in the model. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 
 #include <stdlib.h>
 #include <string.h>

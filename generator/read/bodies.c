@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Bodies: mass, inertia and the pose of the body frame at design (FORMAT.md section 3). */
-#include "base/base.h"
+#include "base/vec3.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <math.h>

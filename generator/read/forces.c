@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Inputs and force elements (FORMAT.md sections 6 and 7). */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <math.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A file and the files that it includes, merged into one tree (FORMAT.md section 12). Every value keeps the place
  * where it was written. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/reader.h"
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Joints and dual coordinates (FORMAT.md sections 4 and 5): points and axes from the design configuration into the
  * frames of their bodies, lengths and offsets, where coordinates start. */
-#include "base/base.h"
+#include "base/vec3.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Mirror symmetry (FORMAT.md section 13): each entry `*_l` gets an image `*_r`, unless the file has that. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "read/reader.h"
 
 #include <string.h>

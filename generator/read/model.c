@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * A `.veh` file into a Model, as models/FORMAT.md defines it. Sections are read in the order of their references,
  * not in the order of the file. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/read.h"
 #include "read/reader.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Outputs (FORMAT.md section 9): what each refers to, and the names and units of its components. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/read.h"
 #include "read/reader.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What formulas refer to: parameters, tables, ports (FORMAT.md section 6). */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/reader.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The powertrain: POWERTRAIN.md section 1. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/reader.h"
 

@@ -4,7 +4,7 @@
 #ifndef READ_READ_H
 #define READ_READ_H
 
-#include "base/base.h"
+#include "base/text.h"
 #include "model/model.h"
 
 extern const char *const shape_type_name[SHAPE_TYPES];

@@ -5,7 +5,7 @@
 #ifndef READ_READER_H
 #define READ_READER_H
 
-#include "base/base.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Names that a model can't have because generated code or its compilers use them. */
-#include "base/base.h"
+#include "base/file.h"
 #include "read/reader.h"
 
 #include <ctype.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Copies of a model's entries: mirrored, moved or renamed (FORMAT.md sections 12 and 13). One table says for each
  * kind of value how it changes. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/reader.h"
 

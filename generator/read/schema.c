@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The reader's tables of keys as a JSON Schema for editors and as a table for people, so that both agree with the
  * reader. */
-#include "base/base.h"
+#include "base/text.h"
 #include "read/read.h"
 #include "read/reader.h"
 

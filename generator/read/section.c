@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Reads a section entry by its table of keys: all kinds of values, and the checks of names. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <ctype.h>

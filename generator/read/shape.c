@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The shape of a body for the page of gicrun --animate: `shape` of FORMAT.md section 3, and Wavefront OBJ files. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/read.h"
 #include "read/reader.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Signals (FORMAT.md section 7.1): the entries of `signals`, and the outputs that formulas read. Formulas stand before
  * outputs, which may name force elements; so names are noted while formulas are read and found at the end. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "read/reader.h"
 

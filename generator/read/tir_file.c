@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A `.tir` file (TeimOrbit) into the numbers of a PAC2002 tire in SI units: TIRES.md sections 5 and 7. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "model/tire_numbers.h"
 #include "read/reader.h"

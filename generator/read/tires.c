@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Tires: TIRES.md sections 1 and 6. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "model/tire_numbers.h"
 #include "read/reader.h"

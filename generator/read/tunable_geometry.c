@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Geometry that follows tunable parameters: the steps that the reader takes with numbers, as formulas for set-up. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <math.h>

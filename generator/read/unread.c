@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Warnings about entries that nothing reads: tunable parameters, tables, inputs and signals (FORMAT.md section 6). */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/pool.h"
 #include "model/model.h"
 #include "read/reader.h"
 

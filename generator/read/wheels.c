@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Wheels, with a tire or without (FORMAT.md section 8, TIRES.md section 1). */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 enum { PLAIN, ROLLING, FORMS };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The page of --report: the model, its sequence, and the cost of its code. */
-#include "base/base.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "emit/emit.h"
 #include "expression/expression.h"

@@ -4,8 +4,11 @@
 #ifndef REPORT_REPORT_H
 #define REPORT_REPORT_H
 
-#include "base/base.h"
-#include "vehicle/vehicle.h"
+#include "base/text.h"
+
+#include <stdbool.h>
+
+typedef struct Formulation Formulation; /* vehicle/vehicle.h */
 
 /* The functions whose stack a page shows. */
 enum { CODE_FUNCTIONS = 6 };

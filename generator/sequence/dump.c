@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The resolved model as JSON, for programs that check gicgen (FORMAT.md section 11). */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "model/tire_numbers.h"
 #include "read/read.h"

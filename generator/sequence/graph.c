@@ -6,7 +6,8 @@
  * each end of each edge. Rows move from one end to the other, and a maximum matching is a maximum flow of
  * rows from bodies with too many to bodies with too few (Dinic's algorithm: breadth-first levels, then
  * augmenting paths along them). What stays in excess or in want spans the over- and the under-determined part. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/graph.h"
 #include "sequence/redundant.h"

@@ -10,7 +10,6 @@
 #ifndef SEQUENCE_GRAPH_H
 #define SEQUENCE_GRAPH_H
 
-#include "base/base.h"
 #include "model/model.h"
 
 enum { BODY_UNKNOWNS = 6 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Pictures through Graphviz. */
-#include "base/base.h"
+#include "base/file.h"
 #include "sequence/sequence.h"
 
 #include <errno.h>

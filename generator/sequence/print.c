@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The sequence for people: as a table, and as the weighted graph in Graphviz source, for dot and neato. */
-#include "base/base.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 

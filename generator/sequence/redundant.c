@@ -2,7 +2,9 @@
  * Redundant joints. A row of a joint is a screw: a force along a line or a couple between its two bodies. The rank
  * of all screws at several assembled configurations tells how many equations of a joint are independent of the
  * others'; another type is proposed if its screws give the same rank at each configuration. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "sequence/redundant.h"
 #include "sequence/screws.h"

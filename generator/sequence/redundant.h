@@ -4,7 +4,7 @@
 #ifndef SEQUENCE_REDUNDANT_H
 #define SEQUENCE_REDUNDANT_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "model/model.h"
 
 /* A remedy for bodies whose joints and dual coordinates are too many, or repeat each other: joints with fewer equations

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Screws of joints, their rank, and a walk along a motion that the joints allow. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "sequence/rank.h"
 #include "sequence/screws.h"

@@ -5,7 +5,6 @@
 #ifndef SEQUENCE_SCREWS_H
 #define SEQUENCE_SCREWS_H
 
-#include "base/base.h"
 #include "model/model.h"
 
 enum {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * The computational sequence: subsets in stages, their canonical order, isomorphism classes. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/graph.h"
 #include "sequence/sequence.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,8 +4,9 @@
 #ifndef SEQUENCE_SEQUENCE_H
 #define SEQUENCE_SEQUENCE_H
 
-#include "base/base.h"
 #include "model/model.h"
+
+typedef struct Text Text; /* base/text.h */
 
 /* ---- graph.c, sequence.c, print.c: which subsets can be solved, and in which order */
 

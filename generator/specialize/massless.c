@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Models without the mass of their light bodies, and what that takes from the equations of motion. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "specialize/specialize.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Is a model its own mirror image? By its numbers, whoever wrote them: those of each side are compared with the image
  * of the other's, to the bit. Nearly equal is not equal: a wheel that is 1e-15 heavier steers. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "read/reader.h"
 #include "specialize/mirror_model.h"

@@ -4,7 +4,6 @@
 #ifndef SPECIALIZE_MIRROR_MODEL_H
 #define SPECIALIZE_MIRROR_MODEL_H
 
-#include "base/base.h"
 #include "model/model.h"
 
 /* Pairs by their names, `*_l` and `*_r`; what has no such name is in the middle, its own image. */

@@ -2,7 +2,8 @@
  * Normal forms of expressions. Sums and products are flattened, their terms and factors ordered, equal terms counted
  * and opposite ones cancelled; signs are pulled out of products, odd functions and conditional values. Equal forms are
  * one form, so comparing two numbers compares expressions. Constants stay apart: nothing is computed with them. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "specialize/normal_form.h"

@@ -4,7 +4,6 @@
 #ifndef SPECIALIZE_NORMAL_FORM_H
 #define SPECIALIZE_NORMAL_FORM_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Partial evaluation of blocks: their graphs made anew, with numbers or other inputs in place of some inputs. The rules
  * of construction of expression/graph.c do the rest. */
-#include "base/base.h"
+#include "base/table.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "specialize/normal_form.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Models with a base that is held and coordinates that are driven, as on a test rig. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "specialize/specialize.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Formulas of a model for one scene: what the scene doesn't need is taken out of the model, what is known is folded
  * into the blocks, and what generated code must check is written down. */
-#include "base/base.h"
 #include "base/plant.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "model/powertrain_numbers.h"

@@ -5,7 +5,6 @@
 #ifndef SPECIALIZE_SPECIALIZE_H
 #define SPECIALIZE_SPECIALIZE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What each thing that is known about a scene saves, one after the other, and why it may be left out. */
-#include "base/base.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "specialize/specialize.h"

@@ -3,7 +3,6 @@
  * images. Bodies and joints are (mirror_model.c), so that what subsets recover is; here follow forces, wheels and
  * torques, by normal forms of what both sides compute. No numbers are tried out: a force law may have a threshold
  * anywhere. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "specialize/normal_form.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A vehicle that moves straight ahead: numbers of one side are those of the other, with the signs that a mirror gives
  * them, and what is odd is 0. */
-#include "base/base.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

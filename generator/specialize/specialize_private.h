@@ -4,7 +4,6 @@
 #ifndef SPECIALIZE_SPECIALIZE_PRIVATE_H
 #define SPECIALIZE_SPECIALIZE_PRIVATE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "specialize/mirror_model.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The frame in which a subset is solved. If one body alone carries a subset, the subset is solved relative to that
  * carrier: there joints have constant axes, and only the subset's own coordinates move its bodies. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

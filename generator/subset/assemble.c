@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The design configuration of a model whose joints have other lengths than the drawing (FORMAT.md section 4). */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/vec3.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

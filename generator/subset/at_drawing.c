@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The value of a class's expression at the drawn configuration, as a formula of tunable parameters. Signs and
  * scales taken at the design are then right for all values of the parameters. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

@@ -3,10 +3,10 @@
  * a direction, then its rotation is found. Each step intersects a sphere with two planes: with one point of a body
  * known, a distance or a plane is an equation v . (A b) = k about a body-fixed vector b. Of the two intersections
  * the one on the side of the design is taken; the other one lies beyond a singular configuration. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "subset/constraints.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

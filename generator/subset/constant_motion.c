@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Numbers of a subset that are the same in every configuration, such as the place and axis of an arm's hinge. Later
  * blocks use them as constants; they are not stored. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

@@ -2,10 +2,11 @@
  * Constraint equations of joints and dual coordinates (FORMAT.md sections 4 and 5): value, Jacobian with respect to the
  * twists of both ends, and the quadratic-velocity term. Every equation is a sum of scalar products of body-fixed points
  * and axes. */
-#include "base/base.h"
 #include "base/plant.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "subset/constraints.h"
 #include "subset/subset.h"
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Poses of bodies in the drawing, as formulas of geometric parameters. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "subset/subset.h"
 
 /* The reference point of a body in the drawing. */

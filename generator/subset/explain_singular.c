@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Explains why a subset with as many equations as unknowns does not determine them: which equations repeat each
  * other, which bodies can still move, and whether everywhere or at the design configuration only. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/rank.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The contribution of a subset's bodies to the equations of motion: moments of mass, forces of the
  * quadratic-velocity terms, and columns and rows of the coordinates that move the bodies. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"
 

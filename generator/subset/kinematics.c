@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Rigid-body kinematics relative to the base, in expressions. */
-#include "base/base.h"
 #include "base/plant.h"
 #include "expression/expression.h"
 #include "subset/subset.h"

@@ -2,7 +2,7 @@
  * The unit of length of a class of subsets: the largest distance of its joints from the bodies' reference points.
  * If joints are much nearer to a reference point than the bodies extend, as of a slider drawn a little beside the
  * point of its coordinate, this distance is accidental, and the unit is the extent of the bodies. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "subset/subset_private.h"

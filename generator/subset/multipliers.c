@@ -2,7 +2,6 @@
  * Multipliers of a class of subsets: J^T lambda = w, the transpose of the equations of recovery, w being the
  * wrenches that the joints must exert on the bodies. These joints load bodies of earlier subsets, so subsets are
  * solved in reverse order. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

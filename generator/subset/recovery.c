@@ -5,9 +5,10 @@
  * Unknowns of a body are the six components of its twist at its reference point. That point is on a joint that
  * connects the body to something known: the joint's equations are then unit rows, which the factorization folds
  * away. */
-#include "base/base.h"
+#include "base/message.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

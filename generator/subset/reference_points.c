@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Reference points: body-fixed points that make the equations of a body's subset sparse. */
-#include "base/base.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 

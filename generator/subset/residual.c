@@ -2,7 +2,6 @@
  * The check of a recovery in generated code: the constraints of a class and their two derivatives at the motions in
  * memory. It shares no simplification with the solution: rotations are nine numbers that must form a rotation,
  * without images of vectors. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

@@ -2,7 +2,7 @@
  * Follows the members of a class along their sample paths by numeric Newton iteration, so that every node of the
  * class's graph has values at admissible configurations, from which pivots are chosen. Subsets must be followed in
  * computational order. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

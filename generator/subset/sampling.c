@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Admissible configurations: random values of the coordinates inside their ranges, reached from the design. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"

@@ -2,7 +2,8 @@
  * Finds the places in the coordinates' ranges where independence is lost. Each coordinate is moved alone from its
  * design value to both ends of its range; the place is where a determinant changes its sign or a subset can't be
  * followed. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/redundant.h"

@@ -4,6 +4,7 @@
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "expression/factorize.h"
+#include "model/tunable.h"
 #include "subset/constraints.h"
 #include "subset/subset.h"
 #include "subset/subset_private.h"

@@ -2,7 +2,6 @@
  * Splits classes whose members need different pivots, so that numbers which are 0 or 1 in one member can be so in
  * its code. An unsplit class is correct as well: its factorization depends on no single pivot
  * (expression/factorize_block.c). */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "sequence/sequence.h"
 #include "subset/subset_private.h"

@@ -4,10 +4,11 @@
 #ifndef SUBSET_SUBSET_H
 #define SUBSET_SUBSET_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
-#include "sequence/sequence.h"
+#include "subset/method.h"
+
+typedef struct Sequence Sequence; /* sequence/sequence.h */
 
 /* ---- kinematics.c: how bodies move relative to the base */
 
@@ -131,15 +132,6 @@ void sampling_design(const Sampling *sampling, const Model *model, const double 
 double *sampling_pose(const Sampling *sampling, int step, int configuration, int body);
 
 /* ---- recovery.c, sample_paths.c, inertia.c: recovery of one class of decoupled subsets */
-
-/* The form of the equations of motion: reduced (Proposition 2.1 of Serban and Haug 2000); articulated, the same
- * equations eliminated along chains of bodies from their tips; augmented (their eq. 16). Auto: reduced or articulated,
- * whichever has fewer operations. A Plan never has auto. */
-typedef enum Solve { SOLVE_AUTO, SOLVE_REDUCED, SOLVE_ARTICULATED, SOLVE_AUGMENTED, SOLVES } Solve;
-
-/* The way to find a subset's poses: the one with fewer operations; Newton's iteration everywhere; a closed form
- * wherever there is one. */
-typedef enum Recovery { RECOVERY_AUTO, RECOVERY_NEWTON, RECOVERY_CLOSED, RECOVERIES } Recovery;
 
 /* Places of a subset's numbers. start: the state of its iteration (pose 7 a body, S, factors); motion: one Motion a
  * body; inertia: its contribution to the equations of motion, see INERTIA_*. */

@@ -3,7 +3,6 @@
 #ifndef SUBSET_SUBSET_PRIVATE_H
 #define SUBSET_SUBSET_PRIVATE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

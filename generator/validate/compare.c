@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The results of blocks at one state, compared with the definitions of joints, forces and outputs in world
  * coordinates. */
-#include "base/base.h"
 #include "base/vec3.h"
 #include "model/model.h"
 #include "model/powertrain_numbers.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Where bodies are in the world and how they move, from what blocks give in the base's frame. */
-#include "base/base.h"
 #include "base/vec3.h"
 #include "subset/subset.h"
 #include "validate/compare.h"

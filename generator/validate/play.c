@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Blocks evaluated at several states side by side, node by node in the order of the graph. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "validate/play.h"

@@ -4,7 +4,6 @@
 #ifndef VALIDATE_PLAY_H
 #define VALIDATE_PLAY_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 

@@ -2,7 +2,8 @@
  * Calls the blocks of a formulation as the templates do: recovery subset by subset, wheels, accelerations,
  * reactions, outputs. Poses are found from the design by Newton's iteration with new factors at each correction;
  * the way to a pose does not matter, since the result is checked. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/table.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"

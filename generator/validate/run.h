@@ -4,7 +4,6 @@
 #ifndef VALIDATE_RUN_H
 #define VALIDATE_RUN_H
 
-#include "base/base.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "validate/play.h"

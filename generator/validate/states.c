@@ -3,7 +3,8 @@
  * and others anywhere in it; the base in attitudes that people write (quarter and half turns about each axis) and in
  * any other; rates, inputs and ports of 0, 1 and -1 and of general numbers; to both sides of numbers at which formulas
  * may bend. Code for a scene is looked at at states, times and inputs that the scene can have. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/table.h"
 #include "model/model.h"
 #include "specialize/specialize.h"
 #include "validate/play.h"

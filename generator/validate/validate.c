@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The validation of a formulation: all states, code for a scene against code for any, and messages. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/random.h"
 #include "base/version.h"
 #include "expression/expression.h"
 #include "gic_road.h"
@@ -19,6 +20,7 @@
 #include "world/world.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

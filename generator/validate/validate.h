@@ -44,7 +44,6 @@
 #ifndef VALIDATE_VALIDATE_H
 #define VALIDATE_VALIDATE_H
 
-#include "base/base.h"
 #include "specialize/specialize.h"
 #include "vehicle/vehicle.h"
 

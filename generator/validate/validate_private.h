@@ -4,7 +4,6 @@
 #ifndef VALIDATE_VALIDATE_PRIVATE_H
 #define VALIDATE_VALIDATE_PRIVATE_H
 
-#include "base/base.h"
 #include "model/model.h"
 #include "specialize/mirror_model.h"
 #include "specialize/specialize.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Chained sequences: a subset that one body carries is described relative to that body, by its own coordinates.
  * Accelerations of its bodies get the contribution of the carrier, and their wrenches are added to the carrier's. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

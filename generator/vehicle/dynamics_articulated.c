@@ -10,7 +10,6 @@
  * frame: no digits are lost to the length of a chain. The subsets that the base carries end in the equations of
  * dynamics_reduced.c.
  */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

@@ -17,10 +17,11 @@
  * the upper block positive, what becomes of the lower one negative definite: every order has pivots.
  *
  * All accelerations are less gravity, components in the base frame. */
-#include "base/base.h"
+#include "base/message.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"

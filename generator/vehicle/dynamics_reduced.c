@@ -5,7 +5,6 @@
  * coordinates' accelerations. The subsets have already summed up their bodies: what is left is the composite inertia,
  * one row a coordinate, and an elimination that takes the suspension coordinates first, because they couple only to the
  * base. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Messages about the time and memory that a large model takes, before and during the work. */
-#include "base/base.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"

@@ -2,7 +2,6 @@
 #ifndef VEHICLE_EFFORT_H
 #define VEHICLE_EFFORT_H
 
-#include "base/base.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Applied forces (FORMAT.md sections 7 and 8), body by body and as generalised forces. */
-#include "base/base.h"
 #include "base/plant.h"
+#include "base/table.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
+#include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * All formulas of a model and their numbers: the input of emission and of the tape. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/plant_stores.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The formulas of a model whose classes are solved in lanes. The numbers of such a class are stored in rows: the
  * same number of all members, one lane a column. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 #include "model/model.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Operation counts of the emitted code, for the comment at its beginning and for the report. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Outputs by name (FORMAT.md section 9) and the poses of all bodies. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "subset/subset.h"

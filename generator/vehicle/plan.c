@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The whole vehicle relative to the world, with all subsets recovered: shared by dynamics, outputs and checks. */
-#include "base/base.h"
+#include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"

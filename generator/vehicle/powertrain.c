@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The powertrain (models/POWERTRAIN.md sections 3 and 4): its part in the equations of the wheels' spins, and the
  * numbers that decide on a change of gear. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "model/powertrain_numbers.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Reaction forces of joints (FORMAT.md section 9): the multipliers that they need, the wrenches that determine
  * these in the reduced form, and force and torque from the multipliers in either form. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Blocks of set-up that depend on geometric parameters: the numbers of derived[], and the poses of the bodies in
  * the drawing. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"

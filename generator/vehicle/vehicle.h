@@ -5,11 +5,11 @@
 #ifndef VEHICLE_VEHICLE_H
 #define VEHICLE_VEHICLE_H
 
-#include "base/base.h"
 #include "expression/expression.h"
-#include "model/model.h"
-#include "sequence/sequence.h"
+#include "model/tunable.h"
 #include "subset/subset.h"
+
+typedef struct Subset Subset; /* sequence/sequence.h */
 
 extern const char *const solve_name[SOLVES]; /* as on the command line: "reduced" */
 /* The form of that name; SOLVES: there is none. */

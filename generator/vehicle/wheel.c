@@ -2,7 +2,6 @@
  * Wheels with tires (models/TIRES.md sections 3 and 4): contact with the road and slip, the tire's forces, the
  * wheel's spin and the load on its carrier. Wheels with the same tire are one class: one function, with a row of
  * constants for each wheel. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"

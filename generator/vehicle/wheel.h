@@ -4,7 +4,6 @@
 #ifndef VEHICLE_WHEEL_H
 #define VEHICLE_WHEEL_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "vehicle/vehicle.h"

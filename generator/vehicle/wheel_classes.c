@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Merges classes of wheels whose formulas differ in numbers only: wheels with other data of the same kind of tire.
  * For code in lanes only, where more wheels then share a vector; in scalar code literal numbers are faster. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "vehicle/vehicle.h"
 

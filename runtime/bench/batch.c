@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Many vehicles at once against one after another (gicbench --batch): time of a step of one vehicle. */
-#include "base/base.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "emit/emit.h"
 #include "engine/engine.h"

@@ -5,12 +5,13 @@
 #ifndef BENCH_BENCH_H
 #define BENCH_BENCH_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "run/engines.h"
 #include "scene/scene.h"
+
+#include <stdio.h>
 
 /* ---- gicbench.c: the command line ----------------------------------------------------------------------- */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Charts with logarithmic axes, by gnuplot. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "host/host.h"
 

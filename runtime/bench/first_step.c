@@ -2,7 +2,7 @@
  * Generated against interpreted: what it takes until the first step, what a step takes from then on, and after how many
  * steps the one has made up for the other. Each start is a process of its own, so that nothing is loaded, allocated or
  * compiled there yet. */
-#include "base/base.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

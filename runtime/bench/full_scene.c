@@ -2,7 +2,8 @@
  * A scene as it stands, with its step and ratio: the third experiment of Serban and Haug 2000, section 5, the complete
  * vehicle for 30 s. CPU time, and what of a step goes into multibody system, tires and powertrain; beside the engine cc
  * as it stands its code at fast flags, one by one and with wheels in lanes. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

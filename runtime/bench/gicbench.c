@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicbench: measure engines and integrators. This file: the command line. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

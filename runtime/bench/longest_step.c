@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The longest step, which limits hardware in the loop. */
-#include "base/base.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The machine and the programs used for the measurements. */
-#include "base/base.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "bench/bench.h"
 #include "engine/engine.h"

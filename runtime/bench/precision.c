@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Run time against error of complete vehicles with their scenes: constant and variable steps, single and dual rate,
  * changes of gear within steps and at their ends. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "bench/precision.h"
 #include "engine/engine.h"

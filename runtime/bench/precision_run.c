@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Ways to integrate a scene with events, and the solution that they are compared with. */
-#include "base/base.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "bench/precision.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
+#include "host/host.h"
 #include "run/run.h"
 #include "run/variable_step.h"
 #include "scene/scene.h"

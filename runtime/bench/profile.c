@@ -2,7 +2,7 @@
  * Where the time of a step goes: Table 3 of Serban and Haug 2000, rows A to F. Interpreted engines look at the clock
  * themselves. Generated code has no place for a clock inside, so what it can be asked for is timed from outside: a
  * right-hand side at a new state takes the recovery (D) and the accelerations (A), the same again A alone. */
-#include "base/base.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "expression/expression.h"

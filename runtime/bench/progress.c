@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The estimated time of a benchmark, and its progress. */
-#include "base/base.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

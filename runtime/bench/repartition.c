@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * A vehicle that turns: coordinate partitioning must choose other independent coordinates from time to time,
  * globally independent coordinates only another Euler parameter of the base. */
-#include "base/base.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The folder of results: one page, the same as text, a CSV file for each table and a picture for each chart. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "host/host.h"
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * One right-hand side of every variant of the code, side by side: its operations, its time, its ratio to the
  * interpreted engines, and its share of the processor's peak. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "bench/calls.h"
 #include "engine/engine.h"

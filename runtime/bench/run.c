@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Runs of engines with integrators: error against a reference, CPU time over repetitions. */
-#include "base/base.h"
+#include "base/message.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes with code for any scene and with code for each alone: operations, CPU time, difference of the results. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "expression/expression.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * A step of AB3 beside its right-hand side: what the integrator takes. */
-#include "base/base.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Time against error: Tables 1 and 2 and Figs. 6 to 9 of Serban and Haug 2000, and all integrators in one diagram. */
-#include "base/base.h"
+#include "base/text.h"
 #include "bench/bench.h"
 #include "gic_runtime.h"
 #include "scene/scene.h"

@@ -5,7 +5,6 @@
 #ifndef COMPARE_COMPARE_H
 #define COMPARE_COMPARE_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "model/model.h"
 

@@ -7,7 +7,7 @@
  * The state is all of q and q'. Of it the right-hand side uses the independent ones; the dependent ones, integrated
  * along, are where Newton begins, so that it has little to do, and their rates' history is there when the choice
  * changes: no multistep history is lost. */
-#include "base/base.h"
+#include "base/random.h"
 #include "compare/compare.h"
 #include "compare/interpreted.h"
 #include "compare/partition.h"

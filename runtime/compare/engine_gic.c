@@ -2,7 +2,7 @@
  * The engine gic: globally independent coordinates interpreted, Serban and Haug 2000. Dependent coordinates are
  * recovered subset by subset in the computational sequence, each by Newton on its 7 equations a body; velocities with
  * the same factors; accelerations from equation 16. */
-#include "base/base.h"
+#include "base/message.h"
 #include "base/vec3.h"
 #include "compare/compare.h"
 #include "compare/interpreted.h"

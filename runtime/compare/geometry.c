@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Interpreted engines' numbers that follow geometric parameters (FORMAT.md section 6): the Model keeps the formulas
  * beside the numbers; here they are evaluated and written back, and the design configuration is found anew. */
-#include "base/base.h"
 #include "compare/interpreted.h"
 #include "engine/engine.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "world/world.h"
 
 #include <string.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The functions of gic_model for interpreted engines. State: FORMAT.md section 10. */
-#include "base/base.h"
 #include "base/vec3.h"
 #include "compare/interpreted.h"
 #include "engine/engine.h"

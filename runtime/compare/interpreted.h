@@ -5,7 +5,6 @@
 #ifndef COMPARE_INTERPRETED_H
 #define COMPARE_INTERPRETED_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

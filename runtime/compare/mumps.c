@@ -2,7 +2,7 @@
  *
  * The matrix of world/equations.h given to MUMPS as a whole: the general sparse symmetric indefinite solver of the
  * comparison. */
-#include "base/base.h"
+#include "base/message.h"
 #include "compare/mumps.h"
 #include "host/host.h"
 #include "world/equations.h"

@@ -6,7 +6,7 @@
 #ifndef COMPARE_MUMPS_H
 #define COMPARE_MUMPS_H
 
-#include "base/base.h"
+#include "base/pool.h"
 
 #include <stdint.h>
 

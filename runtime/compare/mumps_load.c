@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Finds and loads the plug-in with MUMPS. */
 #define _DEFAULT_SOURCE /* readlink */
-#include "base/base.h"
 #include "compare/mumps.h"
 
 #include <dlfcn.h>

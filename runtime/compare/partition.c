@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Generalized coordinate partitioning: see partition.h. */
-#include "base/base.h"
 #include "compare/partition.h"
 
 #include <math.h>

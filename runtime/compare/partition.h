@@ -7,7 +7,10 @@
 #ifndef COMPARE_PARTITION_H
 #define COMPARE_PARTITION_H
 
-#include "base/base.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
+#include <stdint.h>
 
 /* Most coordinates in one equation: those of two bodies. */
 enum { PARTITION_WIDTH = 14 };

@@ -2,7 +2,8 @@
  * What generated code takes in memory, as the user's C compiler says: it compiles the code to assembly text in which
  * sizes stand as strings, and gcc also writes its graph of calls with the stack that each function takes. Nothing is
  * run, so that a compiler for another machine can be asked too. */
-#include "base/base.h"
+#include "base/file.h"
+#include "emit/emit.h"
 #include "engine/engine.h"
 #include "host/host.h"
 #include "report/report.h"

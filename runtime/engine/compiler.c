@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The user's C compiler: its command, word by word, the folder that it works in, and what decides what it makes. */
 #define _DEFAULT_SOURCE /* mkdtemp */
-#include "base/base.h"
+#include "base/text.h"
+#include "emit/emit.h"
 #include "engine/engine.h"
 #include "host/host.h"
 

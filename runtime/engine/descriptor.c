@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The descriptor of an interpreted model: what emission prints as tables, made at run time. */
-#include "base/base.h"
 #include "base/version.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -5,17 +5,21 @@
 #ifndef ENGINE_ENGINE_H
 #define ENGINE_ENGINE_H
 
-#include "base/base.h"
-#include "emit/emit.h"
-#include "gic_batch.h"
+#include "base/pool.h"
 #include "gic_runtime.h"
-#include "model/model.h"
-#include "report/report.h"
-#include "sequence/sequence.h"
-#include "subset/subset.h"
-#include "vehicle/vehicle.h"
+#include "subset/method.h"
 
+#include <stdbool.h>
 #include <time.h>
+
+typedef struct Text Text; /* base/text.h */
+typedef struct gic_batch_model gic_batch_model;
+typedef struct Model Model;           /* model/model.h */
+typedef struct Sequence Sequence;     /* sequence/sequence.h */
+typedef struct Facts Facts;           /* vehicle/vehicle.h */
+typedef struct Embedded Embedded;     /* emit/emit.h */
+typedef struct Batch Batch;           /* emit/emit.h */
+typedef struct CodeMemory CodeMemory; /* report/report.h */
 
 /* The time of a clock, s. */
 double clock_seconds(clockid_t clock);

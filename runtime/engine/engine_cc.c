@@ -3,7 +3,8 @@
  * a private folder, load, keep a copy, tidy up. The folder is gone in any case; the code stays loaded until the program
  * ends. */
 #define _GNU_SOURCE /* dl_iterate_phdr */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "engine/object_cache.h"

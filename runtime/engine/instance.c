@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The engines by name, and instances of any of them. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Compiled objects that are kept between runs: see object_cache.h. */
-#include "base/base.h"
+#include "base/file.h"
 #include "engine/object_cache.h"
 
 #include <dirent.h>

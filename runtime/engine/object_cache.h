@@ -7,7 +7,10 @@
 #ifndef ENGINE_OBJECT_CACHE_H
 #define ENGINE_OBJECT_CACHE_H
 
-#include "base/base.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
+#include <stdint.h>
 
 /* Bytes of all kept objects unless $GICGEN_CACHE_SIZE (MB) says otherwise; the least recently used ones go first. */
 #define CACHE_MOST ((int64_t)64 << 20)

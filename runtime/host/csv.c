@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Tables as comma-separated text: results are written; states and roads are read. */
 #define _DEFAULT_SOURCE /* on_exit */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "host/host.h"
 
 #include <errno.h>

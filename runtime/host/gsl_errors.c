@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/base.h"
+#include "base/pool.h"
 #include "host/gsl_errors.h"
 
 #include <gsl/gsl_errno.h>

@@ -4,8 +4,12 @@
 #ifndef HOST_HOST_H
 #define HOST_HOST_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "gic_runtime.h"
+
+#include <stdio.h>
+
+typedef struct Text Text; /* base/text.h */
 
 /* ---- usage.c: errors in the command line */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Command lines from a table of options. */
-#include "base/base.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "host/host.h"
 

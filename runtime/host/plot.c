@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Pictures by gnuplot: curves over time, one panel a unit, and panels of one signal over another. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "gic_runtime.h"
 #include "host/host.h"
 

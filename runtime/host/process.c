@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Other programs, and signals that ask to stop. Signals are polled: there is no handler and no global variable. */
 #define _GNU_SOURCE /* program_invocation_short_name */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "host/host.h"
 
 #include <errno.h>

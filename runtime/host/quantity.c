@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Labels of axes: the quantity that a unit belongs to. */
-#include "base/base.h"
+#include "base/file.h"
 #include "host/host.h"
 
 #include <string.h>

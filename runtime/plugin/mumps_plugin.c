@@ -11,6 +11,7 @@
 
 #include <dmumps_c.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <unistd.h>
 

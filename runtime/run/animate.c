@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The page of --animate: poses of all bodies, wheels and curves at the frames, as JSON in a page without other
  * files. The scripts that show them are templates/animate*.in. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/vec3.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "gic_road.h"

@@ -4,7 +4,7 @@
 #ifndef RUN_ANIMATE_H
 #define RUN_ANIMATE_H
 
-#include "base/base.h"
+#include "base/text.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/scene.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Objects on the road of the page: cones, edges of lanes, the driver's path. */
-#include "base/base.h"
+#include "base/text.h"
 #include "run/animate.h"
 #include "scene/driver.h"
 #include "scene/scene.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The shape of a body on the page: the one in the model, or one chosen by its mass, inertia and points. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "run/animate.h"
 

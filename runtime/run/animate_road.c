@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The road along a path: square tiles of heights, each with the resolution that it needs. */
-#include "base/base.h"
+#include "base/text.h"
 #include "gic_runtime.h"
 #include "run/animate.h"
 

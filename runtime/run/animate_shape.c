@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The drawing of a model: each body by the points fixed to it, links and springs by lines between points. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "expression/expression.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "run/animate.h"
 #include "scene/scene.h"
 

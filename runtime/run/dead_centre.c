@@ -3,7 +3,7 @@
  * when one coordinate is let go. Where this coordinate turns back, it stops being independent, and any joint that goes
  * on turning there offers a coordinate in its place. Where the joints themselves lose a rank, two motions cross, and no
  * coordinate tells them apart. */
-#include "base/base.h"
+#include "base/text.h"
 #include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

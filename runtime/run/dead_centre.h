@@ -5,7 +5,6 @@
 #ifndef RUN_DEAD_CENTRE_H
 #define RUN_DEAD_CENTRE_H
 
-#include "base/base.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 

@@ -2,7 +2,7 @@
  * The engine `auto`: starts at once with code that tcc made, and goes on with a compiler's faster code where a run
  * lasts long enough. The two do the same operations in the same order, so instances, flat memory of equal layout, can
  * change hands between any two steps; whether the compiler has kept every bit is tried before. */
-#include "base/base.h"
+#include "base/random.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

@@ -2,7 +2,8 @@
  * The engine `tcc`: generated code compiled by libtcc into memory of this process. It takes no file and no compiler,
  * and some milliseconds; the code is about half as fast as an optimizing compiler's, with the same bits. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

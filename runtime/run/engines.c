@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The engines by name. */
-#include "base/base.h"
 #include "compare/compare.h"
 #include "compare/mumps.h"
 #include "engine/engine.h"

@@ -4,7 +4,6 @@
 #ifndef RUN_ENGINES_H
 #define RUN_ENGINES_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -5,7 +5,8 @@
  * plane) stay as they are. Far from it: the motion itself in steps of implicit Euler, with all velocities set to zero
  * before each, (1/h^2 - K) dx = a, which goes downhill like the real thing and turns into Newton's step as h grows. No
  * step is taken against the forces, for that would lead to where the mechanism balances on its tip. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"

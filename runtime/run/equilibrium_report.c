@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * The report of a static equilibrium for people and programs. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "run/linearize.h"
 #include "run/run.h"
 #include "scene/scene.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Rows of states to accelerations, poses and outputs (--eval), for comparison with other programs. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

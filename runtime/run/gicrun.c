@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicrun: generate, compile and run a model. This file: the command line. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "engine/engine.h"
 #include "host/host.h"
 #include "model/model.h"

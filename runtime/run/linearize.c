@@ -10,7 +10,7 @@
  * A parked vehicle stands on kinks: |V| of a tire's slip at V = 0. There the derivative is the mean of both sides, the
  * limit of central differences, so that it does not depend on the sign of what is zero but for rounding. One-sided
  * derivatives obey the chain rule through kinks, means do not (|V| times a condition on V); so both are played. */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -5,7 +5,7 @@
 #ifndef RUN_LINEARIZE_H
 #define RUN_LINEARIZE_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "engine/engine.h"
 #include "model/model.h"
 #include "run/run.h"

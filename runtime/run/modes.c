@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Eigenvalues of small motions, and the participation of each number. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"

@@ -4,13 +4,11 @@
 #ifndef RUN_RUN_H
 #define RUN_RUN_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "run/variable_step.h"
 #include "scene/scene.h"
-#include "subset/subset.h"
 
 /* ---- gicrun.c: the command line */
 

@@ -5,7 +5,6 @@
 #ifndef RUN_SCENE_EVENTS_H
 #define RUN_SCENE_EVENTS_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "run/variable_step.h"

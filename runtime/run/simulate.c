@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"
@@ -13,6 +14,7 @@
 #include "run/variable_step.h"
 #include "scene/action.h"
 #include "scene/driver.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
 

@@ -9,7 +9,6 @@
  * The second is theory, after the run, when nothing can be lost any more: of the equations linearized about that state,
  * is there a motion that dies out by itself, and grows with this method and step? One window may be a moment in a stop;
  * two in a row are a finding. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

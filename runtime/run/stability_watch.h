@@ -6,7 +6,6 @@
 #ifndef RUN_STABILITY_WATCH_H
 #define RUN_STABILITY_WATCH_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Conditions over signals, and what happens when they become true: values of conditions, changes of inputs. */
+#include "base/table.h"
+#include "base/vec3.h"
+#include "base/yaml.h"
 #include "engine/engine.h"
+#include "expression/expression.h"
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"

@@ -4,9 +4,10 @@
 #ifndef SCENE_ACTION_H
 #define SCENE_ACTION_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
+#include "model/model.h"
 #include "scene/scene.h"
 
 /* An input's new profile: the item that describes it is read again when it starts, for it may begin from the value that

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Cones and lanes of a scene for the page of --animate: models/SCENE.md section 12. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "scene/scene.h"
 
 #include <math.h>

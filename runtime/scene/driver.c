@@ -3,6 +3,7 @@
  * pedals and steering by polynomials in time, so that what it commands is three times continuously differentiable and
  * the same for every engine and integrator. */
 #include "scene/driver.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #ifndef SCENE_DRIVER_H
 #define SCENE_DRIVER_H
 
+#include "scene/profile.h"
 #include "scene/scene.h"
 
 /* A polynomial of degree 7 in time that starts at `start` and ends at rest after `duration`, s; before it at c[0],

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Facts about a scene's whole run, on which code for this scene relies. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_road.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/action.h"
 #include "scene/driver.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 #include "specialize/mirror_model.h"
 #include "specialize/specialize.h"

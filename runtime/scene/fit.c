@@ -2,7 +2,8 @@
  * Checks whether a scene fits a model. If not, the message names the models beside it that the scene fits. Other
  * models are read in child processes, because an error in a file ends the process that reads it. */
 #define _DEFAULT_SOURCE /* scandir */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

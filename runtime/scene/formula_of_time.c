@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Formulas of time with their first and second derivatives, by the chain rule from the leaves up. */
+#include "base/table.h"
+#include "expression/expression.h"
 #include "model/model.h"
 #include "scene/profile.h"
 

@@ -4,7 +4,7 @@
 #ifndef SCENE_PROFILE_H
 #define SCENE_PROFILE_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "host/host.h"
 #include "model/model.h"
 

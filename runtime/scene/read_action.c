@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * `until` and `when` of scenes: models/SCENE.md section 13. Conditions that can never become true are refused. */
-#include "base/base.h"
+#include "base/yaml.h"
+#include "expression/expression.h"
 #include "model/model.h"
 #include "scene/action.h"
 #include "scene/driver.h"

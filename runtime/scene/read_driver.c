@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The driver of a scene: models/SCENE.md section 5. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "host/host.h"
 #include "model/model.h"
 #include "scene/driver.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 #include "scene/spline.h"
 

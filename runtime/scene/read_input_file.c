@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Inputs from tables of samples (CSV): models/SCENE.md section 4. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "host/host.h"
 #include "model/model.h"
 #include "scene/profile.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Signals that a scene writes and draws: models/SCENE.md sections 1 and 6. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/scene.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Profiles of inputs as scenes write them: models/SCENE.md section 4. */
-#include "base/base.h"
+#include "base/table.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "scene/profile.h"
 #include "scene/scene.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The model as a scene has it: on a test rig the base is fixed and coordinates are driven (models/SCENE.md section
  * 10), light bodies lose their mass (section 9). */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "model/model.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 #include "specialize/specialize.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The road of a scene: models/SCENE.md section 3. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "gic_road.h"
 #include "gic_runtime.h"
 #include "scene/scene.h"

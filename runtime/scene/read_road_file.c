@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Roads from files: models/SCENE.md section 3. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "gic_road.h"
 #include "gic_runtime.h"
 #include "host/host.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The key `sleep`: models/SCENE.md section 9. */
-#include "base/base.h"
+#include "base/yaml.h"
 #include "model/model.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"

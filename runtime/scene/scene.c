@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Scenes: models/SCENE.md. */
-#include "base/base.h"
+#include "base/text.h"
+#include "base/vec3.h"
+#include "base/yaml.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -4,13 +4,15 @@
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
-#include "base/base.h"
-#include "engine/engine.h"
+#include "base/message.h"
 #include "gic_runtime.h"
-#include "host/host.h"
-#include "model/model.h"
-#include "scene/profile.h"
-#include "vehicle/vehicle.h"
+
+typedef struct Item Item;   /* base/yaml.h */
+typedef struct Model Model; /* model/model.h */
+typedef struct Coordinate Coordinate;
+typedef struct Engine Engine;   /* engine/engine.h */
+typedef struct Facts Facts;     /* vehicle/vehicle.h */
+typedef struct Profile Profile; /* profile.h */
 
 /* ---- scene.c, scene_*.c: what the vehicle does and where; models/SCENE.md */
 

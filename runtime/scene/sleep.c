@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Vehicles at rest that sleep (models/SCENE.md section 9): steps that keep the state and cost next to nothing,
  * until an input changes. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "scene/scene.h"

@@ -4,7 +4,7 @@
 #ifndef SCENE_SLEEP_H
 #define SCENE_SLEEP_H
 
-#include "base/base.h"
+#include "base/message.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/scene.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Cubic splines: h_(i-1) m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_i m_(i+1) = 6 (c_i - c_(i-1)) for second derivatives m,
  * widths h and chords c. */
-#include "base/base.h"
 #include "scene/spline.h"
 
 #include <string.h>

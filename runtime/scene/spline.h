@@ -4,7 +4,9 @@
 #ifndef SCENE_SPLINE_H
 #define SCENE_SPLINE_H
 
-#include "base/base.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
 
 /* Second derivatives [count] at rising s of the spline through y: 0 at both ends, or periodic where y ends as it
  * begins. With two points, 0: a straight line. */

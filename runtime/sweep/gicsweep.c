@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * gicsweep: one scene over many values of parameters, inputs and initial states. This file: the command line. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
 #include "base/version.h"
 #include "emit/emit.h"
 #include "engine/engine.h"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The journal of a sweep: lines are appended, never changed, and written to the disk before the next batch begins.
  * The first line identifies the sweep; an incomplete last line is ignored. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "host/host.h"
 #include "sweep/sweep.h"
 
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The runs of a sweep: a grid, or a Latin hypercube. */
-#include "base/base.h"
+#include "base/message.h"
 #include "engine/engine.h"
 #include "host/host.h"
 #include "model/model.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The runs of a sweep: in batches, side by side in lanes, or one by one, in one process or several. */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_batch.h"
 #include "gic_runtime.h"
@@ -9,6 +10,7 @@
 #include "run/run.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 #include "sweep/sweep.h"
 

@@ -3,7 +3,8 @@
  * and sends back what came of them. Processes, not threads: engines and the libraries behind them keep things of their
  * own, and nobody waits for anybody, whatever else the machine has to do. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "host/host.h"
 #include "sweep/sweep.h"
 

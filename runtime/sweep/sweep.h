@@ -5,7 +5,6 @@
 #ifndef SWEEP_SWEEP_H
 #define SWEEP_SWEEP_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_batch.h"
 #include "model/model.h"

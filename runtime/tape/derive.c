@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Set-up with geometric parameters: the template derive.c.in, over tapes. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The functions of the descriptor: the second half of the template model.c.in, over tapes. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -5,7 +5,6 @@
 #ifndef TAPE_ENGINE_TAPE_H
 #define TAPE_ENGINE_TAPE_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Opening the engine `tape` for a model: record its formulas, lay out instances, describe them. */
-#include "base/base.h"
+#include "base/table.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

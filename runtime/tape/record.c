@@ -3,10 +3,10 @@
  *
  * The order is free as long as arguments come first. It gathers operations of one kind: of all that can be done now,
  * the most numerous kind is done until none of it is left, which makes more of it possible on the way. */
-#include "base/base.h"
 #include "expression/expression.h"
 #include "tape/record.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

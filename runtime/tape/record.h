@@ -5,7 +5,6 @@
 #ifndef TAPE_RECORD_H
 #define TAPE_RECORD_H
 
-#include "base/base.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 

@@ -4,7 +4,6 @@
 #ifndef TAPE_TAPE_H
 #define TAPE_TAPE_H
 
-#include "base/base.h"
 #include "engine/engine.h"
 #include "model/model.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Wheels with tires: the templates wheels.c.in, wheel.c.in and dual_rate.c.in, over tapes. */
-#include "base/base.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Accelerations and multipliers of a World by one of the linear solvers of equations.h. */
-#include "base/base.h"
 #include "base/vec3.h"
 #include "model/model.h"
 #include "world/equations.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/base.h"
+#include "base/vec3.h"
 #include "model/model.h"
 #include "world/equations.h"
 

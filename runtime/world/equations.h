@@ -20,7 +20,9 @@
 #ifndef WORLD_EQUATIONS_H
 #define WORLD_EQUATIONS_H
 
-#include "base/base.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
 
 /* Rows of Phi that concern the same two bodies: a joint, or a driven coordinate. */
 typedef struct Constraint {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Applied forces (FORMAT.md sections 6 to 8) as a force at the centre of mass and a torque about it, body by body. */
-#include "base/base.h"
+#include "base/table.h"
 #include "base/vec3.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"

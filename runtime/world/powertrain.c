@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The powertrain, models/POWERTRAIN.md, in its notation. A tree is gone through in the order of the model, outputs
  * before what drives them, or back. */
-#include "base/base.h"
+#include "base/table.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "world/dense.h"

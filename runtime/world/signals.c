@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Signals (FORMAT.md section 7.1): outputs that formulas read, and formulas with names. */
+#include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "world/world.h"

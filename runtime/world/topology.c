@@ -9,7 +9,6 @@
  * Y Y^T is positive definite when constraints are independent, so no pivot needs looking for, and a pivot that vanishes
  * tells which constraint repeats those before it. What fills in is known from the start; each body, each constraint
  * and the base has a panel that holds its columns in the rows that are not zero, and there is no other storage. */
-#include "base/base.h"
 #include "model/model.h"
 #include "subset/subset.h"
 #include "world/equations.h"

@@ -4,6 +4,8 @@
 #ifndef WORLD_TOPOLOGY_H
 #define WORLD_TOPOLOGY_H
 
+#include <stdbool.h>
+
 /* `solver` comes from topology_solver.open. order: [constraints] place of each constraint in the elimination. stored:
  * [constraints][constraints] whether the columns of b have numbers in the rows of a, both in that order; there is no
  * other storage. */

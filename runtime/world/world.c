@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Kinematics of a mechanism in the world frame: poses, and the equations of joints and dual coordinates (FORMAT.md
  * sections 4 and 5) with their derivatives, in loops over their parts. */
-#include "base/base.h"
+#include "base/message.h"
 #include "base/vec3.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

@@ -13,7 +13,6 @@
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
-#include "base/base.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "sequence/sequence.h"

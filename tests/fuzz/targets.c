@@ -2,7 +2,8 @@
  * What each reader gets, and what must hold of what it makes of it: see fuzz.c. */
 #include "targets.h"
 
-#include "base/base.h"
+#include "base/text.h"
+#include "base/yaml.h"
 #include "emit/emit.h"
 #include "gic_runtime.h"
 #include "host/host.h"

@@ -3,7 +3,7 @@
 #ifndef ATTACK_H
 #define ATTACK_H
 
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
@@ -11,6 +11,7 @@
 #include "subset/subset.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

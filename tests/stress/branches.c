@@ -7,7 +7,7 @@
  * in such pieces, on the straight way back. Refused steps leave the instance as it was. Prints how many steps were
  * tried, taken and refused, how many of those taken were blocked on both ways, how many leapt, how many refusals were
  * not without a trace, and the largest difference of poses otherwise. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -4,7 +4,7 @@
  * must end in a status that leaves state, rate, time, history and results as they were, bit for bit, or in finite
  * results; and with the number taken back the instance must go on as one that never saw it. Prints a row of the table
  * of attacks. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -2,7 +2,7 @@
  * entry_batch MODEL: hostile numbers into one of four vehicles in lanes. It must end with the status, the state, the
  * time and the start of Newton's method that code for one vehicle leaves, its neighbours must go on with the bits that
  * they have without it, and loaded anew it must go on as if nothing had been. Prints a row of the table of attacks. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "gic_batch.h"

@@ -3,7 +3,7 @@
 #ifndef FOLLOW_H
 #define FOLLOW_H
 
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 

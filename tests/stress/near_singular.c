@@ -13,7 +13,7 @@
  * difference of accelerations; results that are no numbers, refusals after which the last state is not found again;
  * kept states that small pieces lead away from, as generated code and as gic go, and those that either does not reach.
  */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

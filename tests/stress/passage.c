@@ -7,7 +7,7 @@
  * there: a step that passes would let the length shrink again while the arm turned back. Prints how many runs were
  * tried, how many ended as they should and how many passed, and the largest angle that was left, in steps. */
 #include "attack.h"
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

@@ -4,7 +4,7 @@
  * the methods' characteristic polynomials. A run beyond the limit must end in GIC_ERROR_UNSTABLE or stay bounded by
  * what the model does when it is large. Without a model: one spring, one damper, over nine decades of stiffness; and
  * dual rate, on a linear system whose fast state is as fast as is wanted. Prints rows of the table of attacks. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

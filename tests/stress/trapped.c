@@ -2,7 +2,7 @@
  * trapped MODEL SCENE SECONDS: the beginning of a scene by generated code, with outputs, poses and self-tests every ten
  * steps, while invalid operations, divisions by zero and overflows end the program. */
 #define _GNU_SOURCE
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -3,9 +3,10 @@
  * order of keys; the sequence is another test's. A number by itself, which may be a difference of large ones too, is
  * taken to be LEAST in size (default 0) where it is less. Prints the first difference; exit status 0: equal, 1:
  * different, 2: usage. */
-#include "base/base.h"
+#include "base/yaml.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -9,7 +9,7 @@
  * Standard output: CSV, one row for each set of events that windows contain: windows, sums of errors with the step, its
  * half and its quarter. The last row says how far a difference of 1e-12 m/s at the start grows. tests/bench/events.sh
  * does this for the scenes of models/EVENTS.md. */
-#include "base/base.h"
+#include "base/table.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

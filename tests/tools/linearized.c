@@ -4,7 +4,7 @@
  * Prints for each row of STATES (columns of `gicrun --eval`) the matrix A of dz/dt = f + A z (runtime/run/linearize.h)
  * on the road of SCENE: a line a row of A, entries to 17 digits, with the row of STATES, from 1, in front. A state that
  * can not be evaluated has no lines. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

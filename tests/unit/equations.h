@@ -6,7 +6,9 @@
 #ifndef TEST_EQUATIONS_H
 #define TEST_EQUATIONS_H
 
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
+#include "base/vec3.h"
 #include "world/equations.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * How far a step goes ahead belongs to what a recovery was for: where a subset would reach a singular configuration
  * within a step, the step is refused, whether or not outputs of the same state, which look no step ahead, were asked
  * for before. Generated code and tapes; models in which subsets are kept one by one (hmmwv) and all at once (tires). */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "read/read.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Sums added in the order in which their terms become ready: the same values as before, evaluated from the nodes alone
  * in extended precision, with no more operations and no longer a way. */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "expression/expression.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The cache of compiled objects: what is kept is found again whole, damaged objects are not, limits hold, and several
  * processes may write at once. */
-#include "base/base.h"
+#include "base/file.h"
 #include "engine/engine.h"
 #include "engine/object_cache.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A program that opens engines and closes them again, thousands of times perhaps, keeps nothing of them: no executable
  * memory, no open file, no file in the folder for temporary ones. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "model/model.h"
 #include "read/read.h"

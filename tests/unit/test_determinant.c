@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The determinant that closed forms have from their roots against the product of the pivots of Newton's matrix, at all
  * configurations that pivots are chosen at. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "model/model.h"

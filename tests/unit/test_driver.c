@@ -12,7 +12,7 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "base/base.h"
+#include "base/text.h"
 #include "host/host.h"
 #include "read/read.h"
 #include "scene/driver.h"

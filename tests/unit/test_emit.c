@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Emitted C against the graph it came from: random blocks are compiled by the system's compiler and must give the same
  * bits. And templates. */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/random.h"
 #include "emit/emit.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"

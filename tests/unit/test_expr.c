@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The expression graph against an interpreter of its own: simplification must not change values, equal expressions must
  * be one node, operations must be counted, and depth must not cost stack. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/text.h"
 #include "emit/emit.h"
 #include "expression/expression.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "base/base.h"
+#include "base/file.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

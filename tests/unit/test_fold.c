@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sums over lanes that are made together: the steps of ex_fold, played by what their comment says on whole numbers, so
  * that sums are exact, and which sums share them. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 

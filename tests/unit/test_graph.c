@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What people see of the graph: messages about over- and under-determined models, the table and the drawing. */
-#include "base/base.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 

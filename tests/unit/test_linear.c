@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Straight-line factorizations against dense elimination in extended precision, and their operations against counts by
  * hand. */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "expression/expression.h"
 
 #include <math.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Normal forms of expressions: what they prove equal has equal values at numbers that people write, random graphs of
  * nice numbers among them; what differs at one place, however far away, has another form. */
-#include "base/base.h"
+#include "base/random.h"
+#include "base/table.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "specialize/normal_form.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Checks of a packed block: in all lanes at once where those of its numbers are alike, else one by one, none lost. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "expression/expression.h"
 #include "expression/vectorize.h"
 #include "gic_runtime.h"

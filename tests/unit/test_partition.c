@@ -3,7 +3,7 @@
  * and the last pivot of elimination with full pivoting lies between s over and s times some factor of the size, 30
  * here. Well above the limit of 1e-10 a choice is made and solves to the digits that are left; well below there is
  * none. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "compare/partition.h"
 
 #include <math.h>

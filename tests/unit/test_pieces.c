@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Coordinates that jump far, up to five times their range: a recovery by Newton's iteration follows in as many pieces
  * as it needs, or says which way it failed. The tape against compiled code, status by status and digit by digit. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "read/read.h"

@@ -12,9 +12,10 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "base/base.h"
+#include "base/text.h"
 #include "host/host.h"
 #include "read/read.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 
 static const double pi = 3.14159265358979323846;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Names inside formulas follow the mirror and a prefix (FORMAT.md sections 12 and 13). */
-#include "base/base.h"
+#include "base/file.h"
+#include "base/yaml.h"
 #include "host/host.h"
 #include "read/reader.h"
 

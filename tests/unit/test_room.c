@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * An instance is `size` bytes wherever its owner puts it: engines write nothing behind it, not even where a coordinate
  * goes so far in a part of a step that bodies follow it piece by piece. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

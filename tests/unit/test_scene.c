@@ -11,11 +11,13 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/vec3.h"
 #include "gic_road.h"
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "read/read.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 
 static const char model_text[] =

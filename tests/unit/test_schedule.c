@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The order of statements: what it must keep, on random graphs, and what it is for, by a processor of the test's own.
  */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "expression/expression.h"
 
 #include <setjmp.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The computational sequence against sequences derived by hand, and against brute force on small random models. */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 

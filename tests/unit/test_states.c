@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The states at which generated code is validated (generator/validate/states.c): the design, both ends of each range
  * and what is between them, and nothing beyond; for a scene what its inputs are at the time of the state. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "model/model.h"
 #include "read/read.h"
 #include "sequence/sequence.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Tables (FORMAT.md section 7): a straight line stays one, whatever its slope; slopes where secants differ, by hand; no
  * bump where values rise all along, and none beside an extremum. */
-#include "base/base.h"
+#include "base/table.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,8 @@
  * Tapes against a plain evaluation of the graph, node by node in the order in which nodes were made: equal to the bit,
  * since a tape may change the order of operations but none of them. Checks, roads, tables, and what happens to memory.
  */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 #include "tape/record.h"

@@ -2,7 +2,9 @@
  * The solvers of world/equations.h, topology-based and MUMPS: results, fill, what they refuse and what they call. The
  * Makefile links this program so that it sees every call of malloc, calloc, realloc and dmumps_c. */
 #include "equations.h"
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
+#include "base/vec3.h"
 #include "compare/mumps.h"
 #include "world/equations.h"
 #include "world/topology.h"

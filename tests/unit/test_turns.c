@@ -2,7 +2,7 @@
  * Instances of one engine that take turns: a change of gear goes by the state of the instance that is asked, not by
  * that which the engine has looked at last. The selector and the limits of the gears follow coordinates here, so that
  * what must come out is read off the model. */
-#include "base/base.h"
+#include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -4,7 +4,8 @@
  * by number is checked elsewhere, against the reference.
  *
  * Tolerance where nothing else is said: 1e-12, relative to the sizes at hand: some hundred roundings. */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Kinematics of interpreted engines against differences of their own values: J and Psi_w by first, gamma by second
  * differences, for every type of joint and coordinate; coordinates as functions of the configuration; small systems. */
-#include "base/base.h"
+#include "base/pool.h"
+#include "base/random.h"
 #include "model/model.h"
 #include "read/read.h"
 #include "sequence/sequence.h"

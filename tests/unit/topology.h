@@ -5,13 +5,15 @@
 #ifndef TOPOLOGY_H
 #define TOPOLOGY_H
 
-#include "base/base.h"
+#include "base/message.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>

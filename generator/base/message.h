@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Messages for people, and the input files that they name. Bad input ends in diag_fail(), which prints one message and
+ * exits with status 1. */
+#ifndef BASE_MESSAGE_H
+#define BASE_MESSAGE_H
+
+#include "base/pool.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* ---- message.c */
+
+/* A place in an input file. line and column count from 1; 0: the file as a whole. */
+typedef struct Place {
+    const struct Source *source;
+    int line, column;
+} Place;
+
+typedef struct Source {
+    const char *path; /* as the user gave it */
+    const char *bytes;
+    size_t size;
+    const char *mirrored; /* of a mirror image: the entry it was made from, at whose place it is reported; NULL: the
+                           * entry itself */
+    bool hidden;          /* messages show no text of this file: it is not yet known to be a file of the expected kind
+                           */
+    struct Named *named;  /* the files that this file names: source.c */
+} Source;
+
+/* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
+ * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1.
+ */
+_Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The same as a warning; returns. */
+void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The source line of a place; the text after the line follows. */
+const char *diag_line(Place at);
+/* The place of a byte of a source: its line, and its column in characters (UTF-8). */
+Place diag_place(const Source *source, size_t offset);
+/* The word of `count` words that is nearest to `word` (edit distance); NULL if none is near. */
+const char *diag_nearest(const char *word, const char *const *words, int count);
+
+/* ---- source.c: input files and those that they name */
+
+/* Read a file as file_read() does. by: the file that names it; NULL: the user does. */
+Source *source_read(Pool *pool, const char *path, size_t most, const Source *by);
+/* Exit with a message if the file to be written is this input or a file that it names. */
+void source_keep(const Source *source, const char *output);
+/* A hash of the contents of this file and of all files that it names. */
+uint64_t source_hash(const Source *source);
+
+#endif
