@@ -3,6 +3,7 @@
 #include "base/plant.h"
 #include "expression/expression.h"
 #include "subset/subset.h"
+#include "sequence/sequence.h"
 #include "vehicle/plant_stores.h"
 #include "vehicle/vehicle.h"
 
