@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "expression/expression.h"
 
+typedef struct Source Source;           /* base/message.h */
 typedef struct Model Model;             /* model/model.h */
 typedef struct Formulation Formulation; /* vehicle/vehicle.h */
 

@@ -2,6 +2,7 @@
  * Warnings about entries that nothing reads: tunable parameters, tables, inputs and signals (FORMAT.md section 6). */
 #include "base/message.h"
 #include "base/pool.h"
+#include "base/table.h"
 #include "model/model.h"
 #include "read/reader.h"
 
