@@ -148,10 +148,10 @@ static int find_pedal(Pool *pool, const Model *model, const Item *map, const cha
     const char *unit = model->input[index].unit;
     const Item *item = doc_find(map, key);
     if (strcmp(unit, "1") != 0)
-        diag_fail(item ? item->at : map->at,
-                  pool_print(pool, "give the model an input of unit 1 for it, and multiply it by %s in the formula",
-                             unit),
-                  "the driver moves '%s' from 0 to 1, but the model has it in %s", model->input[index].name, unit);
+        diag_fail(
+            item ? item->at : map->at,
+            pool_print(pool, "give the model an input of unit 1 for it, and multiply it by %s in the formula", unit),
+            "the driver moves '%s' from 0 to 1, but the model has it in %s", model->input[index].name, unit);
     return index;
 }
 
