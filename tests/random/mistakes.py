@@ -35,6 +35,8 @@ def why(answer, mistake, folder, before):
         return f"not at {mistake.file}:{mistake.line}"
     if not mistake.line and mistake.file and place.group(1) != mistake.file:
         return f"not in {mistake.file}"
+    # warnings stand before the message
+    text = text[text.index(errors[0]):]
     remedies = [line for line in text.split("\n") if line.startswith("  remedy: ")]
     if len(remedies) != 1:
         return "no remedy"

@@ -19,7 +19,8 @@ class Message:
 
     def __init__(self, text):
         match = re.search(r"^(.*?):(\d+):(\d+): error: (.*)$", text, re.M)
-        remedy = re.search(r"^  remedy: (.*)$", text, re.M)
+        # warnings stand before it
+        remedy = re.search(r"^  remedy: (.*)$", text[match.start() if match else 0:], re.M)
         self.whole = text
         self.path, self.line, self.column, self.says = (
             (match.group(1), int(match.group(2)), int(match.group(3)), match.group(4)) if match else (None, 0, 0, text))
