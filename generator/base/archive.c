@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The zip archive: the same bytes for the same files, with names sorted and one date for all. */
-#include "fmu/fmu_private.h"
+ * A zip archive by minizip, written to a temporary file, because minizip writes to files alone. */
+#include "base/archive.h"
+#include "base/base.h"
 
 #include <minizip/zip.h>
 #include <stdlib.h>
