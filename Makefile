@@ -29,7 +29,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime -I$(BUILD) $(CFLAGS) -MMD -MP
-# of host programs; gicgen needs libyaml and minizip, what it emits nothing
+# of host programs, gicrun minizip too; gicgen needs libyaml and minizip, what it emits nothing
 LIBRARIES := -lyaml -lgsl -lgslcblas -lklu -ltcc -lm -ldl
 # of the plug-in that the engine gcp2 loads, where it is there: by the name for linking, or as programs load it
 MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&1 && echo there),$(firstword \
@@ -74,7 +74,7 @@ $(BUILD)/gicgen: $(BUILD)/generator/gicgen.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
 
 $(BUILD)/gicrun: $(BUILD)/runtime/run/gicrun.o $(archive)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES) -lminizip
 
 $(BUILD)/gicsweep: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/sweep/*.c)) $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
@@ -101,7 +101,7 @@ $(BUILD)/check/gicgen_planted: $(BUILD)/generator/gicgen.o $(planted_objects) $(
 
 $(BUILD)/check/gicrun_planted: $(BUILD)/runtime/run/gicrun.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES) -lminizip
 
 # the page says how the interpreted engines were compiled
 $(BUILD)/runtime/bench/machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
@@ -231,7 +231,7 @@ $(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/run/gicrun.o $
 	@mkdir -p $@.o
 	for file in $(spoiled); do $(COMPILE) $(PLANT) -c -o $@.o/$$(basename $$file .c).o $$file || exit 1; done
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/run/gicrun.o $(patsubst %.c,$@.o/%.o,$(notdir $(spoiled))) \
-	    $(archive) $(LIBRARIES)
+	    $(archive) $(LIBRARIES) -lminizip
 
 # ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
 

@@ -4,6 +4,7 @@
 #ifndef FMU_FMU_PRIVATE_H
 #define FMU_FMU_PRIVATE_H
 
+#include "base/archive.h"
 #include "base/text.h"
 #include "fmu/fmu.h"
 #include "model/model.h"
@@ -122,23 +123,7 @@ void describe_terminals(Text *out, const Variables *all);
 void write_model_header(Text *out, const char *templates, const Description *d);
 void write_runtime_header(Text *out, const char *templates, const Description *d, const Text *runtime);
 
-/* ---- binaries.c, archive.c */
-
-typedef struct Member {
-    const char *name, *bytes;
-    size_t size;
-} Member;
-
-/* Files of an FMU, by name once sorted. */
-typedef struct Members {
-    Pool *pool;
-    int count;
-    Member *member;
-} Members;
-
-void member_add(Members *members, const char *name, const char *bytes, size_t size);
-/* All of them as bytes of a zip archive: the same for the same files. NULL: *why. */
-const char *archive_bytes(Members *members, const char *folder, size_t *size, const char **why);
+/* ---- binaries.c */
 
 /* Compile the C files of `sources` for each platform that there is a compiler for and add the results. folder: an empty
  * one. Returns a failure of the compiler for this machine, NULL: none; says what there is on stderr. */

@@ -505,6 +505,29 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
     return out;
 }
 
+bool equilibrium_set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    const Linear *linear = found->linear;
+    const Scene *moving = equilibrium_scene(pool, scene, found);
+    double *state = tape_array(found->self, code->state_offset);
+    if (!found->locked)
+        return false;
+    if (code->free_base) {
+        memcpy(state + linear->places + 1, moving->velocity, sizeof moving->velocity);
+        memcpy(state + linear->places + 4, moving->angular_velocity, sizeof moving->angular_velocity);
+    }
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0)
+            state[code->coordinate_state[c] + code->slow_count / 2] = moving->rate[c];
+    const int status = scene_set_fast(code, moving, &found->self->head);
+    if (status != GIC_OK)
+        diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
+                  "the equilibrium can't be set in motion: %s",
+                  instance_status(pool, code, &found->self->head, status));
+    return true;
+}
+
 const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
     if (!scene->equilibrium)

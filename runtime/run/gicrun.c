@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "read/read.h"
 #include "run/engines.h"
+#include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/run.h"
 #include "run/stability_watch.h"
@@ -14,6 +15,7 @@
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +24,7 @@ static const char help[] =
     "              [--animate page.html]\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
     "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
@@ -39,6 +42,10 @@ static const char help[] =
     "                     wheel loads; -o: the state as a row that --eval reads\n"
     "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
     "                     the scene's velocities; -o: the same as CSV\n"
+    "      --linearize    the linear model about the same state: A, B, C, D and derivatives by\n"
+    "                     tunable parameters, with names and units; -o: as CSV, or for NumPy\n"
+    "                     (.npz) or MATLAB (.mat)\n"
+    "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
@@ -80,6 +87,15 @@ static void read_tolerance(void *request, char *word)
     ((Request *)request)->tolerance = value;
 }
 
+static void read_at(void *request, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || end == word || !(value >= 0 && isfinite(value)))
+        usage_fail("gicrun", "--at must be a time in s, 0 or more, unlike", word);
+    ((Request *)request)->at = value;
+}
+
 static void read_engine(void *request, char *name)
 {
     ((Request *)request)->engine = name;
@@ -113,9 +129,15 @@ static void read_lanes(void *request, char *word)
         usage_fail("gicrun", "--lanes takes 2, 4, 8 or 16, not", word);
 }
 
+/* False: something else than to run a scene is asked for. */
+static bool is_run(const Request *request)
+{
+    return !request->states && !request->rests && !request->modes && !request->linear;
+}
+
 static Request read_command_line(int count, char **word)
 {
-    Request request = {.engine = engine_name[0], .compiler = compiler_default(), .flags = ""};
+    Request request = {.engine = engine_name[0], .compiler = compiler_default(), .flags = "", .at = NAN};
     const Option option[] = {
         {"output", 'o', .text = &request.results},
         {"plot", .text = &request.picture},
@@ -123,6 +145,8 @@ static Request read_command_line(int count, char **word)
         {"eval", .text = &request.states},
         {"equilibrium", .on = &request.rests},
         {"modes", .on = &request.modes},
+        {"linearize", .on = &request.linear},
+        {"at", .read = read_at},
         {"integrator", .text = &request.integrator},
         {"tolerance", .read = read_tolerance},
         {"engine", .read = read_engine},
@@ -139,10 +163,12 @@ static Request read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (request.rests + request.modes + (request.states != NULL) > 1)
-        usage_fail("gicrun", "one of --eval, --equilibrium and --modes, please", NULL);
-    const bool runs = !request.states && !request.rests && !request.modes;
-    if (files < 2 && runs)
+    if (request.rests + request.modes + request.linear + (request.states != NULL) > 1)
+        usage_fail("gicrun", "one of --eval, --equilibrium, --modes and --linearize, please", NULL);
+    const bool runs = is_run(&request), at = !isnan(request.at);
+    if (at && !request.linear)
+        usage_fail("gicrun", "--at goes with --linearize", NULL);
+    if (files < 2 && (runs || at))
         usage_fail("gicrun", "no scene given", NULL);
     if (files > 2)
         usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
@@ -155,16 +181,26 @@ static Request read_command_line(int count, char **word)
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
-        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium or --modes", NULL);
+        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
     if (request.page && !runs)
-        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium or --modes", NULL);
+        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
-    if (!request.results && !request.picture && !request.page && (runs || request.states))
+    if (request.linear && request.results && !linear_file_known(request.results))
+        usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
+    if (!request.results && !request.picture && !request.page && (runs || request.states || request.linear))
         request.results = "-";
     return request;
+}
+
+static void linear(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const OperatingPoint point = isnan(request->at)
+                                     ? operating_point_rest(pool, model, scene, request->solve)
+                                     : operating_point_run(pool, model, scene, request->solve, request->at);
+    linear_report(pool, model, &point, request);
 }
 
 /* The reports on the static equilibrium. */
@@ -211,7 +247,12 @@ int main(int count, char **word)
     if (request.picture)
         plot_check(pool);
     model = scene_rig(pool, model, &scene);
-    const bool runs = !request.states && !request.rests && !request.modes;
+    if (request.linear) {
+        linear(pool, model, scene, &request);
+        pool_free(pool);
+        return 0;
+    }
+    const bool runs = is_run(&request);
     if (runs)
         scene = equilibrium_start(pool, model, scene, request.solve);
     const bool drawn = request.picture;

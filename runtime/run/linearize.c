@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * dz/dt = f + A z: the right-hand side of the engine `tape` in dual numbers, one direction after the other.
+ * dz/dt = f + A z, and derivatives by inputs and parameters and of outputs: right-hand side and outputs of the engine
+ * `tape` in dual numbers, one direction after the other.
  *
  * The dependent coordinates q solve Phi(q, x) = 0 by Newton's iteration q1 = q0 - J(q0)^-1 Phi(q0, x). At a solution q0
  * one correction in dual numbers has the exact derivative, whatever derivative q0 came with, for
@@ -109,28 +110,43 @@ static int recover(const Linear *linear, const double *y, const double *dy, doub
 }
 
 /* Coordinates and their rates, in derivatives of an instance. */
-static void scatter(const Linear *linear, const double *dy)
+static void scatter(const Linear *linear, const double *dy, const double *du)
 {
     const TapeEngine *engine = linear->engine;
     const Plan *plan = engine->formulation->plan;
     double *dx = tape_array(linear->slope, engine->x_offset), *dxd = tape_array(linear->slope, engine->xd_offset);
     double *start = tape_start(linear->slope);
     for (int w = 0; w < plan->model->coordinates; ++w) {
-        if (plan->coordinate_state[w] < 0)
-            continue;
-        dx[w] = start[w] = dy[plan->coordinate_state[w]];
-        dxd[w] = dy[plan->coordinate_rate[w]];
+        const Coordinate *c = &plan->model->coordinate[w];
+        dx[w] = start[w] = c->driven ? du[c->input] : dy[plan->coordinate_state[w]];
+        dxd[w] = c->driven ? du[c->input + 1] : dy[plan->coordinate_rate[w]];
     }
 }
 
-/* drate: derivative of the state's rate along dy, both [states], one-sided where `kinks` are met; linear->rate: the
- * rate on that side. `self` has just been evaluated at its state. near: share of dy within which kinks are met. */
-static int rate_to_side(const Linear *linear, const Instance *self, const double *dy, double near, double *drate,
-                        int *kinks)
+/* A direction, in the instance of derivatives: what changes besides the state. Geometric parameters change the derived
+ * numbers. */
+static int set_direction(const Linear *linear, const Direction *along)
+{
+    const gic_model *code = &linear->engine->code;
+    double *dp = tape_array(linear->slope, code->parameter_offset);
+    memcpy(tape_array(linear->slope, code->input_offset), along->u, (size_t)code->input_count * sizeof(double));
+    memcpy(tape_array(linear->slope, code->port_offset), along->port, (size_t)code->port_count * sizeof(double));
+    memcpy(dp, along->p, (size_t)code->parameter_count * sizeof *dp);
+    bool tuned = false;
+    for (int i = 0; linear->engine->derive && i < code->parameter_count; ++i)
+        tuned = tuned || dp[i] != 0;
+    return tuned ? tape_derive_dual(linear->value, linear->slope, linear->frame) : GIC_OK;
+}
+
+/* linear->drate: derivatives of the state's rate and of the outputs along linear->along, one-sided where `kinks` are
+ * met; linear->rate: their values on that side. `self` has just been evaluated at its state. near: share of the
+ * direction within which kinks are met. outputs: number of outputs; 0: they are not looked at. */
+static int rate_to_side(const Linear *linear, const Instance *self, double near, int outputs, int *kinks)
 {
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
-    const double time = gic_time(self), dtime = 0;
+    const double time = gic_time(self), dtime = 0, *dy = linear->along.y;
+    const int states = code->slow_count + code->fast_count;
     double e[4], de[4], *array[WHOLE_COUNT], *slope[WHOLE_COUNT];
     memcpy(linear->value, self, code->size);
     memset(linear->slope, 0, code->size);
@@ -138,26 +154,35 @@ static int rate_to_side(const Linear *linear, const Instance *self, const double
     linear->slope->head.flip = self->head.flip;
     const double *y = tape_array(linear->value, code->state_offset);
     int status = orient(self, y, dy, e, de);
+    if (status == GIC_OK)
+        status = set_direction(linear, &linear->along);
     if (status != GIC_OK)
         return status;
-    scatter(linear, dy);
+    scatter(linear, dy, linear->along.u);
     status = recover(linear, y, dy, near, kinks);
     if (status != GIC_OK)
         return status;
     const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head, near, kinks};
-    tape_arrays(linear->value, &time, y, e, linear->rate, NULL, NULL, array);
-    tape_arrays(linear->slope, &dtime, dy, de, drate, NULL, NULL, slope);
+    tape_arrays(linear->value, &time, y, e, linear->rate, NULL, linear->rate + states, array);
+    tape_arrays(linear->slope, &dtime, dy, de, linear->drate, NULL, linear->drate + states, slope);
     if (engine->wheel)
         status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
     if (status == GIC_OK)
         status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    if (status == GIC_OK && outputs && engine->wrenches)
+        status = tape_react_dual((Instance *const[]){linear->value, linear->slope},
+                                 (TapeLinks[]){linear->value_links, linear->slope_links}, &world, array, slope,
+                                 linear->frame);
+    if (status == GIC_OK && outputs)
+        status = tape_play_dual(engine->outputs, 0, array, slope, &world, engine->frame, linear->frame);
     return status;
 }
 
-/* True if the rate jumps: the difference between both sides is more than slopes can make of their distance. */
-static bool is_jump(int states, double near, const double *const rate[2], const double *const drate[2])
+/* True if a rate or an output jumps: the difference between both sides is more than slopes can make of their distance.
+ */
+static bool is_jump(int count, double near, const double *const rate[2], const double *const drate[2])
 {
-    for (int i = 0; i < states; ++i) {
+    for (int i = 0; i < count; ++i) {
         const double between = near * (fabs(drate[0][i]) + fabs(drate[1][i]));
         if (fabs(rate[0][i] - rate[1][i]) > equilibrium_limit * (1 + fabs(rate[0][i])) + 2 * between)
             return true;
@@ -165,24 +190,38 @@ static bool is_jump(int states, double near, const double *const rate[2], const 
     return false;
 }
 
-/* linear->drate: derivative of the state's rate along linear->dy; at kinks the mean of both sides. *jump: set where the
- * rate itself is another one on the other side. */
-static int rate_along(const Linear *linear, const Instance *self, double near, bool *jump)
+/* The direction the other way. */
+static void turn_round(const Linear *linear)
 {
-    const int states = linear->engine->code.slow_count + linear->engine->code.fast_count;
-    double other_rate[states + 1], other[states + 1];
+    const gic_model *code = &linear->engine->code;
+    const Direction *along = &linear->along;
+    for (int i = 0; i < code->slow_count + code->fast_count; ++i)
+        along->y[i] = -along->y[i];
+    for (int i = 0; i < code->input_count; ++i)
+        along->u[i] = -along->u[i];
+    for (int i = 0; i < code->port_count; ++i)
+        along->port[i] = -along->port[i];
+    for (int i = 0; i < code->parameter_count; ++i)
+        along->p[i] = -along->p[i];
+}
+
+/* linear->drate: derivatives of the state's rate and of the outputs along linear->along; at kinks the mean of both
+ * sides. *jump: set where one of them is another one on the other side. */
+static int rate_along(const Linear *linear, const Instance *self, double near, int outputs, bool *jump)
+{
+    const int count = linear->engine->code.slow_count + linear->engine->code.fast_count + outputs;
+    double other_rate[count + 1], other[count + 1];
     int kinks = 0;
-    int status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
+    int status = rate_to_side(linear, self, near, outputs, &kinks);
     if (status != GIC_OK || !kinks)
         return status;
-    memcpy(other_rate, linear->rate, (size_t)states * sizeof *other);
-    memcpy(other, linear->drate, (size_t)states * sizeof *other);
-    for (int i = 0; i < states; ++i)
-        linear->dy[i] = -linear->dy[i];
-    status = rate_to_side(linear, self, linear->dy, near, linear->drate, &kinks);
-    *jump = *jump || is_jump(states, near, (const double *const[]){linear->rate, other_rate},
+    memcpy(other_rate, linear->rate, (size_t)count * sizeof *other);
+    memcpy(other, linear->drate, (size_t)count * sizeof *other);
+    turn_round(linear);
+    status = rate_to_side(linear, self, near, outputs, &kinks);
+    *jump = *jump || is_jump(count, near, (const double *const[]){linear->rate, other_rate},
                              (const double *const[]){linear->drate, other});
-    for (int i = 0; i < states; ++i)
+    for (int i = 0; i < count; ++i)
         linear->drate[i] = (other[i] - linear->drate[i]) / 2;
     return status;
 }
@@ -289,29 +328,65 @@ static void motion_rate_change(const Linear *linear, const double *y, const doub
         df[places + i] -= c[0][i] + c[1][i] + c[2][i];
 }
 
-int linearize(const Linear *linear, Instance *self, double *f, double *A)
+int linear_start(const Linear *linear, Instance *self, double *f)
 {
     const gic_model *code = &linear->engine->code;
     const double *y = tape_array(self, code->state_offset);
-    const int count = linear->count;
-    double z[count + 1], column[count + 1];
-    int status = code->rhs(self, gic_time(self), y, linear->evaluated);
+    const int status = code->rhs(self, gic_time(self), y, linear->evaluated);
+    if (status == GIC_OK)
+        motion_rate(linear, y, linear->evaluated, f);
+    return status;
+}
+
+/* Set linear->along to a unit of one number; z: [count], 1 for it if it is one of the motions, else 0. Returns the
+ * share of the direction within which kinks count as met. */
+static double point_along(const Linear *linear, Instance *self, LinearKind kind, int j, double *z)
+{
+    const gic_model *code = &linear->engine->code;
+    const Direction *along = &linear->along;
+    memset(z, 0, (size_t)linear->count * sizeof *z);
+    memset(along->y, 0, (size_t)(code->slow_count + code->fast_count) * sizeof *along->y);
+    memset(along->u, 0, (size_t)code->input_count * sizeof *along->u);
+    memset(along->port, 0, (size_t)code->port_count * sizeof *along->port);
+    memset(along->p, 0, (size_t)code->parameter_count * sizeof *along->p);
+    double *const number[] = {
+        [LINEAR_MOTION] = z, [LINEAR_INPUT] = along->u, [LINEAR_PORT] = along->port, [LINEAR_PARAMETER] = along->p};
+    number[kind][j] = 1;
+    if (kind == LINEAR_MOTION)
+        state_change(linear, tape_array(self, code->state_offset), z, along->y);
+    const double value = kind == LINEAR_PARAMETER ? tape_array(self, code->parameter_offset)[j] : 1;
+    return at_kink * (kind == LINEAR_MOTION ? linear->reach[j] : value != 0 ? fabs(value) : 1);
+}
+
+int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
+                  bool *jump)
+{
+    const gic_model *code = &linear->engine->code;
+    const double *y = tape_array(self, code->state_offset);
+    double z[linear->count + 1];
+    const double near = point_along(linear, self, kind, j, z);
+    *jump = false;
+    const int status = rate_along(linear, self, near, outputs, jump);
     if (status != GIC_OK)
-        return status;
-    motion_rate(linear, y, linear->evaluated, f);
-    memset(z, 0, sizeof z);
-    for (int j = 0; j < count; ++j) {
-        linear->jumps[j] = false;
-        z[j] = 1;
-        state_change(linear, y, z, linear->dy);
-        status = rate_along(linear, self, at_kink * linear->reach[j], &linear->jumps[j]);
-        if (status != GIC_OK)
-            return self->head.status = status;
-        motion_rate_change(linear, y, linear->evaluated, z, linear->drate, column);
+        return self->head.status = status;
+    motion_rate_change(linear, y, linear->evaluated, z, linear->drate, df);
+    for (int i = 0; i < outputs; ++i)
+        dout[i] = linear->drate[code->slow_count + code->fast_count + i];
+    return GIC_OK;
+}
+
+int linearize(const Linear *linear, Instance *self, double *f, double *A)
+{
+    const int count = linear->count;
+    double column[count + 1];
+    int status = linear_start(linear, self, f);
+    for (int j = 0; j < count && status == GIC_OK; ++j) {
+        status = linear_column(linear, self, LINEAR_MOTION, j, column, 0, NULL, &linear->jumps[j]);
         for (int i = 0; i < count; ++i)
             A[i * count + j] = column[i];
-        z[j] = 0;
     }
+    if (status != GIC_OK)
+        return status;
     return gic_finite(A, count * count) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
@@ -412,13 +487,17 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     *linear = (Linear){.engine = tape, .value_links = tape_links_new(pool, f), .slope_links = tape_links_new(pool, f)};
     name_numbers(pool, linear);
     const size_t states = (size_t)(tape->code.slow_count + tape->code.fast_count + 1);
+    const size_t results = states + (size_t)tape->code.output_count;
     linear->value = (Instance *)(void *)instance_new(pool, engine);
     linear->slope = (Instance *)(void *)instance_new(pool, engine);
     linear->frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof(double));
     linear->q = pool_alloc(pool, (size_t)(7 * bodies + 1) * sizeof(double));
-    linear->dy = pool_alloc(pool, states * sizeof(double));
+    linear->along = (Direction){.y = pool_alloc(pool, states * sizeof(double)),
+                                .u = pool_alloc(pool, (size_t)(tape->code.input_count + 1) * sizeof(double)),
+                                .port = pool_alloc(pool, (size_t)(tape->code.port_count + 1) * sizeof(double)),
+                                .p = pool_alloc(pool, (size_t)(tape->code.parameter_count + 1) * sizeof(double))};
     linear->evaluated = pool_alloc(pool, states * sizeof(double));
-    linear->rate = pool_alloc(pool, states * sizeof(double));
-    linear->drate = pool_alloc(pool, states * sizeof(double));
+    linear->rate = pool_alloc(pool, results * sizeof(double));
+    linear->drate = pool_alloc(pool, results * sizeof(double));
     return linear;
 }

@@ -13,6 +13,11 @@
 #include "subset/subset.h"
 #include "tape/engine_tape.h"
 
+/* A direction in which the state of FORMAT.md section 10, inputs, ports and parameters change. */
+typedef struct Direction {
+    double *y, *u, *port, *p;
+} Direction;
+
 /* Small motions z of a model: `places` first, then their rates, then fast states. Places: of a free base displacements
  * x y z along the base's own axes (m) and small rotations roll pitch yaw about them (rad), then the free coordinates.
  * Rates: velocity of the base's origin in its own axes, angular velocity, rates of the coordinates. That is a minimal
@@ -31,11 +36,20 @@ typedef struct Linear {
                               * more than 0.1 rad */
     Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
     TapeLinks value_links, slope_links;
-    double *frame, *q, *dy, *evaluated, *rate, *drate; /* work */
+    Direction along; /* work */
+    double *frame, *q, *evaluated, *rate, *drate;
 } Linear;
 
 /* linearize.c: `engine` is the engine tape. */
 Linear *linear_open(Pool *pool, const Engine *engine);
+/* Column by column, after linear_start(), which evaluates the state and sets f [count]: linear_column() sets the
+ * derivatives df [count] of the motions' rates and dout [outputs] of the first outputs of the model by number j of a
+ * kind. At kinks they are the mean of both sides; *jump: a rate or an output jumps there. Both return a status, which
+ * the instance then has. Numbers of df and dout need not be finite. */
+typedef enum LinearKind { LINEAR_MOTION, LINEAR_INPUT, LINEAR_PORT, LINEAR_PARAMETER } LinearKind;
+int linear_start(const Linear *linear, Instance *self, double *f);
+int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
+                  bool *jump);
 /* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:
  * [count][count]; where the state is at a kink but for 1e-9 of the reach, the mean of both sides. Returns a status,
  * which the instance then has. */
@@ -72,6 +86,9 @@ int equilibrium_force(const Equilibrium *found, int force);
 int equilibrium_wheel(const Equilibrium *found, int wheel);
 /* The scene, but for places, which are those of the equilibrium; a `speed` is along the base there. */
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found);
+/* Give the equilibrium's instance the velocities of the scene's initial state, and its spins. False: the scene has
+ * none. Ends in diag_fail where the wheels can't roll. */
+bool equilibrium_set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *found);
 
 /* ---- equilibrium_report.c ------------------------------------------------------------------------------- */
 

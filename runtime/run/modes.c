@@ -346,32 +346,6 @@ static void write_csv(Pool *pool, const Linear *linear, const Modes *modes, cons
     interrupt_release();
 }
 
-/* The equilibrium with the velocities of a scene; f, A: there. */
-static bool set_in_motion(Pool *pool, const Scene *scene, const Equilibrium *found, double *f, double *A)
-{
-    const gic_model *code = found->engine->code;
-    const Linear *linear = found->linear;
-    const Scene *moving = equilibrium_scene(pool, scene, found);
-    double *state = tape_array(found->self, code->state_offset);
-    if (!found->locked)
-        return false;
-    if (code->free_base) {
-        memcpy(state + linear->places + 1, moving->velocity, sizeof moving->velocity);
-        memcpy(state + linear->places + 4, moving->angular_velocity, sizeof moving->angular_velocity);
-    }
-    for (int c = 0; c < code->coordinate_count; ++c)
-        if (code->coordinate_state[c] >= 0)
-            state[code->coordinate_state[c] + code->slow_count / 2] = moving->rate[c];
-    int status = scene_set_fast(code, moving, &found->self->head);
-    if (status == GIC_OK)
-        status = linearize(linear, found->self, f, A);
-    if (status != GIC_OK)
-        diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
-                  "no small motions about the state in motion: %s",
-                  instance_status(pool, code, &found->self->head, status));
-    return true;
-}
-
 /* True if rate number i is an acceleration. */
 static bool is_acceleration(const Linear *linear, int i)
 {
@@ -417,7 +391,12 @@ void modes_warn_jumps(const Linear *linear, Place at)
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found)
 {
     const Linear *linear = found->linear;
-    const bool moves = scene && set_in_motion(pool, scene, found, found->f, found->A);
+    const bool moves = scene && equilibrium_set_in_motion(pool, scene, found);
+    const int status = moves ? linearize(linear, found->self, found->f, found->A) : GIC_OK;
+    if (status != GIC_OK)
+        diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
+                  "no small motions about the state in motion: %s",
+                  instance_status(pool, found->engine->code, &found->self->head, status));
     const Modes *modes = modes_find(pool, linear, found->A);
     if (!request->quiet)
         modes_warn_jumps(linear, (Place){scene ? scene->source : found->model->source, 0, 0});

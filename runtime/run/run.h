@@ -16,7 +16,8 @@
 typedef struct Request {
     const char *model, *scene; /* paths; scene may be NULL with `states` */
     const char *states;        /* --eval, or NULL */
-    bool rests, modes;         /* --equilibrium, --modes */
+    bool rests, modes, linear; /* --equilibrium, --modes, --linearize */
+    double at;                 /* --at, s; NAN: not given */
     const char *results;       /* "-": standard output; NULL: none */
     const char *picture;       /* --plot, or NULL */
     const char *page;          /* --animate, or NULL */

@@ -27,20 +27,29 @@ void tape_record_derived(Pool *pool, TapeEngine *engine)
     engine->first_piece = design_first_piece(pool, plan);
 }
 
-static int play(Instance *self, const Tape *tape, double rest)
+/* The arrays that these blocks read and write, of an instance or of its derivatives; rest: one number. */
+static void tuned_arrays(Instance *self, double *rest, double *array[TUNED_COUNT])
 {
     const TapeEngine *engine = tape_of(self);
     const gic_model *code = &engine->code;
-    const TapeWorld world = {.table = engine->table, .head = &self->head};
-    double *const array[TUNED_COUNT] = {
+    double *const all[TUNED_COUNT] = {
         [TUNED_PARAMETER] = tape_array(self, code->parameter_offset),
-        [TUNED_REST] = &rest,
+        [TUNED_REST] = rest,
         [TUNED_DERIVED] = tape_array(self, engine->derived_offset),
         [TUNED_START] = tape_array(self, engine->start_offset[0]),
         [TUNED_STATE] = tape_array(self, code->state_offset),
         [TUNED_INPUT] = tape_array(self, code->input_offset),
         [TUNED_MOTION] = tape_array(self, engine->motion_offset),
     };
+    memcpy(array, all, sizeof all);
+}
+
+static int play(Instance *self, const Tape *tape, double rest)
+{
+    const TapeEngine *engine = tape_of(self);
+    const TapeWorld world = {.table = engine->table, .head = &self->head};
+    double *array[TUNED_COUNT];
+    tuned_arrays(self, &rest, array);
     return tape_play(tape, 0, array, &world, engine->frame);
 }
 
@@ -56,6 +65,16 @@ static int derive(Instance *self, double rest)
     return gic_finite(tape_array(self, engine->derived_offset), engine->formulation->plan->derived->count)
                ? GIC_OK
                : GIC_ERROR_GEOMETRY;
+}
+
+int tape_derive_dual(Instance *value, Instance *slope, double *slope_frame)
+{
+    const TapeEngine *engine = tape_of(value);
+    const TapeWorld world = {.table = engine->table, .head = &value->head};
+    double rest[2] = {0}, *array[2][TUNED_COUNT];
+    tuned_arrays(value, &rest[0], array[0]);
+    tuned_arrays(slope, &rest[1], array[1]);
+    return tape_play_dual(engine->derive, 0, array[0], array[1], &world, engine->frame, slope_frame);
 }
 
 int tape_assemble(Instance *self, const double turn[3])

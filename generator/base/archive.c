@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The zip archive: the same bytes for the same files, with names sorted and one date for all. */
+ * A zip archive by minizip, written to a temporary file, because minizip writes to files alone. */
+#include "base/archive.h"
 #include "base/file.h"
-#include "fmu/fmu_private.h"
+#include "base/pool.h"
 
 #include <minizip/zip.h>
 #include <stdlib.h>
