@@ -319,8 +319,7 @@ static const Law *parse_name(Parser *p)
         if (!strcmp(name, p->names->local[i])) {
             if (!p->names->hide)
                 has_one_meaning(p, where, name, "a quantity of this element");
-            const Law *local = reference(p, LAW_LOCAL, i, p->names->local[i]);
-            return p->item->mirrored && (p->names->odd >> i & 1) ? negative(p, local) : local;
+            return reference(p, LAW_LOCAL, i, p->names->local[i]);
         }
     for (int i = 0; i < model->parameters; ++i)
         if (!strcmp(name, model->parameter[i].name))

@@ -44,7 +44,6 @@ typedef struct LawNames {
     const char *const *local;  /* local names of this formula, or NULL */
     int locals;
     bool hide;          /* local names hide equal names of the model; else a formula that uses such a name is refused */
-    unsigned odd;       /* bit i: local name i changes its sign in the mirror */
     bool constant;      /* only numbers and parameters are allowed */
     const char *remedy; /* the remedy if another name is used */
     SignalReads *reads; /* where names are noted that may be signals; NULL: such a name is unknown at once */

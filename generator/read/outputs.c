@@ -169,6 +169,12 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
         diag_fail(value[WATCH_COORDINATE].item->at, "write `driven: true` there, or ask for `type: coordinate`",
                   "%s: coordinate '%s' is free, so nothing drives it", entry->what,
                   reader->model->coordinate[output->index].name);
+    if (type == OUTPUT_FORCE && reader->model->force[output->index].type == FORCE_LOAD)
+        diag_fail(value[WATCH_ELEMENT].item->at,
+                  "name the formula of one of its components under `signals`, let the load read that name, and ask for "
+                  "`type: signal`",
+                  "%s: load '%s' has components of force and torque, no single force", entry->what,
+                  reader->model->force[output->index].name);
     if ((type == OUTPUT_TIRE || type == OUTPUT_CONTACT) && reader->model->wheel[output->index].tire < 0)
         diag_fail(value[WATCH_WHEEL].item->at, "give that wheel a tire, or ask for `type: wheel`",
                   "%s: wheel '%s' has no tire", entry->what, reader->model->wheel[output->index].name);

@@ -35,6 +35,7 @@ typedef struct Equation {
     int coordinate; /* the coordinate it belongs to; -1: none */
     int multiplier; /* its place in lambda[] */
     bool wanted;    /* true if an output needs its multiplier */
+    Ex held;        /* the part of its multiplier that holds the forces along a driven coordinate */
     Ex Z[2][6];     /* M^-1 J^T, except for the base */
 } Equation;
 
@@ -122,7 +123,11 @@ static void open_body(System *s, int b)
 static void open_equation(System *s, Equation *equation, const Row *row, const int body[2], int coordinate,
                           int multiplier, bool wanted)
 {
-    *equation = (Equation){.row = *row, .coordinate = coordinate, .multiplier = multiplier, .wanted = wanted};
+    *equation = (Equation){.row = *row,
+                           .coordinate = coordinate,
+                           .multiplier = multiplier,
+                           .wanted = wanted,
+                           .held = ex_literal(s->dag, 0)};
     for (int end = 0; end < 2; ++end) {
         equation->body[end] = body[end];
         memcpy(equation->Z[end], row->J[end], sizeof equation->Z[end]);
@@ -144,11 +149,11 @@ static int open_joint(System *s, int index, const double (*origin)[3], int multi
     return rows;
 }
 
-/* A force Q along a coordinate acts on the bodies as -J^T Q / dual. */
-static void push_along(System *s, const Row *row, const int body[2], Ex Q)
+/* A force Q along a coordinate, share = Q / dual, acts on the bodies as -J^T share. */
+static void push_along(System *s, const Row *row, const int body[2], Ex share)
 {
     Dag *dag = s->dag;
-    Ex share = ex_div(dag, Q, row->dual), t[3];
+    Ex t[3];
     for (int end = 0; end < 2; ++end)
         for (int part = 0; part < 6; part += 3) {
             Ex *wrench = s->wrench[body[end]] + part;
@@ -164,9 +169,15 @@ static void open_coordinate(System *s, int index, const double (*origin)[3], int
     const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
     Fixture fixture = whole_coordinate_fixture(whole, coordinate, origin);
     Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
-    push_along(s, &row, coordinate->body, s->loads->own[index]);
     Equation *equation = coordinate->driven ? &s->equation[s->equations++] : &s->free[s->frees++];
     open_equation(s, equation, &row, coordinate->body, index, multiplier, drive_wanted(whole->model, index));
+    const Ex share = ex_div(s->dag, s->loads->own[index], row.dual);
+    /* a drive holds what acts along its coordinate, and nothing moves by it: among the wrenches it would leave rounding
+     */
+    if (coordinate->driven)
+        equation->held = share;
+    else
+        push_along(s, &row, coordinate->body, share);
 }
 
 static System open_system(Whole *whole)
@@ -439,6 +450,7 @@ Block *augmented_block(Whole *whole)
     store_rates(&s, block, driven);
     for (int i = 0; i < s.equations; ++i)
         if (s.equation[i].wanted)
-            block_store(block, s.lambda[i], element_at(ARRAY_lambda, s.equation[i].multiplier));
+            block_store(block, ex_add(dag, s.lambda[i], s.equation[i].held),
+                        element_at(ARRAY_lambda, s.equation[i].multiplier));
     return block;
 }

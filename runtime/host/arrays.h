@@ -5,10 +5,7 @@
 #ifndef HOST_ARRAYS_H
 #define HOST_ARRAYS_H
 
-#include "base/file.h"
-#include "base/message.h"
 #include "base/pool.h"
-#include "base/text.h"
 
 enum { ARRAY_SCALAR, ARRAY_VECTOR, ARRAY_MATRIX };
 

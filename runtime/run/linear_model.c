@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The matrices of a linear model, column by column, and the directions in which nothing happens. */
 #include "run/linear_model.h"
-#include "base/file.h"
 #include "base/message.h"
 #include "base/pool.h"
-#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"

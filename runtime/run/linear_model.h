@@ -5,10 +5,7 @@
 #ifndef RUN_LINEAR_MODEL_H
 #define RUN_LINEAR_MODEL_H
 
-#include "base/file.h"
-#include "base/message.h"
 #include "base/pool.h"
-#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Operating points of linear models: the static equilibrium, or a state of a run, which the engine `tape` computes,
  * because it is the one that knows derivatives. */
-#include "base/file.h"
 #include "base/message.h"
 #include "base/pool.h"
-#include "base/text.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A linear model for people, and as a file: CSV, NumPy's .npz, MATLAB's .mat. */
 #include "base/file.h"
-#include "base/message.h"
 #include "base/pool.h"
-#include "base/text.h"
 #include "gic_runtime.h"
 #include "host/arrays.h"
 #include "host/host.h"

@@ -192,12 +192,6 @@ static bool is_file(const char *path)
     return !stat(path, &there) && S_ISREG(there.st_mode);
 }
 
-static bool is_same(const char *a, const char *b)
-{
-    struct stat x, y;
-    return !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
 /* Files of a folder with this ending that fit: models for the scene if `model` is NULL, else scenes for the model. */
 static void find_fitting(Pool *pool, const char *folder, const char *scene, const char *model, const char ***path,
                          int *count)
@@ -210,7 +204,7 @@ static void find_fitting(Pool *pool, const char *folder, const char *scene, cons
             continue;
         bool known = false;
         for (int k = 0; k < *count; ++k)
-            known = known || is_same((*path)[k], file);
+            known = known || files_are_one((*path)[k], file);
         if (!known && files_fit(model ? file : scene, model ? model : file))
             *POOL_PUSH(pool, *path, *count) = file;
     }
