@@ -135,9 +135,9 @@ static const Insertions header_points = {(const char *const[]){"fmu/fmu_model.h.
 static void expand(Text *out, const char *templates, const Insertions *points, const Description *d,
                    const void *context)
 {
+    const char *model = d->f->model->name, *name = *points->template;
     templates_check(out->pool, templates, (const Insertions *const[]){points, NULL});
-    template_expand(out->pool, out, templates, points->template[0], d -> f -> model -> name, NULL, points,
-                    (void *)context);
+    template_expand(out->pool, out, templates, name, model, NULL, points, (void *)context);
 }
 
 void write_model_header(Text *out, const char *templates, const Description *d)
