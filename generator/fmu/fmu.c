@@ -152,11 +152,13 @@ void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene
                   temporary_folder(), strerror(errno));
     add_picture(&members, version, f);
     failure = binaries_add(&members, version, f->model->name, folder, path);
-    if (!failure)
-        bytes = archive_bytes(&members, folder, &size, &failure);
     rmdir(folder);
     interrupt_release();
     if (failure)
         diag_fail(program_place(), "set CC to a C99 compiler", "%s", failure);
+    bytes = archive_bytes(&members, &size);
+    if (!bytes)
+        diag_fail(program_place(), "set TMPDIR to a folder that can be written, with room",
+                  "no archive for %s can be made in %s: %s", path, temporary_folder(), strerror(errno));
     file_write(path, bytes, size);
 }

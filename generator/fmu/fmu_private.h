@@ -4,9 +4,9 @@
 #ifndef FMU_FMU_PRIVATE_H
 #define FMU_FMU_PRIVATE_H
 
-#include "base/archive.h"
 #include "base/text.h"
 #include "fmu/fmu.h"
+#include "host/archive.h"
 #include "model/model.h"
 
 /* ---- variables.c */

@@ -3,17 +3,16 @@
  * 2): a header of 20 bytes before each matrix. Libraries for newer MAT-files write the date and bring HDF5. Numbers are
  * little-endian on every machine. */
 #include "host/arrays.h"
-#include "base/archive.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "base/pool.h"
 #include "base/text.h"
+#include "host/archive.h"
 #include "host/host.h"
 
+#include <errno.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static void add_whole(Text *out, uint64_t value, int bytes)
 {
@@ -116,22 +115,15 @@ static const Text *npy(Pool *pool, const NamedArray *array)
 void npz_write(Pool *pool, const char *path, const NamedArray *array, int count)
 {
     Members members = {.pool = pool};
-    char *folder = pool_print(pool, "%s/gicrun-XXXXXX", temporary_folder());
-    const char *why = "the archive can't be written";
     size_t size;
     for (int i = 0; i < count; ++i) {
         const Text *bytes = npy(pool, &array[i]);
         member_add(&members, pool_print(pool, "%s.npy", array[i].name), bytes->s, bytes->size);
     }
-    interrupt_hold(); /* else the temporary folder would remain */
-    const bool made = mkdtemp(folder) != NULL;
-    const char *bytes = made ? archive_bytes(&members, folder, &size, &why) : NULL;
-    if (made)
-        rmdir(folder);
-    interrupt_release();
+    const char *bytes = archive_bytes(&members, &size);
     if (!bytes)
-        diag_fail(program_place(), "set TMPDIR to a folder that can be written, with room", "no archive for %s: %s",
-                  path, made ? why : pool_print(pool, "no folder can be made in %s", temporary_folder()));
+        diag_fail(program_place(), "set TMPDIR to a folder that can be written, with room",
+                  "no archive for %s can be made in %s: %s", path, temporary_folder(), strerror(errno));
     file_write(path, bytes, size);
 }
 

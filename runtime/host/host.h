@@ -59,9 +59,10 @@ int process_run(Pool *pool, char *const argv[], const char *input, const char **
 /* The same with its standard output into an open file; *said: its messages. */
 int process_run_into(Pool *pool, char *const argv[], const char *input, int output, const char **said);
 
-/* A file without a name for the input or output of a child: unlike a pipe it never blocks; -1: none. And: its contents.
- */
+/* A file without a name for the input or output of a child: unlike a pipe it never blocks; -1: none, errno says why.
+ * And: its contents, zero-terminated. */
 int nameless_file(Pool *pool);
+const char *nameless_bytes(Pool *pool, int file, size_t *size);
 const char *nameless_text(Pool *pool, int file);
 
 /* $TMPDIR or /tmp. */

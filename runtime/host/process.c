@@ -74,7 +74,7 @@ static bool write_all(int file, const char *bytes, size_t size)
     return lseek(file, 0, SEEK_SET) == 0;
 }
 
-const char *nameless_text(Pool *pool, int file)
+const char *nameless_bytes(Pool *pool, int file, size_t *size)
 {
     Text text = {.pool = pool};
     char buffer[4096];
@@ -82,7 +82,14 @@ const char *nameless_text(Pool *pool, int file)
     for (ssize_t n; (n = read(file, buffer, sizeof buffer)) > 0;)
         text_add(&text, buffer, (size_t)n);
     text_add(&text, "", 0);
+    *size = text.size;
     return text.s;
+}
+
+const char *nameless_text(Pool *pool, int file)
+{
+    size_t size;
+    return nameless_bytes(pool, file, &size);
 }
 
 /* Start a child in its own process group: the terminal's Ctrl-C reaches it through us, and its children end with it. */

@@ -309,10 +309,10 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
         warn_ranges(found, at);
         warn_unstable(pool, found, at);
     }
-    if (request->results)
+    if (request->results && !strcmp(request->results, "-")) {
         write_state(pool, found, request->results);
-    if (request->results && !strcmp(request->results, "-"))
         return;
+    }
     printf("%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
     printf("%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
     if (found->locked && found->linear->of_wheels)
@@ -326,4 +326,7 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
     print_wheels(found, output);
     print_fast_states(found, state);
     print_initial(pool, found, state);
+    /* last, so that a file is there only where nothing failed */
+    if (request->results)
+        write_state(pool, found, request->results);
 }

@@ -144,6 +144,7 @@ for engine in $engines; do
 done
 attack "gicrun --equilibrium" "$gicrun" -q --engine tape --equilibrium "$models/hmmwv_tires.veh" -o results.csv
 attack "gicrun --modes" "$gicrun" -q --engine tape --modes "$models/quarter_car.veh" -o results.csv
+attack "gicrun --linearize" "$gicrun" -q --linearize "$models/quarter_car.veh" -o results.npz
 attack "gicrun adams" "$gicrun" -q --engine tape --integrator adams "$models/quarter_car.veh" car.scene -o results.csv
 attack "gicrun --animate" "$gicrun" -q --engine tape "$models/hmmwv_tires.veh" short.scene --animate results.html
 # the picture is gnuplot's, which gets its memory elsewhere: gicrun's own ends

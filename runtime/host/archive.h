@@ -2,8 +2,8 @@
  *
  * archive: zip archives in memory, with the same bytes for the same files: names sorted and one date for all. For
  * programs that link minizip. */
-#ifndef BASE_ARCHIVE_H
-#define BASE_ARCHIVE_H
+#ifndef HOST_ARCHIVE_H
+#define HOST_ARCHIVE_H
 
 #include "base/pool.h"
 
@@ -22,7 +22,7 @@ typedef struct Members {
 } Members;
 
 void member_add(Members *members, const char *name, const char *bytes, size_t size);
-/* All of them as bytes of a zip archive; folder: for a temporary file. NULL: *why. */
-const char *archive_bytes(Members *members, const char *folder, size_t *size, const char **why);
+/* All of them as bytes of a zip archive. NULL: it can't be written into the temporary folder, errno says why. */
+const char *archive_bytes(Members *members, size_t *size);
 
 #endif
