@@ -163,25 +163,41 @@ static bool is_group(const char *s)
     return digits == 3 && (!s[3] || (s[3] == '.' && s[4 + strspn(s + 4, "0123456789")] == '\0'));
 }
 
-/* In braces YAML reads `25,000` as the number 25 and a key `000` without a value. */
-static void check_thousands(const Item *map)
+/* True if s is digits, maybe with an exponent: the part after a decimal comma. */
+static bool is_fraction(const char *s)
+{
+    const size_t digits = strspn(s, "0123456789");
+    const char *exponent = s + digits + (s[digits] == 'e' || s[digits] == 'E');
+    exponent += exponent > s + digits && (*exponent == '-' || *exponent == '+');
+    return digits && (!s[digits] || (*exponent && !exponent[strspn(exponent, "0123456789")]));
+}
+
+/* In braces YAML reads `25,000` as the number 25 and a key `000` without a value, `40,5` as 40 and a key `5`. */
+static void check_commas(const Item *map)
 {
     for (int i = 1; i < map->count; ++i) {
         const Item *number = map->value[i - 1], *rest = map->value[i];
+        const char *after = map->key[i]->text;
         if (number->kind != ITEM_SCALAR || number->quoted || rest->kind != ITEM_SCALAR || rest->quoted ||
-            rest->text[0] || !is_group(map->key[i]->text))
+            rest->text[0] || !(is_group(after) || is_fraction(after)))
             continue;
         const char *digits = number->text + (number->text[0] == '-' || number->text[0] == '+');
         const size_t length = strspn(digits, "0123456789");
-        if (length < 1 || length > 3 || digits[length])
-            continue;
-        char whole[64], remedy[128];
+        char whole[64], remedy[192];
         int n = snprintf(whole, sizeof whole, "%s", number->text);
-        for (int k = i; k < map->count && is_group(map->key[k]->text) && n < (int)sizeof whole; ++k)
-            n += snprintf(whole + n, sizeof whole - (size_t)n, "%s", map->key[k]->text);
-        snprintf(remedy, sizeof remedy, "write %s, without a separator of thousands", whole);
+        if (length < 1 || digits[length] || n >= (int)sizeof whole)
+            continue;
+        if (is_group(after) && length <= 3 && digits[0] != '0') {
+            for (int k = i; k < map->count && is_group(map->key[k]->text) && n < (int)sizeof whole; ++k)
+                n += snprintf(whole + n, sizeof whole - (size_t)n, "%s", map->key[k]->text);
+            snprintf(remedy, sizeof remedy, "write %s, without a separator of thousands", whole);
+        } else if (is_fraction(after)) {
+            snprintf(remedy, sizeof remedy, "write %s.%.60s, with a decimal point", whole, after);
+        } else {
+            continue;
+        }
         diag_fail(number->at, remedy, "the number ends at the comma: %s is %s, and %s would be a key",
-                  map->key[i - 1]->text, number->text, map->key[i]->text);
+                  map->key[i - 1]->text, number->text, after);
     }
 }
 
@@ -257,7 +273,7 @@ static Item *map(Loader *loader, const yaml_event_t *start, Place at, int depth,
         if (below + 1 > *height)
             *height = below + 1;
     }
-    check_thousands(item);
+    check_commas(item);
     check_duplicates(loader, item);
     anchor_close(loader, anchor, *height);
     return item;

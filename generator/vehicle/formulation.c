@@ -155,7 +155,7 @@ double formulation_numbers(Pool *pool, const Model *model, const Sequence *seque
     double numbers = 0;
     for (int s = 0; s < used->subsets; ++s) {
         const Subset *subset = &used->subset[s];
-        numbers += (double)subset->bodies * (MOTION_S + 6.0 * subset->deps);
+        numbers += (double)subset->bodies * ((double)MOTION_S + 6.0 * subset->deps);
         numbers += subset->class < 0 ? 0 : inertia_mass(subset->deps, subset->deps, subset->deps);
     }
     return numbers;

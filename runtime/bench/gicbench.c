@@ -234,7 +234,7 @@ static double comparison_seconds(const Bench *bench, double opened)
     }
     double seconds = all * sweep_evaluations(bench) * (1 + bench->repetitions);
     if (bench->spin)
-        seconds += all * bench->spin->duration * (ORDER_OF_SPIN + bench->repetitions / ab3.value);
+        seconds += all * bench->spin->duration * ((double)ORDER_OF_SPIN + bench->repetitions / ab3.value);
     return seconds + opened * (WAYS_TO_COMPILE + bench->repetitions);
 }
 

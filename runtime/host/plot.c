@@ -80,11 +80,11 @@ typedef struct Frame {
 
 static void place(Text *script, const Frame *frame, int height)
 {
-    text_print(script, "set lmargin at screen %.6f\nset rmargin at screen %.6f\n", (double)frame->left / WIDTH,
-               (double)frame->right / WIDTH);
+    text_print(script, "set lmargin at screen %.6f\nset rmargin at screen %.6f\n", (double)frame->left / (double)WIDTH,
+               (double)frame->right / (double)WIDTH);
     text_print(script, "set tmargin at screen %.6f\nset bmargin at screen %.6f\n", 1 - (double)frame->top / height,
                1 - (double)frame->bottom / height);
-    text_print(script, "set key at screen %.6f, screen %.6f\n", (double)frame->left / WIDTH,
+    text_print(script, "set key at screen %.6f, screen %.6f\n", (double)frame->left / (double)WIDTH,
                1 - (double)(frame->top - 5) / height);
 }
 
@@ -172,7 +172,7 @@ static Frame frame_over(const Plot *plot, int panel, int top)
         frame.high[k] += 0.04 * fmax(across, up);
     }
     const double size[2] = {frame.high[0] - frame.low[0], frame.high[1] - frame.low[1]};
-    frame.scale = fmin(wide / size[0], TALLEST / size[1]);
+    frame.scale = fmin(wide / size[0], (double)TALLEST / size[1]);
     frame.tick = round_up(narrowest / frame.scale);
     frame.right = LEFT + (int)(frame.scale * size[0]);
     frame.bottom = frame.top + (int)(frame.scale * size[1]);
@@ -228,8 +228,8 @@ static void style(Text *script, const Plot *plot, const char *path, int height)
                        "set key left bottom Left reverse horizontal samplen 2 spacing 1.1\n"
                        "set multiplot\nset label 1 ");
     plot_text(script, plot->title);
-    text_print(script, " at screen %.6f, screen %.6f left font ',%d'\n", (double)LEFT / WIDTH, 1 - 24.0 / height,
-               path_ends(path, ".svg") ? 17 : 13);
+    text_print(script, " at screen %.6f, screen %.6f left font ',%d'\n", (double)LEFT / (double)WIDTH,
+               1 - 24.0 / height, path_ends(path, ".svg") ? 17 : 13);
 }
 
 static const char *plot_script(Pool *pool, const Plot *plot, const char *path)

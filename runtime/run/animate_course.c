@@ -32,7 +32,7 @@ void json_course(Text *out, const Scene *scene)
     }
     text_print(out, "],");
     /* points of a path are 0.1 m apart: every third follows all bends that a vehicle can */
-    const int every = path ? (int)fmax(3, ceil((double)path->count / MOST_POINTS)) : 1;
+    const int every = path ? (int)fmax(3, ceil((double)path->count / (double)MOST_POINTS)) : 1;
     json_points(out, "path", path ? (const double(*)[2])path->point : NULL, path ? path->count : 0, every);
     text_print(out, "}");
 }

@@ -30,8 +30,8 @@ static bool rests(const Equilibrium *found, int number)
     return i < 2 * linear->places || !found->locked || linear->slips[i];
 }
 
-/* Largest acceleration that an engine finds there. */
-static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found)
+/* Largest acceleration that an engine finds at a state, which has the layout of found->self. */
+static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found, double *state)
 {
     const gic_model *code = engine->code, *own = found->engine->code;
     gic_head *self = instance_new(pool, engine), *from = &found->self->head;
@@ -43,9 +43,9 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
     memcpy(instance_array(self, code->input_offset), instance_array(from, own->input_offset),
            (size_t)code->input_count * sizeof(double));
     if (status == GIC_OK)
-        status = engine_enter(engine, self, instance_array(from, own->state_offset));
+        status = engine_enter(engine, self, state);
     if (status == GIC_OK)
-        status = engine_look(engine, self, instance_array(from, own->state_offset), rate);
+        status = engine_look(engine, self, state, rate);
     if (status != GIC_OK)
         diag_fail((Place){found->model->source, 0, 0}, "try another --engine",
                   "engine %s can't evaluate the equilibrium: %s", engine->name,
@@ -60,12 +60,6 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
 static double shown(double value)
 {
     return round(value * 1e9) / 1e9 + 0.0; /* no -0 */
-}
-
-/* A number of the equilibrium relative to others of its kind: smaller ones are rounding and count as 0. */
-static double told(double value, double size)
-{
-    return fabs(value) <= DBL_EPSILON * size ? 0 : value;
 }
 
 static bool is_angle(const Equilibrium *found, int coordinate)
@@ -86,6 +80,31 @@ static double size_of(const Equilibrium *found, const double *state, bool angle)
         if (code->coordinate_state[c] >= 0 && !is_angle(found, c))
             size = fmax(size, fabs(state[code->coordinate_state[c]]));
     return size;
+}
+
+/* Set numbers of the state to 0 that are rounding: smaller than a part of others of their kind. The largest part of
+ * PARTS is taken at which the engine finds the state at rest as before; NULL: at none of them.
+ * A slip of 1e-15 is rounding for a car; in a mechanism with springs of 1e9 N/m a length of 1e-12 m is not. */
+static const double *without_rounding(Pool *pool, const Engine *engine, const Scene *scene, const Equilibrium *found)
+{
+    static const double PARTS[] = {1e-12, DBL_EPSILON};
+    const gic_model *code = found->engine->code;
+    const int count = code->slow_count + code->fast_count;
+    const double *state = tape_array(found->self, code->state_offset);
+    double *size = pool_alloc(pool, sizeof(double) * (size_t)count);
+    double *rounded = pool_alloc(pool, sizeof(double) * (size_t)count);
+    for (int i = 0; i < count; ++i)
+        size[i] = code->free_base && i < 3 ? size_of(found, state, false) : 1;
+    for (int c = 0; c < code->coordinate_count; ++c)
+        if (code->coordinate_state[c] >= 0)
+            size[code->coordinate_state[c]] = size_of(found, state, is_angle(found, c));
+    for (size_t k = 0; k < sizeof PARTS / sizeof *PARTS; ++k) {
+        for (int i = 0; i < count; ++i)
+            rounded[i] = fabs(state[i]) <= PARTS[k] * size[i] ? 0 : state[i];
+        if (residual_by(pool, engine, scene, found, rounded) < equilibrium_limit)
+            return rounded;
+    }
+    return NULL;
 }
 
 /* ---- tables --------------------------------------------------------------------------------------------- */
@@ -109,8 +128,7 @@ static void print_coordinates(const Equilibrium *found, const double *state, con
         printf("\n%-24s  %16s\n", "coordinate", "value");
     for (int c = 0; c < code->coordinate_count; ++c) {
         const int at = code->coordinate_state[c];
-        const double value =
-            at < 0 ? input[code->coordinate_input[c]] : told(state[at], size_of(found, state, is_angle(found, c)));
+        const double value = at < 0 ? input[code->coordinate_input[c]] : state[at];
         printf("%-24s  %16.9g %s%s\n", code->coordinate[c].name, value, code->coordinate[c].unit,
                at < 0 ? ", driven" : "");
     }
@@ -193,11 +211,11 @@ static const Scene *start_at(Pool *pool, const Equilibrium *found, const double 
     start->rate = pool_alloc(pool, sizeof(double) * (size_t)(code->coordinate_count + 1));
     for (int c = 0; c < code->coordinate_count; ++c)
         if (code->coordinate_state[c] >= 0)
-            start->value[c] = told(state[code->coordinate_state[c]], size_of(found, state, is_angle(found, c)));
+            start->value[c] = state[code->coordinate_state[c]];
     for (int i = 0; code->free_base && i < 3; ++i)
-        start->position[i] = told(state[i], size_of(found, state, false));
+        start->position[i] = state[i];
     for (int i = 0; code->free_base && i < 4; ++i)
-        start->euler[i] = told(state[3 + i], 1);
+        start->euler[i] = state[3 + i];
     return scene_even(pool, found->model, start);
 }
 
@@ -223,7 +241,7 @@ static void print_initial(Pool *pool, const Equilibrium *found, const double *st
         printf("  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
     for (int i = 0; i < code->fast_count && !found->locked; ++i) /* else they roll with the scene's velocities */
         printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
-               told(state[code->slow_count + i], 1));
+               state[code->slow_count + i]);
 }
 
 /* ---- for programs --------------------------------------------------------------------------------------- */
@@ -294,11 +312,14 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
                         const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
-    const double *state = tape_array(found->self, code->state_offset);
+    double *state = tape_array(found->self, code->state_offset);
     const double *input = tape_array(found->self, code->input_offset);
     const double *output = tape_array(found->self, code->output_offset);
     const Place at = {scene ? scene->source : found->model->source, 0, 0};
-    const double residual = residual_by(pool, engine, scene, found);
+    const double *rounded = without_rounding(pool, engine, scene, found);
+    if (rounded)
+        memcpy(state, rounded, (size_t)(code->slow_count + code->fast_count) * sizeof *state);
+    const double residual = residual_by(pool, engine, scene, found, state);
     const int status = code->outputs(found->self);
     if (!(residual < equilibrium_limit))
         diag_fail(at, "try another --engine", "engine %s finds an acceleration of %.3g at the equilibrium",

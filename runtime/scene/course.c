@@ -81,7 +81,7 @@ static void read_lane(Pool *pool, const Item *item, RoadCourse *course)
     const double width = scene_positive(scene_need(item, "width", "a lane"), "width of a lane");
     const Item *cones = doc_find(item, "cones");
     const double count = cones ? doc_number(cones, "cones of a lane") : 0;
-    if (count != floor(count) || count < 0 || count > MOST_CONES)
+    if (count != floor(count) || count < 0 || count > (double)MOST_CONES)
         diag_fail(cones->at, "write how many stand along each edge", "cones of a lane must be a whole number up to %d",
                   MOST_CONES);
     for (int side = -1; side <= 1; side += 2) {

@@ -285,7 +285,7 @@ ProfilePeaks profile_peaks(const Profile *profile, double duration)
     }
     for (int k = 0; k + 1 < profile->count; ++k)
         for (int i = 0; i <= PARTS; ++i) {
-            const double time = profile->time[k] + (profile->time[k + 1] - profile->time[k]) * i / PARTS;
+            const double time = profile->time[k] + (profile->time[k + 1] - profile->time[k]) * i / (double)PARTS;
             if (time < 0 || time > duration)
                 continue;
             profile_at(profile, time, at);

@@ -159,7 +159,7 @@ static bool comes_true(Reader *reader, const Action *action)
     with.actions = reader->actions;
     bool held = true;
     for (int i = 0; i <= LOOKS; ++i) {
-        clock.start_time = with.duration * i / LOOKS;
+        clock.start_time = with.duration * i / (double)LOOKS;
         const bool holds = action_value(action, &with, &none, &clock, NULL, 0) > 0;
         if (holds && !held)
             return true;

@@ -62,7 +62,7 @@ static void check_gaps(Pool *pool, const CsvTable *table, const double *time, in
     qsort(width, (size_t)count - 1, sizeof *width, ascending);
     const double usual = width[(count - 1) / 2];
     for (int i = 0; i + 1 < count; ++i)
-        if (time[i + 1] - time[i] > MISSING * usual)
+        if (time[i + 1] - time[i] > (double)MISSING * usual)
             diag_fail(csv_place(table, i + 1),
                       "add the samples that are missing, or write `fit: monotone`, which goes straight over gaps",
                       "there is no sample between %.9g s and %.9g s, and elsewhere one every %.3g s", time[i],

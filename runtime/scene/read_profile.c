@@ -139,7 +139,7 @@ static void read_pulse(Pool *pool, const Item *item, Profile *profile)
     if (duration <= 2 * m.duration)
         diag_fail(length->at, pool_print(pool, "write more than %.6g, twice the rise", 2 * m.duration),
                   "the pulse ends before it has risen and fallen");
-    if (count != floor(count) || count > PULSES)
+    if (count != floor(count) || count > (double)PULSES)
         diag_fail(many->at, "write how many pulses there are", "count must be a whole number from 1 to %d", PULSES);
     if (count > 1 && !again)
         diag_fail(many->at, "add `period: ...`", "several pulses need the key 'period'");
@@ -275,7 +275,7 @@ static void check_formula(const Item *item, const Profile *profile)
         diag_fail(item->at, "write `samples`, `knots`, `ramp` or `step`, whose corners are smooth",
                   "the rate of '%s' may jump, and a driven coordinate needs an acceleration", kink);
     for (int i = 0; i <= LOOKS; ++i) {
-        const double time = end * i / LOOKS;
+        const double time = end * i / (double)LOOKS;
         double at[3];
         profile_at(profile, time, at);
         for (int k = 0; k < (profile->driven ? 3 : 1); ++k)
