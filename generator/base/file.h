@@ -23,8 +23,7 @@ void file_check(const char *path);
 const char *file_remedy(int reason);
 /* True if `path` is a device or a pipe. Such a file is written in place: a rename would replace it. */
 bool file_is_special(const char *path);
-/* True if files written at the two paths would be one file, there already or not. NULL, "-" and devices are nobody's.
- */
+/* True if both paths name one file, which need not exist yet. False for NULL, "-" and devices. */
 bool files_are_one(const char *path, const char *other);
 /* True if `path` ends with `end` and has at least one character before it. */
 bool path_ends(const char *path, const char *end);

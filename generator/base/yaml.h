@@ -30,7 +30,7 @@ const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const c
 /* Value of a key of a map, or NULL. */
 const Item *doc_find(const Item *map, const char *key);
 
-/* Does a scalar look like a decimal number? */
+/* True if a scalar looks like a decimal number. */
 bool doc_is_decimal(const Item *item);
 
 /* Checked access for readers of `.veh` and scene files; each ends in diag_fail naming what was expected. `what` names

@@ -138,7 +138,7 @@ static void write_exchange(const Generation *g, Text *out, int indent, bool load
         line(out, indent + 4, "one->discrete[i] = (int32_t)block->discrete[i][l];");
 }
 
-/* Has a geometric parameter changed since set-up? */
+/* True if a geometric parameter has changed since set-up. */
 static void write_batch_tuned(void *context, Text *out, int indent)
 {
     const Generation *g = context;

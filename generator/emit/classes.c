@@ -252,7 +252,7 @@ bool class_in_lanes(const Generation *g, int class)
     return g->plan->lanes && g->plan->class_lanes[class];
 }
 
-/* Has the class a member that is no other one's image? */
+/* True if the class has a member that is not the image of another one. */
 static bool is_called(const Generation *g, int c)
 {
     const Class *class = &g->sequence->class[c];

@@ -11,7 +11,8 @@ typedef struct Example {
     const char *header;
 } Example;
 
-/* As names stand in the emitted header: capitals, and everything that is no letter or digit an underscore. */
+/* As names stand in the emitted header: capitals, and an underscore for everything that is neither a letter nor a
+ * digit. */
 static const char *constant_name(Pool *pool, const char *model, const char *kind, const char *name)
 {
     char *out = pool_print(pool, "%s_%s_%s", model, kind, name);

@@ -250,7 +250,7 @@ uint32_t header_number(const Generation *g, const char *name, const Insertions *
 
 /* ---- tuning, tables of the model, insertion points ----------------------------------------------------------- */
 
-/* Has a geometric parameter changed since set-up? */
+/* True if a geometric parameter has changed since set-up. */
 static void write_tuned(void *context, Text *out, int indent)
 {
     Generation *g = context;

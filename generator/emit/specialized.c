@@ -71,7 +71,7 @@ static const Insertion assumption_point[] = {{"checks", write_checks}, {NULL, NU
 const Insertions assumption_points = {(const char *const[]){"assume.c.in", "assume_state.c.in", NULL}, assumption_point,
                                       NULL};
 
-/* Does anything that is taken for granted concern that? */
+/* True if an assumption of the scene concerns it. */
 static bool assumes(const Generation *g, AssumptionAbout about)
 {
     const Narrowing *narrowing = g->formulation->narrowing;

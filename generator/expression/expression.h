@@ -188,7 +188,7 @@ typedef struct DagOrigin DagOrigin;
 typedef struct Dag {
     Pool *pool;
     int members, samples;
-    int lanes; /* of vectors, one a member: constants are such; 0: there are none */
+    int lanes; /* elements of each vector: the constants are vectors; 0: they are scalars */
     int nodes, room;
     Node *node;
     double *value; /* [nodes][samples] */

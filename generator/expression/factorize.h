@@ -7,7 +7,7 @@
 
 /* Factors of an n x n matrix, all zero, every pivot a block of its own. */
 Factors *factors_new(Dag *dag, int n, bool symmetric);
-/* Index behind the block that begins with pivot `first`. */
+/* Index after the block that begins with pivot `first`. */
 int factors_block_end(const Factors *f, int first);
 /* y [n], in pivot order, becomes the solution. */
 void factors_solve_symmetric(Dag *dag, const Factors *f, Ex *y);

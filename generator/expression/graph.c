@@ -150,7 +150,7 @@ static void table_grow(Dag *dag)
     }
 }
 
-/* The node equal to *node with these samples, made when there is none. */
+/* The node equal to *node with these samples; it is made if it does not exist. */
 static Ex intern(Dag *dag, const Node *node, const double *value)
 {
     uint64_t slot = node_hash(dag, node, value);
@@ -245,7 +245,7 @@ double op_value(Op op, double a, double b, double c)
 static void node_evaluate(const Dag *dag, const Node *node, double *out, int first, int count)
 {
     size_t samples = (size_t)dag->samples;
-    const int last = op_arity[node->op] - 1; /* what is no node stands behind the arguments */
+    const int last = op_arity[node->op] - 1; /* operands that are not nodes follow the arguments */
     const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[last > 0 ? 1 : 0] * samples,
                  *c = dag->value + node->arg[last > 1 ? 2 : 0] * samples;
     for (int s = first; s < first + count; ++s)

@@ -89,7 +89,7 @@ static void collect(Planner *p, Task *task, Ex e, bool *guarded)
         const bool leaf = node_of(p, argument)->level < LEVEL_VARIABLE || node_of(p, argument)->op == OP_INPUT;
         if (p->step_of[argument])
             *POOL_PUSH(p->pool, task->operand, task->operands) = p->step_of[argument] - 1;
-        else if (!leaf) /* what else is done with a leaf is no matter of this step */
+        else if (!leaf) /* the other uses of a leaf do not matter in this step */
             collect(p, task, argument, guarded);
     }
 }

@@ -234,7 +234,7 @@ void pack_begin(Packing *p)
     p->vector_made = pool_alloc(p->pool, ((size_t)p->groups + 1) * sizeof *p->vector_made);
 }
 
-/* [sums] how many sums over lanes a sum comes after, one behind the other. */
+/* [sums] length of the chain of sums over lanes that a sum follows */
 static int *sum_depths(const Packing *p)
 {
     int *depth = pool_alloc(p->pool, ((size_t)p->dag->nodes + 1) * sizeof *depth);

@@ -120,7 +120,7 @@ static void name_state(Making *m, int state, const char **name, const char **des
     }
 }
 
-/* Does the scene give the state a value to start with? */
+/* True if the scene gives the state a start value. */
 static bool scene_start_value(const Making *m, int state, double *value)
 {
     const Scene *scene = m->scene;

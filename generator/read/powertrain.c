@@ -346,8 +346,8 @@ static void differential_read(Tree *tree, int index)
                                        of(reader, &differential_key[SPLIT_LOCK], entry->what), &names);
 }
 
-/* Append a differential after those that it drives; returns its index. The recursion is no deeper than the tree has
- * members. */
+/* Append a differential after those that it drives; returns its index. The depth of the recursion is at most the
+ * number of members. */
 static int append(Tree *tree, int index, Powertrain *powertrain)
 {
     Differential differential = tree->differential[index];

@@ -142,8 +142,8 @@ static const char *renamed(const Rewrite *rewrite, const char *group, const char
     return both || has(rewrite, group, name) ? pool_print(rewrite->pool, "%s%s", rewrite->prefix, name) : name;
 }
 
-/* Does a formula read an output here, at text that follows the name? An output has components behind a dot; a force has
- * not, and a name of its own then. */
+/* True if a formula reads an output at text that follows the name. An output has components after a dot; a force
+ * element has none and is a name by itself. */
 static bool is_output(const Rewrite *rewrite, const char *name, const char *next)
 {
     const Item *map = rewrite->file && rewrite->file->kind == ITEM_MAP ? doc_find(rewrite->file, "outputs") : NULL;

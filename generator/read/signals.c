@@ -71,8 +71,8 @@ void signals_read(Reader *reader, const Item *map)
 /* ---- names ---------------------------------------------------------------------------------------------------------
  */
 
-/* Index of the signal of that name, after an output's component that nobody has read yet is one; -1: there is none.
- * *odd: the mirror changes its sign. */
+/* Index of the signal with that name; an output's component that no formula has read yet becomes a signal. -1: there
+ * is no such output. *odd: the mirror image changes its sign. */
 static int signal_find(Reader *reader, const char *name, bool *odd)
 {
     Model *model = reader->model;

@@ -6,7 +6,7 @@
 #include "model/model.h"
 #include "read/reader.h"
 
-/* A mirror image stands in no file, so that nobody can take it away alone. */
+/* No warning for a mirror image: it is not written in the file, so it can't be removed alone. */
 static bool is_image(Place at)
 {
     return at.source && at.source->mirrored;

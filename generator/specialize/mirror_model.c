@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Is a model its own mirror image? By its numbers, whoever wrote them: those of each side are compared with the image
- * of the other's, to the bit. Nearly equal is not equal: a wheel that is 1e-15 heavier steers. */
+ * Decides if a model equals its own mirror image. The numbers of each side are compared with the image of the other
+ * side's, bit for bit. Nearly equal is not enough: a wheel that is 1e-15 heavier steers the vehicle. */
 #include "base/vec3.h"
 #include "model/model.h"
 #include "read/reader.h"
@@ -130,8 +130,8 @@ static int along(const double axis[3])
     return others ? -1 : k;
 }
 
-/* Does end `end` of joint b fit that of a? Where b slides along an axis of the frame of that end, its point may be
- * anywhere along it: a shift is exact there, and seen in no other component. */
+/* True if end `end` of joint b matches that of a. Where b slides along an axis of that end's frame, its point may
+ * lie anywhere along the axis: a shift along it is exact and changes no other component. */
 static bool point_fits(const Joint *a, int end, const Joint *b, int other)
 {
     const bool slides =

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORM_SIGN = OP_COUNT }; /* behind the operations of graphs: -1, 0 or 1 */
+enum { FORM_SIGN = OP_COUNT }; /* after the operations of graphs: -1, 0 or 1 */
 
 /* Larger sums and products are not flattened into others: a power of a power of ... stays short. */
 static const int most_equal = 1 << 10, most_factors = 64;
@@ -287,7 +287,7 @@ static int table_of(const Normal *normal, int index)
     return first;
 }
 
-/* As it is, with nothing known about it; raw: what is no argument. */
+/* As written, with nothing known about it; raw: what is not a node. */
 static Form opaque(Normal *normal, const Node *node, const Form arg[3])
 {
     const int arity = ex_arity((Op)node->op);

@@ -198,7 +198,7 @@ static void block_forms(const Proof *p, const Block *block, int place, bool imag
     normal_forms(p->normal, out.dag, place, wheel_input, &image, root, out.stores, form);
 }
 
-/* Does a function of the leading wheel, `a`, give the mirror image of what that of the other one, `b`, gives? */
+/* True if a function of the leading wheel, `a`, gives the mirror image of what that of the other wheel, `b`, gives. */
 static bool blocks_mirror(const Proof *p, const Block *a, int a_place, const Block *b, int b_place)
 {
     Form own[a->stores + 1], other[b->stores + 1];

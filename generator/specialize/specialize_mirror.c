@@ -66,7 +66,7 @@ static int leading_dep(const Narrower *n, const Subset *subset, const Subset *le
     return k;
 }
 
-/* Do the coordinates that a subset depends on have the other subset's for images? */
+/* True if the other subset depends on the images of a subset's coordinates. */
 static bool deps_fit(const Narrower *n, const Subset *subset, const Subset *other)
 {
     int found = 0;

@@ -42,7 +42,7 @@ static Ex merge_variables(Merge *m, Ex a, Ex b)
         values_of(m, a, b, value);
         return ex_input(m->dag, *x->element, value);
     }
-    const bool indexed = x->op == OP_ROAD_PART || x->op == OP_TABLE; /* the second argument is no node */
+    const bool indexed = x->op == OP_ROAD_PART || x->op == OP_TABLE; /* the second operand is not a node */
     m->failed = m->failed || (indexed && x->arg[1] != y->arg[1]);
     for (int i = 0; i < 3 && !m->failed; ++i)
         arg[i] = indexed && i == 1 ? x->arg[1] : indexed && i ? 0 : merge(m, x->arg[i], y->arg[i]);

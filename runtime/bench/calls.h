@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
- *
- * Calls of a model's functions, one after another, as a loop that can be timed: calls.c, which exists once for
- * each number type of generated code. All numbers go in as double, so that who times knows no difference. */
+ * Calls of a model's functions one after another, as a loop that can be timed: calls.c, which exists once for each
+ * number type of generated code. All numbers go in as double, so that the caller need not know the type. */
 #ifndef BENCH_CALLS_H
 #define BENCH_CALLS_H
 

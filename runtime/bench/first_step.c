@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Generated against interpreted: what it takes until the first step, what a step takes from then on, and after how many
- * steps the one has made up for the other. Each start is a process of its own, so that nothing is loaded, allocated or
- * compiled there yet. */
+ * Generated against interpreted: the time until the first step, the time of a step from then on, and the number of
+ * steps after which generated code has taken less in all. Each start is a process of its own, so that nothing is
+ * loaded, allocated or compiled there yet. */
 #include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"

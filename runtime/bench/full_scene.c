@@ -192,8 +192,8 @@ static void shares_of(const double median[MEASURED], bool plain, double share[PA
         share[k] /= sum;
 }
 
-/* Shares of a step of the run. Each call is timed where it happens, so that all but the calls is what remains of the
- * same steps. Looks at the clock are taken off: one inside of a call's time, two outside of it. */
+/* Shares of a step of the run. Each call is timed where it happens, so that the remainder belongs to the same steps.
+ * The time of looking at the clock is taken off: one look within a call's time, two outside of it. */
 static void time_parts(const Driven *driven, gic_head *self, const Scene *scene, double share[PARTS])
 {
     Pool *pool = pool_new();
@@ -299,7 +299,7 @@ static void drive_row(const Bench *bench, Sheet *table, const Driven *driven, co
     for (int k = 0; k < STEP; ++k)
         sum += part[k] = spread_of(pool, driven->measured[k], bench->repetitions).median;
     for (int k = 0; k < STEP; ++k)
-        part[k] *= all.median / steps / sum; /* medians of shares add up to 1 but for their scatter */
+        part[k] *= all.median / steps / sum; /* medians of shares add up to 1 only up to their scatter */
     table_cell(pool, table, "%s", driven->name);
     spread_cells(pool, table, all, 1);
     table_cell(pool, table, "%.4g", steps * bench->scene->step / all.median);

@@ -270,7 +270,7 @@ static void drive_alone(Bench *bench, const char *const *name)
     report_tell(bench->report, stdout);
 }
 
-/* Right-hand sides only, steps in lanes only, or scene after scene. */
+/* Right-hand sides alone, steps in lanes alone, or scene after scene. */
 static void evaluate_alone(const Bench *bench)
 {
     if (bench->folder)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * How many multiply-adds the processor can do: what straight-line code can at best come near to. The Makefile compiles
- * this file so that x * a + b is one instruction where there is one, and no loop does several at a time that doesn't
- * say so. */
+ * Multiply-adds that the processor can do in a second: the limit of straight-line code. The Makefile compiles this
+ * file so that x * a + b is one instruction where the processor has one, and no loop is vectorized that does not say
+ * so. */
 #include "bench/bench.h"
 #include "engine/engine.h"
 

@@ -139,7 +139,7 @@ static void add_all(Study *study)
 
 /* ---- measurements ----------------------------------------------------------------------------------------- */
 
-/* True if the row's error says something: the run ends well, and further from the reference than that may be wrong. */
+/* True if the row's error is meaningful: the run ends well, and the error exceeds that of the reference. */
 static bool is_told(const Study *study, const Result *row)
 {
     return row->end.status == GIC_OK && row->error > study->reference.uncertainty;

@@ -76,8 +76,8 @@ static void spin_row(const Bench *bench, Sheet *table, const Engine *engine, con
     table_cell(pool, table, "%.2g", 100 * (busy - quiet) * (double)spin->changing / (quiet * (double)spin->steps));
 }
 
-/* Ends of runs with ever smaller steps, against the first engine's with a still smaller one: what does not go away with
- * the step would be an engine's own error. */
+/* Ends of runs with ever smaller steps, against the first engine's with a still smaller one: a difference that does
+ * not decrease with the step would be an engine's own error. */
 static void convergence(const Bench *bench)
 {
     static const double step[] = {0.004, 0.002, 0.001};

@@ -27,7 +27,7 @@ typedef struct Variant {
     const char *flags;
     Solve solve;
     bool single;
-    bool newton; /* Newton's iteration everywhere, whatever the command line says */
+    bool newton; /* Newton's iteration everywhere, independent of the command line */
     int lanes;   /* of alike parts of the vehicle; 0: one by one */
 } Variant;
 

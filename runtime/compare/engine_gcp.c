@@ -38,7 +38,8 @@ typedef struct Gcp {
     Share share[SHARES];
     int64_t uses;
     Partition *partition;      /* of the instance that is being evaluated */
-    const Instance *recovered; /* of which the World has the Jacobian; NULL: of none, for its recovery failed */
+    const Instance *recovered; /* the instance whose Jacobian the World holds; NULL: none, because its recovery
+                                * failed */
     int (*outputs)(void *self), (*poses)(void *self, double *pose);
     int columns;
     double *b; /* [rows of the partition] */
@@ -47,7 +48,7 @@ typedef struct Gcp {
 /* Numbers that an instance keeps. */
 typedef struct Memory {
     double *chosen;  /* [columns] of its partition */
-    double *usual;   /* of its partition; 0: none was ever chosen, for set-up failed */
+    double *usual;   /* of its partition; 0: none, because set-up failed */
     double *shift;   /* [2 columns] from the integrated q, q' to the recovered ones at the start of a step */
     double *shifted; /* 1: shift is there */
     double *checks;  /* how often its partition was looked at */
@@ -161,9 +162,8 @@ static double solved(Partition *partition, EngineProfile *profile, const World *
 
 enum { CORRECTIONS = 16 };
 
-static const double slow =
-    0.02; /* a correction that shrinks less wants new factors: they cost about three corrections */
-static const double leap = 0.5;       /* a larger one may lead to another assembly mode */
+static const double slow = 0.02; /* if a correction shrinks less, factorize anew: that costs about three corrections */
+static const double leap = 0.5;  /* a larger one may lead to another assembly mode */
 static const double rounding = 1e-14; /* relative to the mechanism's size */
 
 /* Newton with old factors while they serve: all dependent coordinates from the independent ones, in world->q. */
@@ -364,8 +364,8 @@ static int evaluate(const Interpreted *context, Instance *self, const double *st
     return GIC_OK;
 }
 
-/* Has Phi_u come near to singular since its coordinates were chosen? One independent coordinate is looked at a step: a
- * choice stays good for much longer than that takes for all of them. */
+/* True if Phi_u has come near to singular since its coordinates were chosen. One independent coordinate is checked
+ * per step, since a choice stays good for far more steps than there are coordinates. */
 static bool degraded(const Memory *memory, Partition *partition)
 {
     const double most = 2;

@@ -75,7 +75,7 @@ struct Geometry *geometry_new(Pool *pool, const Model *model);
 /* The World's numbers and the engine's design for these values of the tunable parameters. GIC_ERROR_GEOMETRY, with
  * head.condition, where they are impossible. */
 int geometry_adopt(const Interpreted *context, Instance *self, const double *parameter);
-/* Does the World have the numbers for these values? */
+/* True if the World was built for these values. */
 bool geometry_adopted(const Interpreted *context, const double *parameter);
 
 #endif

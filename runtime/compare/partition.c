@@ -72,7 +72,7 @@ Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *
 /* ---- the choice ---------------------------------------------------------------------------------------------------
  */
 
-/* The largest entry that is left in a row. */
+/* The largest entry of a row among the columns not yet chosen. */
 static void search_row(Partition *partition, int row, int done)
 {
     const double *a = partition->dense + row * partition->columns;

@@ -28,7 +28,8 @@ typedef struct Partition {
     double *chosen;          /* [columns] 1: independent, 0: dependent, -1: no choice yet; an instance remembers it */
     double usual;            /* largest partition_amplification() when it was chosen, at least 1 */
     struct PartitionFactors *factors;
-    double *dense; /* [rows][columns], and in the search for pivots the largest of each row that is left, its column */
+    double *dense; /* [rows][columns], and in the search for pivots the largest entry of each remaining row and its
+                    * column */
     int *row_left, *column_left, *largest_at;
     double *largest;
 } Partition;

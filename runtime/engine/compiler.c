@@ -77,7 +77,7 @@ void folder_remove(Pool *pool, const char *folder)
     rmdir(folder);
 }
 
-/* The file that a word names: a program on PATH, or what stands alone or behind @ or =. NULL: none. */
+/* The file that a word names: a program on PATH, or a path that stands alone or follows @ or =. NULL: none. */
 static const char *named_file(Pool *pool, const char *word, struct stat *is)
 {
     const char *path = getenv("PATH"), *mark = strpbrk(word, "@=");

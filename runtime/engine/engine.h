@@ -89,8 +89,8 @@ typedef struct Instance {
     const void *context;
 } Instance;
 
-/* descriptor.c: the descriptor of an interpreted model but for its functions, from an assembled model; and room for
- * `count` more numbers in its instances: their offset, bytes. */
+/* descriptor.c: the descriptor of an interpreted model, without its functions, from an assembled model; and room for
+ * `count` more numbers in its instances, at the returned offset, bytes. */
 gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
 size_t descriptor_place(gic_model *code, size_t count);
 /* Names and units of a model's fast states, [fast_states]: TIRES.md section 2. */

@@ -33,7 +33,7 @@ static bool add(zipFile zip, const Member *member)
            zipCloseFileInZip(zip) == ZIP_OK;
 }
 
-/* The open file that `file` points to, whatever the name. */
+/* The open file that `file` points to; the name is ignored. */
 static voidpf open_given(voidpf file, const char *name, int mode)
 {
     (void)name;

@@ -122,7 +122,8 @@ static void solve_decomposed(const Search *s, const gsl_matrix *U, const gsl_mat
 static const char *name_flat(const Search *s, const gsl_matrix *V, const gsl_vector *S)
 {
     const Linear *linear = s->found->linear;
-    const double most = 0.51; /* not 0.5: of two places with equal shares neither is named, whatever the rounding */
+    const double most = 0.51; /* not 0.5, so that rounding can't decide which of two places with equal shares is
+                               * named */
     Text names = {.pool = s->pool};
     for (int j = 0; j < linear->places; ++j) {
         double weight = 0;

@@ -202,7 +202,7 @@ static void print_fast_states(const Equilibrium *found, const double *state)
     }
 }
 
-/* The equilibrium as the start of a scene; if it is symmetric but for rounding, exactly symmetric. */
+/* The equilibrium as the start of a scene; exactly symmetric if it is symmetric to rounding. */
 static const Scene *start_at(Pool *pool, const Equilibrium *found, const double *state)
 {
     const gic_model *code = found->engine->code;

@@ -124,7 +124,7 @@ typedef struct Columns {
     double *rates, *outputs;
 } Columns;
 
-/* End with a message where a derivative is no finite number. */
+/* End with a message if a derivative is not finite. */
 static void check_column(Pool *pool, const LinearModel *m, const OperatingPoint *point, const double *df,
                          const double *dout, const char *by)
 {
@@ -174,8 +174,9 @@ static int state_of(const Linear *linear, int column)
     return column < linear->places ? column : column + linear->places;
 }
 
-/* Right singular vectors, by columns of V, of accelerations and fast states' rates by places and fast states, both in
- * units of the reach; returns how many of them, the last ones, have no singular value but rounding. */
+/* Right singular vectors, columns of V, of the matrix of accelerations and fast states' rates by places and fast
+ * states, in units of the reach; returns how many singular values are zero to rounding. Their vectors are the last
+ * ones. */
 static size_t find_null(const LinearModel *m, const Linear *linear, gsl_matrix *V)
 {
     const double rank_limit = 1e-10; /* relative to the largest singular value; rounding leaves about 1e-15 */

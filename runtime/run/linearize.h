@@ -64,7 +64,7 @@ void linear_move(const Linear *linear, Instance *self, const double *z);
 extern const double equilibrium_limit;
 
 typedef struct Equilibrium {
-    const Model *model; /* the user's, and behind its outputs force elements and wheels */
+    const Model *model; /* the user's model with additional outputs of force elements and wheels after its own */
     const Engine *engine;
     const Linear *linear;
     Instance *self;  /* at rest, inputs as they are at time 0, driven coordinates standing still there */
@@ -76,15 +76,15 @@ typedef struct Equilibrium {
 } Equilibrium;
 
 /* The equilibrium that is reached from a scene's initial state, or without a scene from the model's, with inputs and
- * road of the scene at time 0. Wheels are locked where the scene starts in motion, for what holds them at rest does not
- * matter then. Ends in diag_fail where there is none. */
+ * road of the scene at time 0. Wheels are locked where the scene starts in motion, since the forces that would hold
+ * them at rest then do not matter. Ends in diag_fail if none is found. */
 const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* True if a scene starts at rest: all velocities at most 1e-9 m/s or rad/s. */
 bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
 int equilibrium_force(const Equilibrium *found, int force);
 int equilibrium_wheel(const Equilibrium *found, int wheel);
-/* The scene, but for places, which are those of the equilibrium; a `speed` is along the base there. */
+/* The scene with the places of the equilibrium; a `speed` is along the base there. */
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found);
 /* Give the equilibrium's instance the velocities of the scene's initial state, and its spins. False: the scene has
  * none. Ends in diag_fail where the wheels can't roll. */

@@ -235,7 +235,7 @@ static double rounded_down(double x)
 
 double probe_longest(const Probe *probe)
 {
-    const double unknown = 1e-5; /* s, where nobody knows how fast the points move: millimetres */
+    const double unknown = 1e-5; /* s, while the speeds of the points are unknown: millimetres of travel */
     double longest = INFINITY;
     if (!probe->road)
         return INFINITY;

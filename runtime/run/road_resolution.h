@@ -26,9 +26,9 @@ bool probe_asked(const Probe *probe);
 /* The longest step (s) in which no point passes over a feature of the road; INFINITY if there is none. */
 double probe_longest(const Probe *probe);
 
-/* How far (m) a point may move from (x, y) so that at least some steps fall on whatever is there: half the way to the
- * next part that is not straight, or a share of its length. INFINITY on planes, and on roads that are not gic_road.h's.
- */
+/* How far (m) a point may move from (x, y) so that at least some steps fall on every feature: half the way to the
+ * next part that is not straight, or a share of that part's length. INFINITY on planes, and on roads that are not
+ * gic_road.h's. */
 double road_clear(const gic_road *road, double x, double y);
 
 #endif

@@ -39,7 +39,7 @@ typedef struct Animation Animation;
 
 /* Before a run of a scene, whose name the page shows. */
 Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path);
-/* At each output time, with outputs computed: keep what is seen where the time is one of a frame. Returns a status. */
+/* At each output time, after outputs are computed: record a frame if one is due. Returns a status. */
 int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
 /* The page; exits with a message when it can't be written. */
 void animation_write(Animation *animation, const char *path);
@@ -59,7 +59,7 @@ int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
-/* A part of that: one step, without driver and sleep. */
+/* The step itself, without driver and sleep. */
 int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
 /* Outputs at the present time, computed on a copy of the instance, so that how often someone looks leaves no trace in
  * the results; those of a vehicle that sleeps stay. *slumber: 0 at first, and the same number from call to call. */

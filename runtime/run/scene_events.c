@@ -188,7 +188,7 @@ int scene_events_step(SceneEvents *events, const gic_model *model, Variable *var
     const double target = gic_time(self);
     for (;;) {
         memcpy(events->after, self, model->size);
-        /* what the step's functions need beside the state is that of the step */
+        /* input and other arguments of the step's functions are those of the step */
         status = first_action(events, model, self, &action);
         memcpy(self, events->after, model->size);
         if (status != GIC_OK || !action)

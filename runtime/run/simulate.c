@@ -176,7 +176,8 @@ static int compute_outputs(Run *run)
     return status == GIC_OK && run->animation ? animation_frame(run->animation, run->model, run->copy) : status;
 }
 
-/* What becomes of it, where the base's state can be seen without more ado. */
+/* Update what is known about the vehicle (tipped over, off the road, at rest) where the base's state is directly
+ * available. */
 static void look_at_vehicle(Run *run)
 {
     if (run->model->free_base && run->model->wheel_count && !run->engine->leave)
@@ -476,7 +477,7 @@ static int advance(Run *run, double end)
     return status;
 }
 
-/* Returns the status that ended the run; *failed: the instance it is about. */
+/* Returns the status that ended the run; *failed: the instance that has it. */
 static int run_all(Run *run, const gic_head **failed)
 {
     record(run);

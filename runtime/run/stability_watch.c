@@ -116,8 +116,8 @@ static bool is_rough(const StepWatch *watch, int i, double defect, double way)
            defect > rounding * (1 + fabs(watch->after[i]));
 }
 
-/* After the second step. In dual rate fast states take a course within a step; of them are known the rates at its last
- * two fast steps, and one that turns around between them is not resolved. */
+/* After the second step. With dual rate the rates of fast states are known at the last two fast steps of a step; a
+ * motion that reverses between these two is not resolved. */
 static bool sample_is_rough(StepWatch *watch, const gic_model *code, gic_head *self)
 {
     const double step = watch->scene->step, *rate = instance_array(self, code->rate_offset);
@@ -148,8 +148,9 @@ static double *standard_state(const StepWatch *watch, gic_head *copy)
     return engine_look(watch->engine, copy, state, NULL) == GIC_OK ? state : NULL;
 }
 
-/* Keep what the window ends with. A motion that tires or stops hold goes around the state where it would die out, so
- * that their mean is often nearer to that; it is no state of engines whose numbers have to fit together. */
+/* Keep the window's last state. A motion that tires or stops limit circles around the state at which it would die
+ * out, so the mean of the samples is often nearer to that state; for engines whose numbers must satisfy constraints
+ * the mean is not a valid state. */
 static void keep(StepWatch *watch, const gic_model *code, gic_head *self, gic_head *copy)
 {
     Pool *pool = watch->pool;
@@ -300,8 +301,8 @@ static void judge_state(StepWatch *watch, Moment *moment, const double *state)
         judge_mode(watch, &modes->mode[k], moment);
 }
 
-/* Does any motion grow at that moment that dies out by itself? The last state is asked where the mean one is not far
- * from it, or none. */
+/* True if at that moment a motion grows with this step that would decay by itself. The last state is used if the
+ * mean state is far from it or missing. */
 static bool grows(StepWatch *watch, Moment *moment)
 {
     if (!moment->judged) {

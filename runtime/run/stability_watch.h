@@ -17,15 +17,15 @@ typedef struct StepTheory StepTheory;
 /* What the runs of a model have in common: its equations for small motions, opened when first asked for. The model: for
  * code for any scene, before scene_narrow(). */
 StepTheory *step_theory_new(Pool *pool, const Model *model);
-/* For a run of a scene, also before scene_narrow(), by an engine. NULL: nobody watches, for steps vary, or are too few
- * for anything to be said. seldom: for runs of which instances are not at hand, few steps are looked at. */
+/* For a run of a scene, also before scene_narrow(), by an engine. NULL: the run is not watched, because its steps
+ * vary or are too few. seldom: look at few steps, for runs whose instances are not at hand. */
 StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom);
 /* Call after each step of an instance, which is only read. code: the engine's, or faster one; copy: the instance on
  * which outputs are computed (engines may keep factors for these two only); it is overwritten unless the vehicle
  * sleeps. */
 void step_watch_step(StepWatch *watch, const gic_model *code, gic_head *self, gic_head *copy);
-/* How many steps, of a vehicle that does not sleep, lie before the one that step_watch_step() is for next;
- * step_watch_pass tells that they are gone. */
+/* Number of steps, of a vehicle that is awake, before the one that step_watch_step() expects next; step_watch_pass
+ * tells that they have been made. */
 int64_t step_watch_idle(const StepWatch *watch);
 void step_watch_pass(StepWatch *watch, int64_t steps);
 /* After the run: what is wrong with it, with the time from which on it is, the quantity that moves and the longest

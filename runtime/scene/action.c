@@ -21,7 +21,7 @@ typedef struct View {
     int half; /* from a position in it to its rate */
 } View;
 
-enum { SPEED, ROLL, PITCH, YAW }; /* of the base, behind the signals */
+enum { SPEED, ROLL, PITCH, YAW }; /* outputs of the base, after the signals */
 
 static double of_base(const View *view, int which)
 {

@@ -47,7 +47,7 @@ Actions *actions_read(Pool *pool, const Item *root, const Model *model, Scene *s
  * as in FORMAT.md section 10; half: from a coordinate in it to its rate. */
 double action_value(const Action *action, const Scene *scene, const gic_model *code, gic_head *self,
                     const double *standard, int half);
-/* Do what belongs to it at the instance's time, whose inputs are up to date. */
+/* Execute the action at the instance's time, with its inputs up to date. */
 void action_start(Pool *pool, Action *action, const Scene *scene, const double *input);
 /* Clear the marks of the inputs that actions change. */
 void actions_move(const Scene *scene, bool *fixed);

@@ -12,7 +12,7 @@
 static const double coast = 0.2;      /* m/s^2 of deceleration that rolling resistance provides */
 static const double standing = 0.3;   /* m/s; below it a vehicle that is to stand is held ... */
 static const double holding = 0.3;    /* ... with this share of the brake */
-static const double search_back = 2;  /* m behind the latest nearest point of the path */
+static const double search_back = 2;  /* m before the last nearest point of the path */
 static const double search_ahead = 8; /* m ahead of where the vehicle should be */
 static const double slowest = 1;      /* m/s; below it the curvature of the vehicle's own path is not measured */
 

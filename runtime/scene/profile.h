@@ -47,8 +47,8 @@ double profile_next_kink(const Profile *profile, double time);
 double profile_longest_step(const Profile *profile, double time);
 /* The time up to which it is constant; `time` itself if that is unknown. */
 double profile_quiet_until(const Profile *profile, double time);
-/* The lowest and the highest value, and the largest magnitude of rate and acceleration from 0 to `duration`, s; but for
- * knots from values at many times. */
+/* The lowest and highest value, and the largest magnitudes of rate and acceleration from 0 to `duration`, s. All but
+ * those of knots are from values at many times. */
 typedef struct ProfilePeaks {
     double low, high, rate, acceleration;
 } ProfilePeaks;
@@ -78,7 +78,7 @@ int samples_read(Pool *pool, const CsvTable *table, int column, const char *unit
 
 /* Value, first and second derivative by time of a formula whose only local is the time. */
 void formula_of_time(const Law *law, const Model *model, double time, double out[3]);
-/* Does it have a place where its rate may jump? The operation's name as it was written, or NULL. */
+/* The name of an operation whose rate may jump, as it was written; NULL: there is none. */
 const char *formula_of_time_kink(const Law *law);
 
 #endif

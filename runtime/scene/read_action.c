@@ -139,7 +139,7 @@ static Range range_of(const Reader *reader, const Law *law)
     }
 }
 
-/* Is it made of time and numbers? *timed: does time occur? */
+/* True if it consists of time and numbers. *timed: the time occurs in it. */
 static bool is_of_time(const Law *law, bool *timed)
 {
     bool only = law->op == LAW_NUMBER || law->op == LAW_CALL || law->op == LAW_TIME || law->op == LAW_PARAMETER;
@@ -149,7 +149,7 @@ static bool is_of_time(const Law *law, bool *timed)
     return only;
 }
 
-/* Does a condition on the time alone become true on the way? From its values at many times. */
+/* True if a condition on the time alone becomes true during the run, as its values at many times show. */
 static bool comes_true(Reader *reader, const Action *action)
 {
     enum { LOOKS = 20000 };

@@ -99,7 +99,7 @@ static const CsvTable *table_of(Pool *pool, const Item *name)
     return table;
 }
 
-/* The column of a name; results of gicrun say `input.` before it. -1: there is none. */
+/* The column of a name; results of gicrun have `input.` before it. -1: there is none. */
 static int column_named(const CsvTable *table, const char *name)
 {
     static const char before[] = "input.";

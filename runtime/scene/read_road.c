@@ -220,7 +220,7 @@ static const gic_road *sum_read(Pool *pool, const Item *item)
     return &road->head;
 }
 
-/* A road but for its friction. */
+/* A road without its friction. */
 static const gic_road *kind_read(Pool *pool, const Item *item)
 {
     static const struct {

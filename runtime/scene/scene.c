@@ -99,7 +99,7 @@ const char *integrator_name(int32_t method)
     return integrators[i].name;
 }
 
-/* Smaller tolerances are below rounding, larger ones are no small error. */
+/* Smaller tolerances are below rounding, larger ones give useless results. */
 bool tolerance_known(double tolerance)
 {
     return tolerance >= 1e-13 && tolerance <= 0.1;

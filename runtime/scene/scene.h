@@ -104,7 +104,7 @@ void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene 
 const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn);
 /* facts.c: states that the scene can have, for formulation_validate(). */
 const struct Validation *scene_validation(Pool *pool, const Model *model, const Scene *scene);
-/* The scene with an initial state that is exactly symmetric, if it is symmetric but for rounding, as after a search for
+/* The scene with an initial state that is exactly symmetric if it is symmetric to rounding, as after a search for
  * static equilibrium. */
 const Scene *scene_even(Pool *pool, const Model *model, const Scene *scene);
 /* The scene for the engine's code: if that relies on facts, with the signals of its outputs, and without the road that

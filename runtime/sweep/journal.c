@@ -46,7 +46,7 @@ static void note(Journal *journal, const Result *result)
     }
 }
 
-/* "run status row"; false: it is no such line. */
+/* "run status row"; false: the line has another form. */
 static bool take_line(Journal *journal, const char *line)
 {
     char *end;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Runs shared out among processes: whoever is ready takes the next ones, by a counter in memory that all of them see,
- * and sends back what came of them. Processes, not threads: engines and the libraries behind them keep things of their
- * own, and nobody waits for anybody, whatever else the machine has to do. */
+ * Runs are shared out among processes: each takes the next runs by a counter in shared memory and sends back their
+ * results. Processes rather than threads, since engines and the libraries that they use keep state of their own, and
+ * no process waits for another. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "base/message.h"
 #include "base/text.h"
@@ -194,7 +194,7 @@ bool share_runs(Pool *pool, const Share *share, size_t processes)
                 continue;
             hear(&worker[w]);
             open -= worker[w].pipe < 0;
-            if (!broken && !stopped && worker[w].status) /* their end by end_all() is no failure */
+            if (!broken && !stopped && worker[w].status) /* ending by end_all() is not a failure */
                 broken = &worker[w];
             results = open_parcels(pool, &worker[w], &result, results);
         }

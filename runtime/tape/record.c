@@ -29,7 +29,7 @@ typedef struct Recorder {
     const Element *array;
     int arrays;
     int *uses;        /* [nodes] by tasks still to be done, checks and stores */
-    Task *task;       /* [nodes] kind 0: none, the node is no task of its own */
+    Task *task;       /* [nodes] kind 0: the node is not a task of its own */
     int *slot;        /* [nodes] */
     int *free, frees; /* [nodes] slots to use again */
     Tape *tape;

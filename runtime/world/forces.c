@@ -143,7 +143,8 @@ static double contact(World *world, const Force *force, double depth, double rat
     return fmax(0, elastic_force(world, force, depth, rate) + damping * rate);
 }
 
-/* What an element between points, about an axis or, but for a formula, along a coordinate does against growth. */
+/* The resistance against growth of an element between points, about an axis, or along a coordinate without a
+ * formula. */
 static double resistance(World *world, const Force *force, double value, double rate)
 {
     if (force_is_law(force))

@@ -43,7 +43,7 @@ static void express(const World *world, int in, const double vector[3], double *
         apply3_transposed(world->A[in], vector, out);
 }
 
-/* Euler parameters of a body, e0 >= 0 but for the base. */
+/* Euler parameters of a body, with e0 >= 0 for all but the base. */
 static void orientation(const World *world, int body, double *out)
 {
     static const double level[4] = {1, 0, 0, 0};

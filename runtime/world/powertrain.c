@@ -127,7 +127,7 @@ static void find_slopes(const World *world, int wheels, const int *wheel, double
         memset(slope, 0, sizeof *slope * (size_t)wheels);
         for (int j = 0; j < d->outputs; ++j) {
             const double part = d->ratio * share(d, j);
-            const double *other = slope - (k - d->differential[j]) * wheels; /* where the output is no wheel */
+            const double *other = slope - (k - d->differential[j]) * wheels; /* if the output is not a wheel */
             for (int w = 0; w < wheels; ++w)
                 slope[w] += d->wheel[j] < 0 ? part * other[w] : wheel[w] == d->wheel[j] ? part : 0;
         }

@@ -164,7 +164,7 @@ void world_spread(World *world);
 void world_drive(World *world, const double *fast, double *rate);
 /* Section 4 at these fast states: does a shift begin? Then gear has changed. */
 bool world_shift(const World *world, const double *fast, int32_t gear[POWERTRAIN_DISCRETE]);
-/* Do formulas that shifting depends on use coordinates of the mechanism? */
+/* True if formulas that decide on shifting read coordinates of the mechanism. */
 bool powertrain_watches_coordinates(const Powertrain *powertrain);
 
 /* ---- accelerate.c: equations of motion ------------------------------------------------------------------- */
