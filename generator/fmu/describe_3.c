@@ -154,10 +154,26 @@ static void describe_terminal(Text *out, const Variables *all, const Variable *f
     text_print(out, "    </Terminal>\n");
 }
 
-void describe_terminals(Text *out, const Variables *all)
+/* The place of icon.png in its coordinate system, 20 mm wide: as large as fits, about the origin. */
+static void describe_icon(Text *out, double height)
+{
+    const double x = 100 / fmax(1, height), y = x * height;
+    text_print(out, "  <GraphicalRepresentation>\n"
+                    "    <CoordinateSystem x1=\"-100\" y1=\"-100\" x2=\"100\" y2=\"100\""
+                    " suggestedScalingFactorTo_mm=\"0.1\"/>\n    <Icon");
+    xml_number(out, "x1", -x);
+    xml_number(out, "y1", -y);
+    xml_number(out, "x2", x);
+    xml_number(out, "y2", y);
+    text_print(out, "/>\n  </GraphicalRepresentation>\n");
+}
+
+void describe_terminals(Text *out, const Variables *all, double icon)
 {
     bool any = false;
     text_print(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiTerminalsAndIcons fmiVersion=\"3.0\">\n");
+    if (icon > 0)
+        describe_icon(out, icon);
     for (int i = 0; i < all->count; ++i) {
         const Variable *v = &all->variable[i];
         bool first = v->terminal != NULL;

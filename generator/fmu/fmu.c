@@ -68,32 +68,51 @@ static void add_runtime(Members *members, const char *templates, const Descripti
     add_embedded(members, "sources/", "gic_runtime.c");
 }
 
-/* The drawing as PNG, where Graphviz is there. */
-static void add_picture(Members *members, int version, const Formulation *f)
+/* The drawing as PNG, where Graphviz is there; else empty. */
+static Text draw(Pool *pool, const Formulation *f)
 {
-    Pool *pool = members->pool;
-    Text dot = {.pool = pool};
+    Text dot = {.pool = pool}, png = {.pool = pool};
     char *const argv[] = {"dot", "-Tpng", NULL};
     const char *said;
     FILE *output = tmpfile();
     graph_draw(&dot, f->model, f->sequence);
     if (!output)
-        return;
+        return png;
     if (process_run_into(pool, argv, dot.s, fileno(output), &said) == 0) {
-        Text png = {.pool = pool};
         char buffer[1 << 14];
         rewind(output);
         for (size_t n; (n = fread(buffer, 1, sizeof buffer, output)) > 0;)
             text_add(&png, buffer, n);
-        if (png.size)
-            add_text(members, version == 2 ? "model.png" : "terminalsAndIcons/icon.png", &png);
     }
     fclose(output);
+    return png;
+}
+
+/* A number of four bytes, the highest first: width and height in the header of a PNG. */
+static double png_number(const Text *png, size_t at)
+{
+    double value = 0;
+    for (size_t i = at; i < at + 4; ++i)
+        value = 256 * value + (unsigned char)png->s[i];
+    return value;
+}
+
+static void add_picture(Members *members, int version, const Text *png)
+{
+    if (png->size)
+        add_text(members, version == 2 ? "model.png" : "terminalsAndIcons/icon.png", png);
+}
+
+/* Height of the picture relative to its width; 0: there is no picture. */
+static double picture_height(const Text *png)
+{
+    enum { WIDTH_AT = 16, HEIGHT_AT = 20, HEADER = 24 };
+    return png->size >= HEADER ? png_number(png, HEIGHT_AT) / png_number(png, WIDTH_AT) : 0;
 }
 
 /* Everything but binaries. The token follows from all that the description and the C files have. */
 static void add_files(Members *members, int version, const Formulation *f, const Scene *scene, const char *templates,
-                      const char *path)
+                      const char *path, const Text *picture)
 {
     Pool *pool = members->pool;
     const char *name = f->model->name, *api = version == 2 ? "fmi2" : "fmi3";
@@ -129,7 +148,7 @@ static void add_files(Members *members, int version, const Formulation *f, const
     if (version == 3) {
         Text build = {.pool = pool}, terminals = {.pool = pool};
         describe_build(&build, &d);
-        describe_terminals(&terminals, d.variables);
+        describe_terminals(&terminals, d.variables, picture_height(picture));
         add_text(members, "sources/buildDescription.xml", &build);
         add_text(members, "terminalsAndIcons/terminalsAndIcons.xml", &terminals);
     }
@@ -145,12 +164,15 @@ void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene
     if (scene)
         check_scene(scene);
     file_check(path);
-    add_files(&members, version, f, scene, templates, path);
+    interrupt_hold(); /* as programs that are run ask for */
+    const Text picture = draw(pool, f);
+    interrupt_release();
+    add_files(&members, version, f, scene, templates, path, &picture);
     interrupt_hold(); /* or the folder would stay */
     if (!mkdtemp(folder))
         diag_fail(program_place(), "set TMPDIR to a folder that can be written", "no folder can be made in %s: %s",
                   temporary_folder(), strerror(errno));
-    add_picture(&members, version, f);
+    add_picture(&members, version, &picture);
     failure = binaries_add(&members, version, f->model->name, folder, path);
     rmdir(folder);
     interrupt_release();

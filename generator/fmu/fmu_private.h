@@ -113,9 +113,10 @@ void describe_experiment(Text *out, const Experiment *experiment);
 
 void describe_2(Text *out, const Description *d);
 void describe_3(Text *out, const Description *d);
-/* buildDescription.xml and terminalsAndIcons.xml of FMI 3.0. */
+/* buildDescription.xml and terminalsAndIcons.xml of FMI 3.0. icon: height of the icon relative to its width; 0: there
+ * is no icon. */
 void describe_build(Text *out, const Description *d);
-void describe_terminals(Text *out, const Variables *all);
+void describe_terminals(Text *out, const Variables *all, double icon);
 
 /* ---- sources.c: what the C layer of an FMU includes */
 

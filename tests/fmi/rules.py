@@ -2,7 +2,9 @@
 # rules.py modelDescription.xml [terminalsAndIcons.xml]: what the standard demands of it beyond the schema (FMI 2.0 section 2.2, FMI 3.0 section
 # 2.4): names, references, units, start values, lists of ModelStructure. Prints each violation; exit status 1 where there
 # is one, and how many variables were looked at.
+import os
 import re
+import struct
 import sys
 import xml.etree.ElementTree as tree
 
@@ -109,8 +111,18 @@ if version == 2:
 for v in listed("", "EventIndicator") if version == 3 else []:
     demand(v.real and v.causality in ("local", "output") and v.start is None, v.name + " can't be an event indicator")
 
-# terminals: members are variables, once a terminal
+# terminals: members are variables, once a terminal; the icon is within its coordinate system and undistorted
 if len(sys.argv) > 2:
+    picture = os.path.join(os.path.dirname(sys.argv[2]), "icon.png")
+    icon = next(tree.parse(sys.argv[2]).getroot().iter("Icon"), None)
+    demand(os.path.exists(picture) == (icon is not None), "a file icon.png or an Icon, not both")
+    if icon is not None:
+        with open(picture, "rb") as file:
+            width, height = struct.unpack(">II", file.read(24)[16:])
+        corners = [float(icon.get(name)) for name in ("x1", "y1", "x2", "y2")]
+        demand(max(map(abs, corners)) == 100, "the icon does not fill its coordinate system")
+        shape = (corners[3] - corners[1]) / (corners[2] - corners[0])
+        demand(abs(shape - height / width) < 1e-9, "the icon is distorted")
     for terminal in tree.parse(sys.argv[2]).getroot().iter("Terminal"):
         members = [member.get("memberName") for member in terminal]
         demand(len(set(members)) == len(members), "a member occurs twice in terminal " + terminal.get("name"))
