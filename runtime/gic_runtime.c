@@ -624,7 +624,7 @@ static void interpolate(const Dual *dual, int32_t k, gic_real *link)
             now[i] + of_next * (next[i] - now[i]) + of_before * (before[i] - now[i]) + of_older * (older[i] - now[i]);
 }
 
-/* A step without history: RK4 of everything at fast steps. */
+/* A step without history: RK4 of everything at fast steps. After the second one row 3 has the rate at its end. */
 static int start_dual(Dual *dual, int32_t known)
 {
     const gic_model *model = dual->model;
@@ -640,7 +640,29 @@ static int start_dual(Dual *dual, int32_t known)
         from = next;
     }
     dual->next = from;
+    if (status == GIC_OK && known == 1)
+        status = evaluate(model, dual->self, moment(dual, dual->ratio), from, row(dual, 3));
+    if (status == GIC_OK && known == 1 && !gic_finite(row(dual, 3), model->slow_count))
+        status = GIC_ERROR_RESULT;
     return status == GIC_OK ? link_at(dual, dual->ratio, from, link + 3 * model->link_count) : status;
+}
+
+/* After the second of these steps: the older past rate of the slow states for the first step of AB3. What acts between
+ * slow and fast states is summed with long steps on one side and short ones on the other. Of a motion that dies out
+ * soon after the start AB3's sum leaves 3/8 step^3 f'' at its beginning, which the short steps don't, and a lasting
+ * difference of momentum would come of it. So instead of f(-2) the first step has the number with which the sum is the
+ * integral, by Euler and Maclaurin, for which f' at the beginning is known from the short steps:
+ *
+ *     integral / step = f(0)/2 + f(1) + f(2) + ... + step f'(0) / 12 + O(step^3 f''')
+ *     sum of AB3      = 5/12 f(-2) - 11/12 f(-1) + f(0) + f(1) + f(2) + ... */
+static void balance_start(const Dual *dual, const gic_real *past, gic_real *older)
+{
+    const int32_t slow = dual->model->slow_count;
+    const gic_real *now = row(dual, 3), *last = dual->fast[0] - slow, *before = dual->fast[1] - slow;
+    for (int32_t i = 0; i < slow; ++i) {
+        const gic_real change = GIC_R(1.5) * now[i] - GIC_R(2.0) * last[i] + GIC_R(0.5) * before[i];
+        older[i] = (GIC_R(11.0) * past[i] - GIC_R(6.0) * now[i] + (gic_real)dual->ratio * change) / GIC_R(5.0);
+    }
 }
 
 /* Running means of the fast states' rates. */
@@ -742,6 +764,8 @@ static void keep_dual(const Dual *dual, int32_t known)
     gic_real *history = array_at(dual->self, model->history_offset), *link = dual->link;
     copy(history + n, history, slow);
     copy(history, row(dual, 0), slow);
+    if (known == 1)
+        balance_start(dual, history, history + n);
     copy(history + n + slow, dual->fast[1], fast);
     copy(history + slow, dual->fast[0], fast);
     if (dual->steady > GIC_R(0.0))

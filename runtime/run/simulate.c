@@ -8,6 +8,7 @@
 #include "model/model.h"
 #include "run/dead_centre.h"
 #include "run/engines.h"
+#include "run/knot.h"
 #include "run/run.h"
 #include "run/scene_events.h"
 #include "run/stability_watch.h"
@@ -423,10 +424,14 @@ static int look(const Engine *engine, gic_head *self, Driver *driver)
 
 int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
 {
-    if (!variable && scene->method == GIC_AB3)
-        return gic_step_steady(model, self, scene->step, scene->ratio, scene->steady);
-    if (!variable)
-        return gic_step(model, self, scene->step, scene->method);
+    if (!variable) {
+        const double start = gic_time(self);
+        const int history = self->history;
+        const int status = scene->method == GIC_AB3
+                               ? gic_step_steady(model, self, scene->step, scene->ratio, scene->steady)
+                               : gic_step(model, self, scene->step, scene->method);
+        return status == GIC_OK ? knots_cross(model, scene, self, start, history) : status;
+    }
     const double kink = scene_next_kink(scene, gic_time(self));
     const double most = gic_time(self) + scene_longest_step(scene, gic_time(self));
     const int status = variable_step(variable, self, fmin(fmin(kink, end), most));

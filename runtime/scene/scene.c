@@ -432,6 +432,15 @@ double scene_next_kink(const Scene *scene, double time)
     return next;
 }
 
+double scene_next_knot(const Scene *scene, double time)
+{
+    double next = INFINITY;
+    for (int i = 0; i < scene->profiles; ++i)
+        if (scene->profile[i].driven)
+            next = fmin(next, profile_next_kink(&scene->profile[i], time));
+    return next;
+}
+
 double scene_longest_step(const Scene *scene, double time)
 {
     double longest = INFINITY;

@@ -94,6 +94,8 @@ void scene_read_input_file(Pool *pool, const Item *item, const Model *model, con
 void scene_inputs(void *user, int32_t lane, double time, double *input);
 /* The first time after `time` at which a profile is less smooth; INFINITY: none. */
 double scene_next_kink(const Scene *scene, double time);
+/* The same for profiles of driven coordinates alone, whose jerk jumps there. */
+double scene_next_knot(const Scene *scene, double time);
 /* The longest step (s) from `time` that skips no feature of the inputs, or INFINITY. */
 double scene_longest_step(const Scene *scene, double time);
 /* The time up to which all inputs are constant; `time` itself if that is unknown. */

@@ -7,6 +7,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "model/model.h"
+#include "run/knot.h"
 #include "run/run.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
@@ -213,6 +214,45 @@ static void look_at_batch(Runner *r)
     }
 }
 
+/* One step of all slots, in which knots may be. */
+static void step_over_knots(Runner *r)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    double start[r->used];
+    int32_t history[r->used];
+    for (int i = 0; i < r->used; ++i) {
+        sweep->many->store(r->batch, i, r->one);
+        start[i] = gic_time(r->one);
+        history[i] = r->one->history;
+    }
+    sweep->many->step(r->batch, sweep->scene->step, sweep->scene->method, 1);
+    for (int i = 0; i < r->used; ++i) {
+        Slot *slot = &r->slot[i];
+        sweep->many->store(r->batch, i, r->one);
+        if (slot->status != GIC_OK || sweep->many->status(r->batch, i) != GIC_OK ||
+            scene_next_knot(&slot->scene, start[i]) > gic_time(r->one))
+            continue;
+        set_status(r, slot, knots_cross(code, &slot->scene, r->one, start[i], history[i]), r->one);
+        sweep->many->load(r->batch, i, r->one);
+    }
+}
+
+/* Steps of all slots until the next one with a knot, rather less than more, but at most `most`. */
+static int64_t steps_to_knot(Runner *r, int64_t most)
+{
+    const Sweep *sweep = r->sweep;
+    double steps = (double)most;
+    for (int i = 0; i < r->used; ++i) {
+        if (scene_next_knot(&r->slot[i].scene, 0) == (double)INFINITY)
+            continue;
+        sweep->many->store(r->batch, i, r->one);
+        const double now = gic_time(r->one);
+        steps = fmin(steps, (scene_next_knot(&r->slot[i].scene, now) - now) / sweep->scene->step - 1e-6);
+    }
+    return steps > 0 ? (int64_t)steps : 0;
+}
+
 /* Steps of all slots, at most `most`, up to the next sample of the watch. */
 static int32_t step_lanes(Runner *r, int64_t most)
 {
@@ -221,7 +261,14 @@ static int32_t step_lanes(Runner *r, int64_t most)
     const StepWatch *watch = r->slot->watch; /* all watches sample the same steps */
     const bool look = watch && step_watch_idle(watch) < most;
     const int32_t steps = (int32_t)(look ? step_watch_idle(watch) + 1 : most);
-    sweep->many->step(r->batch, scene->step, scene->method, steps);
+    for (int64_t left = steps; left > 0;) {
+        const int64_t smooth = steps_to_knot(r, left);
+        if (smooth > 0)
+            sweep->many->step(r->batch, scene->step, scene->method, (int32_t)smooth);
+        else
+            step_over_knots(r);
+        left -= smooth > 0 ? smooth : 1;
+    }
     for (int i = 0; i < r->used && watch; ++i) {
         step_watch_pass(r->slot[i].watch, steps - look);
         if (!look)

@@ -20,7 +20,7 @@
 #define EPSILON DBL_EPSILON
 #endif
 
-/* ---- a hand-made model: x' = w, w' = u + g % 5 - 2, age' = 1 --------------------------------------------
+/* ---- a hand-made model: x' = w - t^2 / 8, w' = u + g % 5 - 2, age' = 1 ----------------------------------
  *
  * The gear g grows by 1 where age reaches `period`. Between changes x is a parabola, which all formulas integrate
  * without an error, so that what is left comes from changes. */
@@ -54,7 +54,7 @@ static int probe_fast(void *self, gic_real time, const gic_real *link, const gic
 static int probe_rhs(void *self, gic_real time, const gic_real *state, gic_real *rate)
 {
     ++((Probe *)self)->head.rhs_count;
-    rate[0] = state[1];
+    rate[0] = state[1] - GIC_R(0.125) * time * time;
     return probe_fast(self, time, NULL, state + SLOW, rate + SLOW);
 }
 
@@ -128,8 +128,8 @@ static int probe_step(Probe *probe, double step, int32_t ratio)
                  : gic_step(&probe_model, probe, (gic_real)step, GIC_RK4);
 }
 
-/* x and w at a time, from piece to piece: u = t / 4 gives t^3 / 24 and t^2 / 8. By the rule a time is reached from
- * 1 - d of it on. */
+/* x and w at a time, from piece to piece: u = t / 4 gives t^2 / 8, which x' leaves out. By the rule a time is reached
+ * from 1 - d of it on. */
 static int32_t exact(const Probe *probe, double time, double *x, double *w)
 {
     const long double period = (long double)probe->period * (1 - (long double)GIC_LIMIT_ROUNDING);
@@ -143,7 +143,7 @@ static int32_t exact(const Probe *probe, double time, double *x, double *w)
             break;
         at += period;
     }
-    *x = (double)(place + (long double)time * time * time / 24);
+    *x = (double)place;
     *w = (double)(speed + (long double)time * time / 8);
     return gear;
 }
