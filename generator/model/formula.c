@@ -319,7 +319,12 @@ static const Law *parse_name(Parser *p)
         if (!strcmp(name, p->names->local[i])) {
             if (!p->names->hide)
                 has_one_meaning(p, where, name, "a quantity of this element");
-            return reference(p, LAW_LOCAL, i, p->names->local[i]);
+            for (int k = 0; k < model->signals && p->names->reads; ++k)
+                if (model->signal[k].name && !strcmp(name, model->signal[k].name))
+                    fail(p, where, "give the signal another name",
+                         "'%s' is a quantity of this element here, and the name of a signal", name);
+            const Law *law = reference(p, LAW_LOCAL, i, p->names->local[i]);
+            return p->item->mirrored && (p->names->odd >> i & 1) ? negative(p, law) : law;
         }
     for (int i = 0; i < model->parameters; ++i)
         if (!strcmp(name, model->parameter[i].name))

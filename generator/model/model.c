@@ -23,6 +23,16 @@ bool force_is_torque(const Force *force)
     return force->type == FORCE_AXIS || force->type == FORCE_AXIS_LAW || force->type == FORCE_AXIS_STOP;
 }
 
+bool force_is_wrench(const Force *force)
+{
+    return force->type == FORCE_LOAD || force->type == FORCE_AERO;
+}
+
+int force_laws(const Force *force)
+{
+    return force->type == FORCE_AERO ? FORCE_MOST_LAWS : force->type == FORCE_LOAD ? 6 : force_is_law(force);
+}
+
 int wheel_fast_states(const Wheel *wheel)
 {
     return wheel->tire < 0 ? 0 : wheel->brake ? FAST_MOST : FAST_BRAKE;
@@ -156,7 +166,7 @@ bool model_reads(const Model *model, OutputType type)
     for (int i = 0; i < model->outputs; ++i)
         search_output(&search, &model->output[i]);
     for (int i = 0; i < model->forces; ++i)
-        for (int k = 0; k < 6; ++k)
+        for (int k = 0; k < FORCE_MOST_LAWS; ++k)
             law_signals(model->force[i].law[k], search_signal, &search);
     return search.found;
 }

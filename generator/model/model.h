@@ -43,6 +43,7 @@ typedef struct LawNames {
     const struct Model *model; /* coordinates, inputs, parameters, tables */
     const char *const *local;  /* local names of this formula, or NULL */
     int locals;
+    unsigned odd;       /* bits of those that change their sign in the mirror */
     bool hide;          /* local names hide equal names of the model; else a formula that uses such a name is refused */
     bool constant;      /* only numbers and parameters are allowed */
     const char *remedy; /* the remedy if another name is used */
@@ -188,22 +189,28 @@ typedef enum ForceType {
     FORCE_POINTS_STOP,
     FORCE_AXIS_STOP,
     FORCE_LOAD, /* force and torque on a body */
+    FORCE_AERO, /* of the air on a body */
     FORCE_TYPES
 } ForceType;
+
+/* Formulas of FORCE_AERO behind the six that a load has, too. */
+enum { AERO_DRAG = 6, AERO_WIND, AERO_DENSITY = AERO_WIND + 3, FORCE_MOST_LAWS };
 
 typedef struct Force {
     const char *name;
     Place at;
     ForceType type;
     int coordinate; /* along a coordinate, else -1 */
-    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD: the body, and the body in whose frame it is
-                     * given */
+    int body[2];    /* of points or axis, BODY_GROUND possible; FORCE_LOAD, FORCE_AERO: the body, and the body in whose
+                     * frame force and torque are given */
     double point[2][3];
     double axis[3], reference[2][3];              /* as in Coordinate */
     const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
     const struct Law *low, *high, *fade;          /* of a stop: the same; NULL for an end that it does not have */
+    const struct Law *area, *length;              /* of FORCE_AERO: the same */
     int table;                                    /* in place of stiffness; -1: none */
-    const struct Law *law[6]; /* [0]: generalised force, tension or torque; FORCE_LOAD: force, torque, NULL: 0 */
+    const struct Law *law[FORCE_MOST_LAWS];       /* [0]: generalised force, tension or torque; FORCE_LOAD: force,
+                                                   * torque; FORCE_AERO: their coefficients, and AERO_...; NULL: 0 */
 } Force;
 
 bool force_is_spring(const Force *force);
@@ -211,8 +218,13 @@ bool force_is_stop(const Force *force);
 bool force_is_law(const Force *force);
 /* True for elements about an axis. */
 bool force_is_torque(const Force *force);
+/* True for elements that act on one body with force and torque, which have no single number. */
+bool force_is_wrench(const Force *force);
+/* How many formulas a force element has, those that are NULL counted; numbers such as stiffness are none of them. */
+int force_laws(const Force *force);
 
-enum { FORCE_LOCALS = 2 }; /* of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed */
+/* Of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed; of coefficients of FORCE_AERO: */
+enum { AERO_INCIDENCE, AERO_SIDESLIP, AERO_SPEED, FORCE_LOCALS };
 
 typedef enum TireType { TIRE_PAC2002, TIRE_TMEASY, TIRE_TYPES } TireType;
 typedef enum TireSide { SIDE_LEFT, SIDE_RIGHT, SIDE_SYMMETRIC } TireSide;

@@ -43,6 +43,12 @@ enum {
     ELEMENT_IN,
     ELEMENT_FORCE,
     ELEMENT_TORQUE,
+    ELEMENT_AREA,
+    ELEMENT_LENGTH,
+    ELEMENT_DENSITY,
+    ELEMENT_WIND,
+    ELEMENT_DRAG,
+    ELEMENT_MOMENT,
     ELEMENT_KEYS
 };
 
@@ -53,6 +59,7 @@ enum {
 #define FORCE_LAWS (FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_POINTS_LAW) | FORM(FORCE_AXIS_LAW))
 #define FORCE_STOP (FORM(FORCE_COORDINATE_STOP) | FORM(FORCE_POINTS_STOP) | FORM(FORCE_AXIS_STOP))
 #define FORCE_PAIR (FORCE_BETWEEN | FORCE_ABOUT)
+#define FORCE_WRENCH (FORM(FORCE_LOAD) | FORM(FORCE_AERO))
 
 static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
@@ -68,20 +75,27 @@ static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_FADE] = {"fade", KEY_FORMULA, FORCE_STOP, 0, BOUND_POSITIVE, 0.01},
     [ELEMENT_TABLE] = {"table", KEY_TABLE, FORCE_SPRING | FORCE_STOP, 0, BOUND_NONE, 0},
     [ELEMENT_VALUE] = {"value", KEY_FORMULA, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
-    [ELEMENT_BODY] = {"body", KEY_BODY, FORM(FORCE_LOAD), FORM(FORCE_LOAD), BOUND_NONE, 0},
-    [ELEMENT_POINT] = {"point", KEY_POINT, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_BODY] = {"body", KEY_BODY, FORCE_WRENCH, FORCE_WRENCH, BOUND_NONE, 0},
+    [ELEMENT_POINT] = {"point", KEY_POINT, FORCE_WRENCH, 0, BOUND_NONE, 0},
     [ELEMENT_IN] = {"in", KEY_FRAME, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
-    [ELEMENT_FORCE] = {"force", KEY_FORCE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_FORCE] = {"force", KEY_FORCE_VECTOR, FORCE_WRENCH, 0, BOUND_NONE, 0},
     [ELEMENT_TORQUE] = {"torque", KEY_TORQUE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_AREA] = {"area", KEY_FORMULA, FORM(FORCE_AERO), FORM(FORCE_AERO), BOUND_POSITIVE, 0},
+    [ELEMENT_LENGTH] = {"length", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_POSITIVE, 0},
+    [ELEMENT_DENSITY] = {"density", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_NONE, 1.225},
+    [ELEMENT_WIND] = {"wind", KEY_WORLD_VECTOR, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
+    [ELEMENT_DRAG] = {"drag", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
+    [ELEMENT_MOMENT] = {"moment", KEY_TORQUE_VECTOR, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
 };
 
-enum { TYPE_SPRING, TYPE_FORCE, TYPE_STOP, TYPE_LOAD, TYPES };
+enum { TYPE_SPRING, TYPE_FORCE, TYPE_STOP, TYPE_LOAD, TYPE_AERO, TYPES };
 
 static const char *const force_type_name[TYPES] = {
     [TYPE_SPRING] = "spring_damper",
     [TYPE_FORCE] = "force",
     [TYPE_STOP] = "stop",
     [TYPE_LOAD] = "load",
+    [TYPE_AERO] = "aero",
 };
 
 static const char *const force_form_name[FORCE_TYPES] = {
@@ -95,20 +109,21 @@ static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_POINTS_STOP] = "between two points",
     [FORCE_AXIS_STOP] = "about an axis",
     [FORCE_LOAD] = "load",
+    [FORCE_AERO] = "aero",
 };
 
-static const char *const between_local[FORCE_LOCALS] = {"length", "speed"};
-static const char *const about_local[FORCE_LOCALS] = {"angle", "speed"};
+static const char *const between_local[] = {"length", "speed"};
+static const char *const about_local[] = {"angle", "speed"};
+static const char *const aero_local[FORCE_LOCALS] = {
+    [AERO_INCIDENCE] = "incidence", [AERO_SIDESLIP] = "sideslip", [AERO_SPEED] = "airspeed"};
 
 static const unsigned force_type_forms[TYPES] = {
-    [TYPE_SPRING] = FORCE_SPRING,
-    [TYPE_FORCE] = FORCE_LAWS,
-    [TYPE_STOP] = FORCE_STOP,
-    [TYPE_LOAD] = FORM(FORCE_LOAD),
+    [TYPE_SPRING] = FORCE_SPRING,   [TYPE_FORCE] = FORCE_LAWS,      [TYPE_STOP] = FORCE_STOP,
+    [TYPE_LOAD] = FORM(FORCE_LOAD), [TYPE_AERO] = FORM(FORCE_AERO),
 };
 
 static const char *const force_about[ELEMENT_KEYS] = {
-    [ELEMENT_TYPE] = "spring and damper, any force law, stop, or force and torque on a body",
+    [ELEMENT_TYPE] = "spring and damper, any force law, stop, force and torque on a body, or air forces on a body",
     [ELEMENT_COORDINATE] = "the dual coordinate that it acts along",
     [ELEMENT_BODIES] = "the bodies a and b that it acts between; `ground` is allowed",
     [ELEMENT_POINTS] = "the point of a and the point of b at design, m, model frame",
@@ -122,11 +137,17 @@ static const char *const force_about[ELEMENT_KEYS] = {
     [ELEMENT_FREE] = "value or length without spring force, m or rad; default: the one at design",
     [ELEMENT_VALUE] =
         "force, N, or torque, N m: along the coordinate, or tension between the points, torque about the axis",
-    [ELEMENT_BODY] = "the body that the load acts on",
+    [ELEMENT_BODY] = "the body that load or air acts on",
     [ELEMENT_POINT] = "where the force acts, at design, m, model frame; default: origin of the body frame",
     [ELEMENT_IN] = "the body in whose frame components are given; default `world`",
-    [ELEMENT_FORCE] = "N, a formula for each component",
+    [ELEMENT_FORCE] = "N, a formula for each component; of `aero`: coefficients, along the axes of the body",
     [ELEMENT_TORQUE] = "N m, a formula for each component",
+    [ELEMENT_AREA] = "area that coefficients refer to, m^2; of numbers and parameters",
+    [ELEMENT_LENGTH] = "length that coefficients of moments refer to, m; of numbers and parameters",
+    [ELEMENT_DENSITY] = "of the air, kg/m^3, a formula; default 1.225",
+    [ELEMENT_WIND] = "velocity of the air in the world, m/s, a formula for each component; default still",
+    [ELEMENT_DRAG] = "coefficient of the force against the motion through the air, a formula",
+    [ELEMENT_MOMENT] = "coefficients of the moment about the axes of the body, a formula for each component",
 };
 
 const Section force_section = {force_key,       ELEMENT_KEYS,     force_type_name, TYPES,
@@ -242,32 +263,77 @@ static void read_stop(Reader *reader, const Entry *entry, const Value *value, Fo
                   table_value(&model->table[force->table], 0));
 }
 
-static void read_load(Reader *reader, const Entry *entry, const Value *value, Force *force)
+/* Body and point of an element that acts on one body. */
+static void read_acted(Reader *reader, const Entry *entry, const Value *value, Force *force)
 {
-    static const int key[2] = {ELEMENT_FORCE, ELEMENT_TORQUE};
-    LawNames names = {.model = reader->model, .reads = &reader->reads};
-    if (!value[ELEMENT_FORCE].item && !value[ELEMENT_TORQUE].item)
-        diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula",
-                  "%s has neither force nor torque", entry->what);
     force->body[0] = value[ELEMENT_BODY].index[0];
-    force->body[1] = value[ELEMENT_IN].item ? value[ELEMENT_IN].index[0] : BODY_GROUND;
     if (!reader->model->free_base && force->body[0] == BODY_BASE)
         diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing",
                   entry->what);
     if (value[ELEMENT_POINT].item)
         body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].tuned,
                    value[ELEMENT_POINT].item->at, force->point[0]);
-    for (int part = 0; part < 2; ++part) {
-        const Item *item = value[key[part]].item;
-        const char *what = pool_print(reader->pool, "%s of %s", force_key[key[part]].name, entry->what);
-        if (!item)
-            continue;
-        if (item->kind != ITEM_LIST || item->count != 3)
-            diag_fail(item->at, "write [x, y, z]; each may be a formula", "%s must be a list of 3 numbers or formulas",
-                      what);
-        for (int i = 0; i < 3; ++i)
-            force->law[3 * part + i] = law_parse(reader->pool, item->value[i], what, &names);
-    }
+}
+
+/* Formulas of the three components of a vector; NULL where the key is absent. */
+static void read_components(Reader *reader, const Entry *entry, const Value *value, int key, const LawNames *names,
+                            const Law *law[3])
+{
+    const Item *item = value[key].item;
+    const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
+    if (!item)
+        return;
+    if (item->kind != ITEM_LIST || item->count != 3)
+        diag_fail(item->at, "write [x, y, z]; each may be a formula", "%s must be a list of 3 numbers or formulas",
+                  what);
+    for (int i = 0; i < 3; ++i)
+        law[i] = law_parse(reader->pool, item->value[i], what, names);
+}
+
+static void read_load(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    LawNames names = {.model = reader->model, .reads = &reader->reads};
+    if (!value[ELEMENT_FORCE].item && !value[ELEMENT_TORQUE].item)
+        diag_fail(entry->at, "add `force: [x, y, z]` or `torque: [x, y, z]`; each may be a formula",
+                  "%s has neither force nor torque", entry->what);
+    read_acted(reader, entry, value, force);
+    force->body[1] = value[ELEMENT_IN].item ? value[ELEMENT_IN].index[0] : BODY_GROUND;
+    read_components(reader, entry, value, ELEMENT_FORCE, &names, force->law);
+    read_components(reader, entry, value, ELEMENT_TORQUE, &names, force->law + 3);
+}
+
+static void read_aero(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    const Item *moment = value[ELEMENT_MOMENT].item, *drag = value[ELEMENT_DRAG].item;
+    const Item *density = value[ELEMENT_DENSITY].item, *length = value[ELEMENT_LENGTH].item;
+    const LawNames names = {.model = reader->model, .reads = &reader->reads};
+    const LawNames own = {.model = reader->model,
+                          .local = aero_local,
+                          .locals = FORCE_LOCALS,
+                          .odd = 1u << AERO_SIDESLIP,
+                          .reads = &reader->reads};
+    if (!drag && !moment && !value[ELEMENT_FORCE].item)
+        diag_fail(entry->at, "add `drag: number`, `force: [x, y, z]` or `moment: [x, y, z]`; each may be a formula",
+                  "%s has no coefficient", entry->what);
+    if (!moment != !length)
+        diag_fail(moment ? moment->at : length->at,
+                  moment ? "add `length: number`, m, often the wheelbase" : "take it away, or add `moment: [x, y, z]`",
+                  moment ? "%s has coefficients of a moment and no length that they refer to"
+                         : "%s has a length and no coefficients of a moment, which refer to it",
+                  entry->what);
+    read_acted(reader, entry, value, force);
+    force->body[1] = force->body[0];
+    force->area = spring_law(reader, entry, value, ELEMENT_AREA, 0, 0);
+    force->length = length ? spring_law(reader, entry, value, ELEMENT_LENGTH, 0, 0) : NULL;
+    read_components(reader, entry, value, ELEMENT_FORCE, &own, force->law);
+    read_components(reader, entry, value, ELEMENT_MOMENT, &own, force->law + 3);
+    read_components(reader, entry, value, ELEMENT_WIND, &names, force->law + AERO_WIND);
+    if (drag)
+        force->law[AERO_DRAG] =
+            law_parse(reader->pool, drag, pool_print(reader->pool, "drag of %s", entry->what), &own);
+    force->law[AERO_DENSITY] =
+        density ? law_parse(reader->pool, density, pool_print(reader->pool, "density of %s", entry->what), &names)
+                : literal_law(reader, force_key[ELEMENT_DENSITY].fallback, 0);
 }
 
 static void force_read(Reader *reader, const Entry *entry, Force *force)
@@ -276,13 +342,14 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
     int type = section_type(reader, &force_section, entry);
     bool along = doc_find(entry->item, "coordinate"), about = doc_find(entry->item, "axis");
     bool between = doc_find(entry->item, "bodies") || doc_find(entry->item, "points");
-    if (!along && !about && !between && type != TYPE_LOAD)
+    const bool wrench = type == TYPE_LOAD || type == TYPE_AERO;
+    if (!along && !about && !between && !wrench)
         diag_fail(entry->at,
                   "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]` or `axis: [x, y, z]`",
                   "%s acts nowhere: neither a coordinate nor two bodies are given", entry->what);
     unsigned place = along ? FORCE_ALONG : about ? FORCE_ABOUT : FORCE_BETWEEN;
     ForceType form = 0;
-    while (!(FORM(form) & force_type_forms[type] & (type == TYPE_LOAD ? ALL_FORMS : place)))
+    while (!(FORM(form) & force_type_forms[type] & (wrench ? ALL_FORMS : place)))
         ++form;
     section_read(reader, &force_section, (int)form, entry, value);
     *force = (Force){.name = entry->name,
@@ -295,6 +362,8 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
     Ex tuned_fallback = 0;
     if (form == FORCE_LOAD) {
         read_load(reader, entry, value, force);
+    } else if (form == FORCE_AERO) {
+        read_aero(reader, entry, value, force);
     } else if (along) {
         force->coordinate = value[ELEMENT_COORDINATE].index[0];
         fallback = reader->model->coordinate[force->coordinate].design;
@@ -324,7 +393,7 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
     if (force_is_law(force)) {
         LawNames names = {.model = reader->model,
                           .local = form == FORCE_POINTS_LAW ? between_local : about_local,
-                          .locals = form == FORCE_COORDINATE_LAW ? 0 : FORCE_LOCALS,
+                          .locals = form == FORCE_COORDINATE_LAW ? 0 : 2,
                           .reads = &reader->reads};
         force->law[0] = law_parse(reader->pool, value[ELEMENT_VALUE].item,
                                   pool_print(reader->pool, "value of %s", entry->what), &names);

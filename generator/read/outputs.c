@@ -175,6 +175,11 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
                   "`type: signal`",
                   "%s: load '%s' has components of force and torque, no single force", entry->what,
                   reader->model->force[output->index].name);
+    if (type == OUTPUT_FORCE && reader->model->force[output->index].type == FORCE_AERO)
+        diag_fail(value[WATCH_ELEMENT].item->at,
+                  "write its law as formulas under `signals`, which outputs of `type: signal` show",
+                  "%s: force '%s' has components of force and moment, no single force", entry->what,
+                  reader->model->force[output->index].name);
     if ((type == OUTPUT_TIRE || type == OUTPUT_CONTACT) && reader->model->wheel[output->index].tire < 0)
         diag_fail(value[WATCH_WHEEL].item->at, "give that wheel a tire, or ask for `type: wheel`",
                   "%s: wheel '%s' has no tire", entry->what, reader->model->wheel[output->index].name);

@@ -18,6 +18,7 @@ typedef enum KeyKind {
     KEY_ITEM,          /* read by the section itself: item */
     KEY_FORMULA,       /* read by the section itself: a number or a formula */
     KEY_FORCE_VECTOR,  /* read by the section itself: three formulas, components of a force */
+    KEY_WORLD_VECTOR,  /* read by the section itself: three formulas, of the world, which the mirror leaves as it is */
     KEY_TORQUE_VECTOR, /* read by the section itself: three formulas, components of a torque */
     KEY_INERTIA,       /* read by the section itself: a list of numbers or a map of inertia_section */
     KEY_ORIENTATION,   /* read by the section itself: a map of orientation_section */

@@ -36,6 +36,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_FORMULA] = {.words = WORDS_FORMULA},
     [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
     [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},
+    [KEY_WORLD_VECTOR] = {.words = WORDS_FORMULA},
     [KEY_NUMBER] = {.words = WORDS_FORMULA},
     [KEY_MEASURE] = {.words = WORDS_FORMULA},
     [KEY_INERTIA] = {.words = WORDS_FORMULA, .section = &inertia_section},

@@ -68,6 +68,7 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_TURN:
     case KEY_DUAL_AXIS:
     case KEY_FORCE_VECTOR:
+    case KEY_WORLD_VECTOR:
     case KEY_TORQUE_VECTOR: reference(out, "vector"); break;
     case KEY_AXES: pair(out, "vector"); break;
     case KEY_EULER:

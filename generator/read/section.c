@@ -23,6 +23,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_FORMULA] = "formula",
     [KEY_FORCE_VECTOR] = "[x, y, z]",
     [KEY_TORQUE_VECTOR] = "[x, y, z]",
+    [KEY_WORLD_VECTOR] = "[x, y, z]",
     [KEY_INERTIA] = "[Ixx, Iyy, Izz]",
     [KEY_ORIENTATION] = "{...}",
     [KEY_LIST] = "[x, y, ...]",
@@ -427,6 +428,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_FORMULA:
     case KEY_FORCE_VECTOR:
     case KEY_TORQUE_VECTOR:
+    case KEY_WORLD_VECTOR:
     case KEY_INERTIA:
     case KEY_ORIENTATION:
     case KEY_SHAPE:

@@ -205,7 +205,7 @@ static void force_visit(Order *order, int index)
     if (thing->visit == DONE)
         return;
     thing->visit = OPEN;
-    laws_visit(order, thing, force->law, 6);
+    laws_visit(order, thing, force->law, FORCE_MOST_LAWS);
     thing->visit = DONE;
     if (thing->follows)
         diag_fail(

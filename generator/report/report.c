@@ -406,7 +406,8 @@ static bool powertrain_uses(const Model *model, int parameter)
 
 static bool force_uses(const Model *model, const Force *force, int parameter)
 {
-    const Law *const number[] = {force->stiffness, force->damping, force->free, force->low, force->high, force->fade};
+    const Law *const number[] = {force->stiffness, force->damping, force->free, force->low,
+                                 force->high,      force->fade,    force->area, force->length};
     bool uses = false;
     for (size_t i = 0; i < sizeof number / sizeof *number; ++i)
         uses = uses || law_uses(model, number[i], parameter);

@@ -230,17 +230,18 @@ static void forces(Text *out, const Model *model)
                                                   [FORCE_COORDINATE_STOP] = "coordinate_stop",
                                                   [FORCE_POINTS_STOP] = "points_stop",
                                                   [FORCE_AXIS_STOP] = "axis_stop",
-                                                  [FORCE_LOAD] = "load"};
+                                                  [FORCE_LOAD] = "load",
+                                                  [FORCE_AERO] = "aero"};
     for (int i = 0; i < model->forces; ++i) {
         const Force *force = model->force + i;
-        bool along = force->coordinate >= 0, about = force_is_torque(force), load = force->type == FORCE_LOAD;
+        bool along = force->coordinate >= 0, about = force_is_torque(force), wrench = force_is_wrench(force);
         begin(out, i, force->name);
         text_pair(out, "type", type[force->type]);
         integer_pair(out, "coordinate", force->coordinate);
         for (int k = 0; k < 2; ++k)
             index_pair(out, k ? "b" : "a", force->body[k], !along);
         number_pair(out, "point_a", force->point[0], 3, !along && !about);
-        number_pair(out, "point_b", force->point[1], 3, !along && !about && !load);
+        number_pair(out, "point_b", force->point[1], 3, !along && !about && !wrench);
         number_pair(out, "axis_a", force->axis, 3, about);
         number_pair(out, "reference_a", force->reference[0], 3, about);
         number_pair(out, "reference_b", force->reference[1], 3, about);
@@ -250,10 +251,14 @@ static void forces(Text *out, const Model *model)
         law_pair(out, "low", force->low, model);
         law_pair(out, "high", force->high, model);
         law_pair(out, "fade", force->fade, model);
+        if (force->type == FORCE_AERO) {
+            law_pair(out, "area", force->area, model);
+            law_pair(out, "reference_length", force->length, model);
+        }
         index_pair(out, "table", force->table, force->table >= 0);
         key(out, "law");
         add(out, "[");
-        for (int k = 0; k < (load ? 6 : force_is_law(force)); ++k) {
+        for (int k = 0; k < force_laws(force); ++k) {
             add(out, k ? ", " : "");
             if (force->law[k])
                 formula(out, force->law[k], model);

@@ -113,7 +113,7 @@ void kinks_find(Validator *v)
     v->kinks = pool_alloc(v->pool, sizeof *v->kinks);
     for (int i = 0; i < model->forces; ++i) {
         const Force *force = &model->force[i];
-        for (int j = 0; j < 6; ++j)
+        for (int j = 0; j < FORCE_MOST_LAWS; ++j)
             add_kinks(v, force->law[j], -1, -1);
         add_kinks(v, force->low, force->coordinate, -1);
         add_kinks(v, force->high, force->coordinate, -1);

@@ -7,6 +7,7 @@
 #include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
+#include "vehicle/forces.h"
 #include "vehicle/vehicle.h"
 
 #include <string.h>
@@ -321,16 +322,24 @@ static void add_load(Whole *whole, Loads *loads, int body, int in, const double 
 static void add_force(Whole *whole, Loads *loads, int index)
 {
     const Force *force = &whole->model->force[index];
-    Ex value[6] = {0};
+    Ex value[6] = {0}, size[2];
     if (force->coordinate >= 0) {
         add_along(whole, loads, index);
     } else if (force_is_torque(force)) {
         add_about(whole, loads, index);
-    } else if (force->type != FORCE_LOAD) {
+    } else if (!force_is_wrench(force)) {
         add_between(whole, loads, index);
     } else {
-        for (int i = 0; i < 6; ++i)
+        for (int i = 0; i < 6 && force->type == FORCE_LOAD; ++i)
             value[i] = force->law[i] ? whole_law(whole, force->law[i], NULL) : 0;
+        if (force->type == FORCE_AERO) {
+            const Vector point = whole_point(whole, force->body[0], force->point[0]);
+            aero_wrench(whole, force, value, size);
+            loads->terms = size[0];
+            count_size(whole, loads, force->body[0], point.arm);
+            loads->terms = size[1];
+            count_size(whole, loads, force->body[0], NULL);
+        }
         add_load(whole, loads, force->body[0], force->body[1], force->point[0], value, value + 3);
     }
 }
@@ -437,7 +446,7 @@ static void make_force(Whole *whole, int index)
     if (loads->made[index])
         return;
     loads->made[index] = true;
-    for (int i = 0; i < 6; ++i)
+    for (int i = 0; i < FORCE_MOST_LAWS; ++i)
         law_signals(force->law[i], make_read, whole);
     dag_section(whole->dag, pool_print(whole->dag->pool, "force %s", force->name));
     add_force(whole, loads, index);

@@ -309,7 +309,7 @@ static const Model *watched(Pool *pool, const Model *model)
     for (int i = 0; i < model->outputs; ++i)
         *POOL_PUSH(pool, copy->output, copy->outputs) = model->output[i];
     for (int i = 0; i < model->forces; ++i)
-        if (model->force[i].type != FORCE_LOAD) {
+        if (!force_is_wrench(&model->force[i])) {
             *POOL_PUSH(pool, copy->output, copy->outputs) = (Output){.name = model->force[i].name,
                                                                      .type = OUTPUT_FORCE,
                                                                      .index = i,
@@ -338,10 +338,10 @@ int equilibrium_wheel(const Equilibrium *found, int wheel)
 int equilibrium_force(const Equilibrium *found, int force)
 {
     int at = equilibrium_wheel(found, 0);
-    if (found->model->force[force].type == FORCE_LOAD)
+    if (force_is_wrench(&found->model->force[force]))
         return -1;
     for (int i = force; i < found->model->forces; ++i)
-        at -= found->model->force[i].type != FORCE_LOAD;
+        at -= !force_is_wrench(&found->model->force[i]);
     return at;
 }
 

@@ -244,6 +244,33 @@ static void add_load(World *world, int body, int in, const double at[3], const d
     world->power += dot3(F, point.v) + dot3(T, world->omega[body]);
 }
 
+void world_airflow(const World *world, const Force *force, double u[3])
+{
+    const Point point = point_at(world, force->body[0], force->point[0]);
+    double through[3];
+    for (int i = 0; i < 3; ++i)
+        through[i] = point.v[i] - (force->law[AERO_WIND + i] ? world_law(world, force->law[AERO_WIND + i], NULL) : 0);
+    apply3_transposed(world->A[force->body[0]], through, u);
+}
+
+/* Force and moment of the air, in the axes of the body. */
+static void aero(const World *world, const Force *force, double load[6])
+{
+    double u[3], local[FORCE_LOCALS], C[FORCE_MOST_LAWS] = {0};
+    world_airflow(world, force, u);
+    local[AERO_SIDESLIP] = u[0] == 0 && u[1] == 0 ? 0 : atan2(u[1], u[0]);
+    local[AERO_INCIDENCE] = norm3(u) == 0 ? 0 : atan2(-u[2], hypot(u[0], u[1]));
+    local[AERO_SPEED] = norm3(u);
+    for (int i = 0; i <= AERO_DRAG; ++i)
+        C[i] = force->law[i] ? world_law(world, force->law[i], local) : 0;
+    const double pressure = 0.5 * world_law(world, force->law[AERO_DENSITY], NULL) * dot3(u, u);
+    const double scale = pressure * world_law(world, force->area, NULL);
+    for (int i = 0; i < 3; ++i) {
+        load[i] = scale * (C[i] - (local[AERO_SPEED] > 0 ? C[AERO_DRAG] * u[i] / local[AERO_SPEED] : 0));
+        load[3 + i] = force->length ? scale * world_law(world, force->length, NULL) * C[3 + i] : 0;
+    }
+}
+
 static void add_force(World *world, int index)
 {
     const Force *force = &world->model->force[index];
@@ -252,11 +279,13 @@ static void add_force(World *world, int index)
         add_along(world, index);
     } else if (force_is_torque(force)) {
         add_about(world, index);
-    } else if (force->type != FORCE_LOAD) {
+    } else if (!force_is_wrench(force)) {
         add_between(world, index);
     } else {
-        for (int i = 0; i < 6; ++i)
+        for (int i = 0; i < 6 && force->type == FORCE_LOAD; ++i)
             load[i] = force->law[i] ? world_law(world, force->law[i], NULL) : 0;
+        if (force->type == FORCE_AERO)
+            aero(world, force, load);
         add_load(world, force->body[0], force->body[1], force->point[0], load);
     }
 }

@@ -48,7 +48,7 @@ void world_order(World *world)
             bool there = false, ready = true;
             for (int i = 0; i < count; ++i)
                 there = there || world->order[i] == f;
-            for (int k = 0; k < 6; ++k)
+            for (int k = 0; k < FORCE_MOST_LAWS; ++k)
                 ready = ready && is_ready(world, model->force[f].law[k], count);
             if (!there && ready)
                 world->order[count++] = f;
@@ -103,13 +103,35 @@ static bool law_is_sure(const World *world, const Law *law, bool *signals)
     return sure;
 }
 
+static bool law_reads(const Law *law, int local)
+{
+    return law && ((law->op == LAW_LOCAL && law->index == local) || law_reads(law->arg[0], local) ||
+                   law_reads(law->arg[1], local) || law_reads(law->arg[2], local));
+}
+
+/* Air neither from straight behind nor along z, where the sideslip jumps, or no formula asks for it. */
+static bool sideslip_is_sure(const World *world, const Force *force)
+{
+    double u[3];
+    bool asked = false;
+    for (int k = 0; k <= AERO_DRAG; ++k)
+        asked = asked || law_reads(force->law[k], AERO_SIDESLIP);
+    if (!asked)
+        return true;
+    world_airflow(world, force, u);
+    const double level = hypot(u[0], u[1]), speed = hypot(level, u[2]);
+    return speed <= near || (level > near * speed && (u[0] > 0 || fabs(u[1]) > near * level));
+}
+
 bool world_signals_are_sure(const World *world)
 {
     const Model *model = world->model;
     bool sure = true, signals = false;
     for (int f = 0; f < model->forces; ++f)
-        for (int k = 0; k < 6; ++k)
+        for (int k = 0; k < FORCE_MOST_LAWS; ++k)
             sure = sure && law_is_sure(world, model->force[f].law[k], &signals);
+    for (int f = 0; f < model->forces; ++f)
+        sure = sure && (model->force[f].type != FORCE_AERO || sideslip_is_sure(world, &model->force[f]));
     for (int i = 0; i < model->outputs; ++i)
         if (model->output[i].type == OUTPUT_SIGNAL)
             sure = sure && law_is_sure(world, model->signal[model->output[i].index].law, &signals);

@@ -141,10 +141,12 @@ double world_law(const World *world, const Law *law, const double *local);
 double world_law_size(const World *world, const Law *law, const double *local);
 /* signals.c: the value of a signal, of elements that have been evaluated. */
 double world_signal(const World *world, int signal);
+/* Motion of an element FORCE_AERO through the air, m/s, in the axes of its body. */
+void world_airflow(const World *world, const Force *force, double u[3]);
 /* Orders the elements by what their formulas read. */
 void world_order(World *world);
 /* False where a formula with signals may come out otherwise for rounding alone: at the bound of a condition, or where
- * an attitude angle jumps. */
+ * an attitude angle or a sideslip jumps. */
 bool world_signals_are_sure(const World *world);
 /* How the carrier of a wheel with a tire moves at the present configuration. */
 void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);

@@ -313,6 +313,31 @@ static void add_reader(Vehicle *v)
     say(echo, "type: force, coordinate: %s, value: \"0.5 * %s - %.6g * time\"", along, seen->name, size);
 }
 
+/* Air on a body, still or in a wind, by numbers or by how the body moves through it; no coefficient jumps where the
+ * sideslip does, at motion backward or along z, which nice states have but for rounding. */
+static void add_air(Vehicle *v)
+{
+    const int body = any_body(v);
+    static const char *const wind[] = {"[0, 0, 0]", "[1, 0, 0]", "[0, -1, 0]", "[0.3, \"0.5 * time\", -0.2]"};
+    static const char *const force[] = {
+        "[0, 0, -0.5]", "[0, \"-0.5 * sin(sideslip) * cos(incidence)\", 0.25 * incidence]", "[0, 0, cos(incidence)]",
+        "[-0.1, \"cos(sideslip) * cos(incidence)\", \"0.1 * airspeed\"]"};
+    if (body == BASE && v->fixed)
+        return;
+    Entry *element = add(v, FORCE, "air");
+    say(element, "type: aero, body: %s, wind: %s", body_name(v, body), wind[pick(v, 4)]);
+    if (chance(v, 0.7))
+        say_point(v, element, ", point: ", any_point(v));
+    say_number(v, element, ", area: ", nice_size(v, 0.1, 2));
+    say(element, ", force: %s", force[pick(v, 4)]);
+    if (chance(v, 0.7))
+        say_number(v, element, ", drag: ", nice_size(v, 0, 2));
+    if (chance(v, 0.5))
+        say(element, ", length: 0.5, moment: [0, -0.2 * incidence, \"-sin(sideslip) * cos(incidence)\"]");
+    if (chance(v, 0.3))
+        say(element, ", density: 1");
+}
+
 static void add_nice_element(Vehicle *v)
 {
     int b = any_body(v), a = any_body(v);
@@ -425,6 +450,8 @@ void build_mechanism(Vehicle *v)
         add_law(v, pick(v, v->section[COORDINATE].count));
     for (int i = pick(v, 4); i > 1 && !v->conserves && !v->halves; --i)
         add_reader(v);
+    if (!v->conserves && !v->halves && chance(v, 0.3))
+        add_air(v);
     for (int i = 0; i < v->section[COORDINATE].count; ++i)
         say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
     for (int i = v->fixed; i < v->section[BODY].count; ++i) {

@@ -85,7 +85,7 @@ static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies
 
 static void read_force(Force *force, const Json *json, const Model *model)
 {
-    enum { COORDINATE, POINTS, AXIS, LOAD };
+    enum { COORDINATE, POINTS, AXIS, LOAD, AERO };
     static const struct {
         const char *name;
         int place, laws;
@@ -99,14 +99,16 @@ static void read_force(Force *force, const Json *json, const Model *model)
                  {"coordinate_stop", COORDINATE, 0, true},
                  {"points_stop", POINTS, 0, true},
                  {"axis_stop", AXIS, 0, true},
-                 {"load", LOAD, 6, false}};
+                 {"load", LOAD, 6, false},
+                 {"aero", AERO, 11, false}};
     enum { TYPES = sizeof known / sizeof *known };
     const char *name[TYPES];
     for (int i = 0; i < TYPES; ++i)
         name[i] = known[i].name;
     int type = type_of(json, name, TYPES), place = known[type].place, laws;
     force->coordinate = place == COORDINATE ? index_of(json, "coordinate", 0, model->coordinates) : -1;
-    force->load = place == LOAD;
+    force->aero = place == AERO;
+    force->load = place == LOAD || force->aero;
     force->about = place == AXIS;
     force->stop = known[type].stop;
     if (place != COORDINATE) {
@@ -126,6 +128,10 @@ static void read_force(Force *force, const Json *json, const Model *model)
     force->stiffness = json_number(json, "stiffness");
     force->damping = json_number(json, "damping");
     force->free = json_number(json, "free");
+    if (force->aero) {
+        force->area = json_number(json, "area");
+        force->reference_length = json_number(json, "reference_length");
+    }
     const Json *law = list_of(json, "law", &laws);
     if (laws != known[type].laws)
         fail("a force has %d formulas", laws);
@@ -442,7 +448,7 @@ void model_free(Model *model)
         free(model->subset[i].coordinate);
     }
     for (int i = 0; i < model->forces; ++i)
-        for (int k = 0; k < 6; ++k)
+        for (int k = 0; k < 11; ++k)
             formula_free(model->force[i].law[k]);
     for (int i = 0; i < model->tables; ++i)
         lookup_free(&model->table[i]);

@@ -56,8 +56,10 @@ typedef struct Force {
     bool stop;                       /* contact beyond: */
     double low, high, fade;          /* infinite where there is no end */
     const Lookup *table;             /* in place of stiffness, or NULL */
-    Formula *law[6];                 /* NULL, or [0]: what is added to spring and damper; a load: force and torque */
-    bool load;
+    Formula *law[11];                /* NULL, or [0]: what is added to spring and damper; a load: force and torque; of
+                                      * the air: coefficients of force and moment, of drag, wind, density */
+    bool load, aero;                 /* aero: a load too, whose force and torque are those of the air */
+    double area, reference_length;
 } Force;
 
 /* A tire, with its data by their names; a pair of TMeasy's is `name` and `name.2`. */

@@ -142,6 +142,12 @@ quad formula_value(const Formula *formula, const Surroundings *around)
         return around->local.spin;
     if (!strcmp(op, "throttle"))
         return around->local.throttle;
+    if (!strcmp(op, "incidence"))
+        return around->local.incidence;
+    if (!strcmp(op, "sideslip"))
+        return around->local.sideslip;
+    if (!strcmp(op, "airspeed"))
+        return around->local.airspeed;
     if (!strcmp(op, "if"))
         return x[0] > 0 ? x[1] : x[2];
     for (size_t i = 0; i < sizeof operation / sizeof *operation; ++i)

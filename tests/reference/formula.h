@@ -29,9 +29,9 @@ typedef struct Lookup {
 } Lookup;
 
 /* What the place of a formula adds to what formulas know: length (or angle) of a force element and its rate, spin of a
- * wheel, speed and throttle of an engine. */
+ * wheel, speed and throttle of an engine, how a body moves through the air. */
 typedef struct Locals {
-    quad length, speed, spin, throttle;
+    quad length, speed, spin, throttle, incidence, sideslip, airspeed;
 } Locals;
 
 /* What a formula's names stand for. */

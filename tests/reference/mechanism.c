@@ -496,13 +496,40 @@ void add_torque(const Configuration *configuration, int body, const quad torque[
             Q[body][3 + j] += 2 * G[i][j] * own[i];
 }
 
+/* FORMAT.md section 7.2, in the axes of the body. */
+static void aero(const Model *model, const Configuration *configuration, const Force *force, quad load[6])
+{
+    const int body = force->body[0];
+    quad x[3], v[3], u[3], coefficient[7], level, speed;
+    point_motion(model, configuration, body, force->point[0], x, v);
+    for (int i = 0; i < 3; ++i)
+        v[i] -= law_value(model, configuration, force->law[7 + i], (Locals){0});
+    rotate_back(configuration->q[body] + 3, v, u);
+    level = hypotq(u[0], u[1]);
+    speed = hypotq(level, u[2]);
+    const Locals local = {.airspeed = speed,
+                          .sideslip = level > 0 ? atan2q(u[1], u[0]) : 0,
+                          .incidence = speed > 0 ? atan2q(-u[2], level) : 0};
+    for (int i = 0; i < 7; ++i)
+        coefficient[i] = law_value(model, configuration, force->law[i], local);
+    const quad density = law_value(model, configuration, force->law[10], (Locals){0});
+    const quad pressed = density * speed * speed / 2 * force->area; /* dynamic pressure times area */
+    for (int i = 0; i < 3; ++i) {
+        load[i] = pressed * coefficient[i] - density / 2 * force->area * coefficient[6] * speed * u[i];
+        load[3 + i] = pressed * force->reference_length * coefficient[3 + i];
+    }
+}
+
 static void add_load(const Model *model, const Configuration *configuration, const Force *force,
                      quad (*Q)[BODY_COORDINATES])
 {
     quad given[6], world[6], s[3];
     int body = force->body[0], in = force->body[1];
-    for (int i = 0; i < 6; ++i)
-        world[i] = given[i] = law_value(model, configuration, force->law[i], (Locals){0});
+    for (int i = 0; i < 6 && !force->aero; ++i)
+        given[i] = law_value(model, configuration, force->law[i], (Locals){0});
+    if (force->aero)
+        aero(model, configuration, force, given);
+    memcpy(world, given, sizeof world);
     for (int part = 0; in != GROUND && part < 2; ++part)
         rotate(configuration->q[in] + 3, given + 3 * part, world + 3 * part);
     from_com(model, body, force->point[0], s);
