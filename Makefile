@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 #   make                build/gicgen, build/gicrun, build/gicsweep and build/gicbench
-#   make demo           the complete HMMWV for 30 s, and one over the paper's road: build/demo/
+#   make demo           the complete HMMWV for 30 s, one over the paper's road, and a page to drive it in: build/demo/
 #   make bench          engines and integrators, time against error, and the 30 s: build/bench/ (QUICK=1: the short way;
 #                       PARTS="drive rhs": some of drive compare rhs batch scenes precision)
 #   make tables         what `make bench` measured, into README.md and tests/bench/README.md
@@ -52,7 +52,8 @@ programs_of_folders := $(wildcard generator/*.c) runtime/run/gicrun.c $(wildcard
     runtime/plugin/*.c)
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
-embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h
+embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h \
+    $(addprefix runtime/,gic_road.h gic_road.c) $(foreach name,profile_form driver hands,runtime/scene/$(name).h runtime/scene/$(name).c)
 
 objects := $(sources:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 archive := $(BUILD)/gicgen.a
@@ -310,6 +311,10 @@ demo: all
 	    --plot $(BUILD)/demo/hmmwv.svg --animate $(BUILD)/demo/hmmwv.html
 	$(BUILD)/gicrun models/hmmwv_vehicle.veh models/scenes/full_run.scene -o $(BUILD)/demo/full_run.csv \
 	    --plot $(BUILD)/demo/full_run.svg --animate $(BUILD)/demo/full_run.html
+	@rm -f $(BUILD)/demo/drive.html
+	@if $(BUILD)/gicrun --drive $(BUILD)/demo/drive.html models/hmmwv_vehicle.veh models/scenes/full_run.scene \
+	    2>$(BUILD)/demo/drive.log; then echo "to drive: $(BUILD)/demo/drive.html"; \
+	else echo "no page to drive:"; cat $(BUILD)/demo/drive.log; fi
 	@echo "pictures: $(BUILD)/demo/hmmwv.svg, $(BUILD)/demo/full_run.svg"
 	@echo "pages:    $(BUILD)/demo/hmmwv.html, $(BUILD)/demo/full_run.html"
 	@echo "numbers:  $(BUILD)/demo/hmmwv.csv, $(BUILD)/demo/full_run.csv"

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # demo.sh [--dry-run]: installs what is missing, builds, drives the complete HMMWV for 30 s, another one over the road of
-# models/scenes/paper_run.scene, and says where pictures, pages and numbers are. --dry-run: only says what it would do.
+# models/scenes/paper_run.scene, makes a page to drive in where clang compiles for WebAssembly, and says where pictures,
+# pages and numbers are. --dry-run: only says what it would do.
 set -e
 cd "$(dirname "$0")/.."
 case "$#$1" in

@@ -30,6 +30,7 @@ typedef struct WheelOutputs {
 } WheelOutputs;
 
 struct Animation {
+    Page page; /* first: animate_json.c looks at it */
     Pool *pool;
     const Model *model;
     const Scene *scene;
@@ -43,21 +44,11 @@ struct Animation {
     double *value;      /* [frames][channels] */
 };
 
-/* Index of the first component of an output about a wheel; -1: none. */
-static int wheel_output(const Model *model, OutputType type, int wheel)
-{
-    int at = 0;
-    for (int i = 0; i < model->outputs; at += model->output[i++].count)
-        if (model->output[i].type == type && model->output[i].index == wheel)
-            return at;
-    return -1;
-}
-
 Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path)
 {
     Animation *a = pool_alloc(pool, sizeof *a);
     const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
-    *a = (Animation){.pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
+    *a = (Animation){.page = {pool, model->name}, .pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
     a->shapes = shapes_of(pool, model, scene);
     a->every = (int64_t)fmax(ceil((double)scene->outputs / most), 1);
     a->wheels = POSE * model->bodies;
@@ -65,8 +56,8 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
     a->channels = a->curves + scene->curves;
     a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
     for (int w = 0; w < model->wheels; ++w)
-        a->told[w] = (WheelOutputs){wheel_output(model, OUTPUT_WHEEL, w), wheel_output(model, OUTPUT_TIRE, w),
-                                    wheel_output(model, OUTPUT_CONTACT, w)};
+        a->told[w] = (WheelOutputs){animate_output(model, OUTPUT_WHEEL, w), animate_output(model, OUTPUT_TIRE, w),
+                                    animate_output(model, OUTPUT_CONTACT, w)};
     a->spin = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->spin);
     a->value = pool_alloc(pool, (size_t)(scene->outputs / a->every + 1) * (size_t)a->channels * sizeof *a->value);
     return a;
@@ -87,15 +78,6 @@ static void keep_sign(double *pose, const double *before)
 static const double *pose_of(const double *frame, int body)
 {
     return frame + POSE * body;
-}
-
-static void pose_point(const double *pose, const double s[3], double out[3])
-{
-    double A[9];
-    mat_from_euler(pose + 3, A);
-    apply3(A, s, out);
-    for (int i = 0; i < 3; ++i)
-        out[i] += pose[i];
 }
 
 /* The angle of a wheel without tire: the way of its centre along the road since the frame before, divided by its
@@ -203,32 +185,6 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
 
 /* ---- JSON -------------------------------------------------------------------------------------------------------- */
 
-/* '<' could end the script in HTML. */
-static void json_text(Text *out, const char *s)
-{
-    text_print(out, "\"");
-    for (; s && *s; ++s)
-        if (*s == '"' || *s == '\\')
-            text_print(out, "\\%c", *s);
-        else if ((unsigned char)*s < ' ' || *s == '<')
-            text_print(out, "\\u%04x", (unsigned)*s);
-        else
-            text_add(out, s, 1);
-    text_print(out, "\"");
-}
-
-static void json_vector(Text *out, const char *key, const double v[3])
-{
-    text_print(out, "\"%s\":[%.6g,%.6g,%.6g]", key, v[0], v[1], v[2]);
-}
-
-static void json_key(Text *out, const char *key, const char *value)
-{
-    text_print(out, "\"%s\":", key);
-    json_text(out, value);
-    text_print(out, ",");
-}
-
 /* A power of ten, 1e-5 to 1e-4 of x. */
 static double unit_for(double x)
 {
@@ -267,58 +223,13 @@ static void json_channel(const Animation *a, int c, double unit, Text *out)
     text_print(out, "]}");
 }
 
-static void json_bodies(const Animation *a, Text *out)
-{
-    text_print(out, "\"bodies\":[");
-    for (int b = 0; b < a->model->bodies; ++b) {
-        const Shape *shape = &a->shapes.body[b];
-        text_print(out, "%s\n{", b ? "," : "");
-        json_key(out, "name", a->model->body[b].name);
-        text_print(out, "\"motion\":%d,\"mass\":%.6g,", POSE * b, a->model->body[b].mass);
-        json_vector(out, "com", shape->com);
-        text_print(out, ",");
-        json_vector(out, "box", shape->box);
-        text_print(out, ",");
-        json_look(out, shape);
-        text_print(out, ",\"points\":[");
-        for (int i = 0; i < shape->points; ++i)
-            text_print(out, "%s[%.6g,%.6g,%.6g]", i ? "," : "", shape->point[i].x[0], shape->point[i].x[1],
-                       shape->point[i].x[2]);
-        text_print(out, "]}");
-    }
-    text_print(out, "],\n");
-}
-
-static void json_lines(const Animation *a, Text *out)
-{
-    text_print(out, "\"lines\":[");
-    for (int i = 0; i < a->shapes.lines; ++i) {
-        const Line *line = &a->shapes.line[i];
-        text_print(out, "%s\n{", i ? "," : "");
-        json_key(out, "name", line->name);
-        json_key(out, "kind", line->kind);
-        text_print(out, "\"a\":%d,\"b\":%d,", line->body[0], line->body[1]);
-        json_vector(out, "p", line->point[0]);
-        text_print(out, ",");
-        json_vector(out, "q", line->point[1]);
-        text_print(out, "}");
-    }
-    text_print(out, "],\n");
-}
-
 static void json_wheels(const Animation *a, Text *out)
 {
     text_print(out, "\"wheels\":[");
     for (int w = 0; w < a->model->wheels; ++w) {
-        const Wheel *wheel = &a->model->wheel[w];
         const int angle = a->wheels + WHEEL_CHANNELS * w;
-        text_print(out, "%s\n{", w ? "," : "");
-        json_key(out, "name", wheel->name);
-        text_print(out, "\"body\":%d,\"radius\":%.6g,\"width\":%.6g,\"angle\":%d,", wheel->body, wheel->radius,
-                   a->shapes.width[w], angle);
-        json_vector(out, "center", a->shapes.center[w]);
-        text_print(out, ",");
-        json_vector(out, "axis", a->shapes.axis[w]);
+        text_print(out, w ? ",\n" : "\n");
+        json_wheel(out, a->model, &a->shapes, w, angle);
         if (a->told[w].wheel >= 0 || a->told[w].tire >= 0)
             text_print(out, ",\"force\":[%d,%d,%d],\"contact\":[%d,%d,%d]", angle + 1, angle + 2, angle + 3, angle + 4,
                        angle + 5, angle + 6);
@@ -348,23 +259,18 @@ static void json_curves(const Animation *a, Text *out)
  * frame. */
 static double extent(const Animation *a, double *lowest)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, x[3];
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     *lowest = INFINITY;
-    for (int k = 0; k < a->frames; ++k)
-        for (int b = 0; b < a->model->bodies; ++b)
-            for (int i = 0; i < a->shapes.body[b].points; ++i) {
-                const double *frame = a->value + (size_t)k * (size_t)a->channels;
-                pose_point(pose_of(frame, b), a->shapes.body[b].point[i].x, x);
-                *lowest = fmin(*lowest, x[2]);
-                for (int c = 0; c < 3 && (!k || !a->model->free_base); ++c) {
-                    low[c] = fmin(low[c], x[c]);
-                    high[c] = fmax(high[c], x[c]);
-                }
-            }
-    double size = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
-    for (int w = 0; w < a->model->wheels; ++w)
-        size = fmax(size, 4 * a->model->wheel[w].radius);
-    return size > 0 ? size : 1;
+    for (int k = 0; k < a->frames; ++k) {
+        double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+        shapes_bounds(a->model, &a->shapes, a->value + (size_t)k * (size_t)a->channels, least, most);
+        *lowest = fmin(*lowest, least[2]);
+        for (int c = 0; c < 3 && (!k || !a->model->free_base); ++c) {
+            low[c] = fmin(low[c], least[c]);
+            high[c] = fmax(high[c], most[c]);
+        }
+    }
+    return shapes_size(a->model, low, high);
 }
 
 /* The path of the base over the frames, along which the road is drawn; of a fixed base the middle of the other bodies.
@@ -398,8 +304,8 @@ static void json_run(const Animation *a, Text *out)
     json_vector(out, "ahead", ahead);
     text_print(out, ",\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
                a->model->free_base ? "true" : "false", size, a->frames, (double)a->every * a->scene->output_step);
-    json_bodies(a, out);
-    json_lines(a, out);
+    json_bodies(out, a->model, &a->shapes);
+    json_lines(out, &a->shapes);
     json_wheels(a, out);
     json_curves(a, out);
     json_course(out, a->scene);
@@ -426,57 +332,12 @@ static void write_data(void *context, Text *out, int indent)
     json_run(context, out);
 }
 
-static const Insertions page_points;
+static const Insertion page_point[] = {{"data", write_data}, {NULL, NULL}};
 
-static void write_part(const Animation *a, const char *name, Text *out)
-{
-    template_expand(a->pool, out, NULL, name, a->model->name, NULL, &page_points, NULL);
-}
-
-static void write_motion(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_motion.js.in", out);
-}
-
-static void write_mesh(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_mesh.js.in", out);
-}
-
-static void write_view(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_view.js.in", out);
-}
-
-static void write_curves(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_curves.js.in", out);
-}
-
-static void write_save(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_save.js.in", out);
-}
-
-static void write_page(void *context, Text *out, int indent)
-{
-    (void)indent;
-    write_part(context, "animate_page.js.in", out);
-}
-
-static const Insertion page_point[] = {
-    {"data", write_data},     {"motion", write_motion}, {"mesh", write_mesh}, {"view", write_view},
-    {"curves", write_curves}, {"save", write_save},     {"page", write_page}, {NULL, NULL}};
-
-static const Insertions page_points = {
-    (const char *const[]){"animate.html.in", "animate_motion.js.in", "animate_mesh.js.in", "animate_view.js.in",
-                          "animate_curves.js.in", "animate_save.js.in", "animate_page.js.in", NULL},
-    page_point, NULL};
+static const Insertions page_points = {(const char *const[]){"animate.html.in", "animate_motion.js.in",
+                                                             "animate_ground.js.in", "animate_curves.js.in",
+                                                             "animate_save.js.in", "animate_page.js.in", NULL},
+                                       page_point, &animate_parts};
 
 void animation_write(Animation *a, const char *path)
 {

@@ -5,6 +5,7 @@
 #define RUN_ANIMATE_H
 
 #include "base/text.h"
+#include "emit/emit.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/scene.h"
@@ -49,12 +50,41 @@ typedef struct Shapes {
 
 /* With the scene's values of parameters. */
 Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene);
+/* The place in the world of a point of a body. */
+void pose_point(const double *pose, const double s[3], double out[3]);
+/* Widen low and high so that all points of all bodies at poses [bodies][7] are between. */
+void shapes_bounds(const Model *model, const Shapes *shapes, const double *pose, double low[3], double high[3]);
+/* The size of a vehicle, or of a mechanism, whose points are between low and high; more than 0. */
+double shapes_size(const Model *model, const double low[3], const double high[3]);
 
 /* ---- animate_look.c: which shape a body has ---------------------------------------------------------------------- */
 
 /* Call after points, boxes and wheels of all bodies are set; the second function prints the JSON of one. */
 void looks_choose(Pool *pool, const Model *model, Shapes *shapes);
 void json_look(Text *out, const Shape *shape);
+
+/* ---- animate_json.c: what the pages of --animate and --drive have in common ---------------------------------------- */
+
+/* A page in the making: the first member of the context of its templates. */
+typedef struct Page {
+    Pool *pool;
+    const char *name; /* of the model */
+} Page;
+
+/* Parts that pages have in common, by the name of their insertion points. */
+extern const Insertions animate_parts;
+
+/* Index in output[] of the first component of an output about a wheel; -1: none. */
+int animate_output(const Model *model, OutputType type, int wheel);
+/* A text in quotes, in which '<', that could end the script in HTML, is escaped; "key":"value",; "key":[x,y,z]. */
+void json_text(Text *out, const char *s);
+void json_key(Text *out, const char *key, const char *value);
+void json_vector(Text *out, const char *key, const double v[3]);
+/* "bodies":[..], whose poses are 7 channels each; "lines":[..],; the object of a wheel but for its end, whose angle is a
+ * channel. */
+void json_bodies(Text *out, const Model *model, const Shapes *shapes);
+void json_lines(Text *out, const Shapes *shapes);
+void json_wheel(Text *out, const Model *model, const Shapes *shapes, int w, int angle);
 
 /* ---- animate_course.c: what stands and is painted on the road -----------------------------------------------------
  */

@@ -222,3 +222,35 @@ Shapes shapes_of(Pool *pool, const Model *model, const Scene *scene)
     set_parameters(model, NULL);
     return shapes;
 }
+
+/* ---- how large --------------------------------------------------------------------------------------------------- */
+
+void pose_point(const double *pose, const double s[3], double out[3])
+{
+    double A[9];
+    mat_from_euler(pose + 3, A);
+    apply3(A, s, out);
+    for (int i = 0; i < 3; ++i)
+        out[i] += pose[i];
+}
+
+void shapes_bounds(const Model *model, const Shapes *shapes, const double *pose, double low[3], double high[3])
+{
+    for (int b = 0; b < model->bodies; ++b)
+        for (int i = 0; i < shapes->body[b].points; ++i) {
+            double x[3];
+            pose_point(pose + 7 * b, shapes->body[b].point[i].x, x);
+            for (int c = 0; c < 3; ++c) {
+                low[c] = fmin(low[c], x[c]);
+                high[c] = fmax(high[c], x[c]);
+            }
+        }
+}
+
+double shapes_size(const Model *model, const double low[3], const double high[3])
+{
+    double size = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    for (int w = 0; w < model->wheels; ++w)
+        size = fmax(size, 4 * model->wheel[w].radius);
+    return size > 0 ? size : 1;
+}

@@ -11,6 +11,7 @@
 #include "run/linearize.h"
 #include "run/run.h"
 #include "run/stability_watch.h"
+#include "scene/replay.h"
 #include "scene/scene.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"
@@ -21,7 +22,8 @@
 
 static const char help[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
-    "              [--animate page.html]\n"
+    "              [--animate page.html] [--replay recording.csv]\n"
+    "       gicrun --drive page.html MODEL.veh SCENE\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
@@ -35,6 +37,10 @@ static const char help[] =
     "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
     "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
     "                     moves along its road\n"
+    "      --drive FILE   write a page for a browser, complete in itself, in which one drives the\n"
+    "                     model along the scene's road by keys, pads or gamepad; needs clang,\n"
+    "                     lld, wasi-libc and libclang-rt-dev-wasm32\n"
+    "      --replay FILE  move inputs as someone did on such a page, which saved this CSV\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
     "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
@@ -142,6 +148,8 @@ static Request read_command_line(int count, char **word)
         {"output", 'o', .text = &request.results},
         {"plot", .text = &request.picture},
         {"animate", .text = &request.page},
+        {"drive", .text = &request.driven},
+        {"replay", .text = &request.recording},
         {"eval", .text = &request.states},
         {"equilibrium", .on = &request.rests},
         {"modes", .on = &request.modes},
@@ -188,9 +196,16 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
+    if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
+        usage_fail("gicrun", "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
+                             "nor with --eval, --equilibrium, --modes and --linearize", NULL);
+    if (request.driven && !path_ends(request.driven, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
+    if (request.recording && !runs)
+        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
-    if (!request.results && !request.picture && !request.page && (runs || request.states || request.linear))
+    if (!request.results && !request.picture && !request.page && !request.driven && (runs || request.states || request.linear))
         request.results = "-";
     return request;
 }
@@ -216,15 +231,16 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
 /* Refuse outputs that are inputs of the run, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
-    const char *const output[] = {request->results, request->picture, request->page};
+    const char *const output[] = {request->results, request->picture, request->page, request->driven};
     const Source states = {.path = request->states ? request->states : "-"};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
             continue;
         if (i > 0 && files_are_one(output[i], request->results))
             usage_fail("gicrun",
-                       i == 1 ? "--plot needs another file than the results, which go to"
-                              : "--animate needs another file than the results, which go to",
+                       i == 1   ? "--plot needs another file than the results, which go to"
+                       : i == 2 ? "--animate needs another file than the results, which go to"
+                                : "--drive needs another file than the results, which go to",
                        request->results);
         file_check(output[i]);
         source_keep(model->source, output[i]);
@@ -239,7 +255,7 @@ int main(int count, char **word)
     const Request request = read_command_line(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, request.model);
-    if (request.page) /* the page shows forces of all wheels as arrows */
+    if (request.page || request.driven) /* the page shows forces of all wheels as arrows */
         model = model_watch_wheels(pool, model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
@@ -255,6 +271,8 @@ int main(int count, char **word)
     const bool runs = is_run(&request);
     if (runs)
         scene = equilibrium_start(pool, model, scene, request.solve);
+    if (request.recording)
+        scene = scene_replay(pool, model, scene, request.recording);
     const bool drawn = request.picture;
     const Engine *engine =
         engine_open(pool, request.engine, model,
@@ -264,12 +282,14 @@ int main(int count, char **word)
                                      .compiler = request.compiler,
                                      .flags = request.flags,
                                      /* a page shows whatever outputs tell; lanes are for code for all scenes */
-                                     .facts = runs && !request.general && !request.page && !request.lanes
+                                     .facts = runs && !request.general && !request.page && !request.driven && !request.recording && !request.lanes
                                                   ? scene_facts(pool, model, scene, request.scene, drawn)
                                                   : NULL,
                                      .validation = runs ? scene_validation(pool, model, scene) : NULL,
                                      .quiet = request.quiet});
-    if (request.states)
+    if (request.driven)
+        drive_write(pool, model, scene, engine, &request);
+    else if (request.states)
         evaluate(pool, engine, scene, &request);
     else if (request.rests || request.modes)
         analyse(pool, model, scene, engine, &request);

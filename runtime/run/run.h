@@ -21,6 +21,8 @@ typedef struct Request {
     const char *results;       /* "-": standard output; NULL: none */
     const char *picture;       /* --plot, or NULL */
     const char *page;          /* --animate, or NULL */
+    const char *driven;        /* --drive, or NULL */
+    const char *recording;     /* --replay, or NULL */
     const char *engine;        /* one of engine_name */
     Solve solve;
     Recovery recovery;
@@ -43,6 +45,12 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
 int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
 /* The page; exits with a message when it can't be written. */
 void animation_write(Animation *animation, const char *path);
+
+/* ---- drive.c: a page of HTML in which someone drives the model through the scene */
+
+/* The page request->driven, in which the vehicle is compiled to WebAssembly. engine: any, for poses and names. Exits with a
+ * message when no compiler for it is there, or the page can't be written. */
+void drive_write(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request);
 
 typedef struct StepWatch StepWatch; /* stability_watch.h */
 

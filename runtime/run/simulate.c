@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
 #include "base/message.h"
-#include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"
@@ -16,6 +15,7 @@
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"
+#include "scene/replay.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
 
@@ -369,6 +369,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     self->user = (void *)scene; /* only read */
     if (scene->driver)
         driver_start(scene->driver);
+    if (scene->replay)
+        replay_start(scene->replay);
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
     status = set_state(engine, scene, self);
     if (status == GIC_OK)
@@ -400,24 +402,16 @@ static void look_around(Run *run)
     show_progress(run);
 }
 
-/* Measurements for the driver; engines with another state need a right-hand side for them. */
+/* A look of the driver; engines with another state need a right-hand side for it. */
 static int look(const Engine *engine, gic_head *self, Driver *driver)
 {
-    double state[engine->standard_count + 1], A[9], e[4];
+    double state[engine->standard_count + 1];
     const double *own = instance_array(self, engine->code->state_offset);
     const int status = engine->leave ? engine_look(engine, self, state, NULL) : GIC_OK;
-    const double *y = engine->leave ? state : own;
-    const int half = (engine->standard_count - engine->code->fast_count) / 2;
-    const double norm = sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
     if (status != GIC_OK)
         return status;
-    for (int i = 0; i < 4; ++i)
-        e[i] = y[3 + i] / norm;
-    mat_from_euler(e, A);
-    Sight sight = {.yaw = atan2(A[3], A[0])};
-    memcpy(sight.position, y, sizeof sight.position);
-    memcpy(sight.velocity, y + half + 1, sizeof sight.velocity);
-    sight.yaw_rate = dot3(A + 6, y + half + 4); /* about the vertical */
+    const int half = (engine->standard_count - engine->code->fast_count) / 2;
+    const Sight sight = sight_of(engine->leave ? state : own, half);
     driver_look(driver, gic_time(self), &sight);
     return GIC_OK;
 }
@@ -443,6 +437,8 @@ int scene_step_awake(const gic_model *model, const Scene *scene, Variable *varia
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end)
 {
+    if (scene->replay)
+        replay_look(scene, gic_time(self), instance_array(self, model->input_offset));
     if (scene->driver && driver_is_due(scene->driver, gic_time(self))) {
         const int status = look(engine, self, scene->driver);
         if (status != GIC_OK)

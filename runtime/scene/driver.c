@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The driver of a scene (models/SCENE.md section 5): a controller that looks at the vehicle every `period` and moves
  * pedals and steering by polynomials in time, so that what it commands is three times continuously differentiable and
- * the same for every engine and integrator. */
-#include "scene/driver.h"
-#include "scene/profile.h"
-#include "scene/scene.h"
+ * the same for every engine and integrator. Pages of gicrun --drive compile this file too. */
+#include "driver.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,54 +13,6 @@ static const double holding = 0.3;    /* ... with this share of the brake */
 static const double search_back = 2;  /* m before the last nearest point of the path */
 static const double search_ahead = 8; /* m ahead of where the vehicle should be */
 static const double slowest = 1;      /* m/s; below it the curvature of the vehicle's own path is not measured */
-
-/* ---- movements --------------------------------------------------------------------------------------------- */
-
-/* Value, rate, acceleration and jerk. */
-static void movement_at(const Movement *m, double time, double out[4])
-{
-    const double s = fmax(0, time - m->start);
-    memset(out, 0, 4 * sizeof *out);
-    if (s >= m->duration) {
-        out[0] = m->end;
-        return;
-    }
-    /* Horner's rule for the polynomial and its derivatives over their factorials */
-    for (int k = 7; k >= 0; --k) {
-        for (int d = 3; d > 0; --d)
-            out[d] = out[d] * s + out[d - 1];
-        out[0] = out[0] * s + m->c[k];
-    }
-    out[2] *= 2;
-    out[3] *= 6;
-}
-
-/* From the value, rate, acceleration and jerk at `time` to rest at `end` after `duration`. */
-static void movement_turn(Movement *m, double time, double end, double duration)
-{
-    double now[4], T = 1;
-    movement_at(m, time, now);
-    const double way = end - now[0], v = now[1] * duration, a = now[2] * duration * duration / 2;
-    const double j = now[3] * duration * duration * duration / 6;
-    const double c[8] = {now[0],
-                         v,
-                         a,
-                         j,
-                         35 * way - 20 * v - 10 * a - 4 * j,
-                         -84 * way + 45 * v + 20 * a + 6 * j,
-                         70 * way - 36 * v - 15 * a - 4 * j,
-                         -20 * way + 10 * v + 4 * a + j};
-    m->start = time;
-    m->duration = duration;
-    m->end = end;
-    for (int k = 0; k < 8; ++k, T *= duration)
-        m->c[k] = c[k] / T;
-}
-
-static Movement movement_rest(double value)
-{
-    return (Movement){.end = value, .c = {value}};
-}
 
 /* ---- path -------------------------------------------------------------------------------------------------- */
 
@@ -147,6 +97,20 @@ static void control_path(Driver *driver, double time, const Sight *sight, double
     if (speed > slowest && steering == wanted)
         driver->curvature_sum += driver->adapt * (curvature - sight->yaw_rate / speed) * driver->period;
     movement_turn(&driver->wheel, time, steering, driver->reach);
+}
+
+Sight sight_of(const double *state, int half)
+{
+    const double *e = state + 3, *turn = state + half + 4;
+    const double norm = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+    const double p[4] = {e[0] / norm, e[1] / norm, e[2] / norm, e[3] / norm};
+    Sight sight = {.yaw = atan2(2 * (p[1] * p[2] + p[0] * p[3]), 2 * p[1] * p[1] + (2 * p[0] * p[0] - 1))};
+    memcpy(sight.position, state, sizeof sight.position);
+    memcpy(sight.velocity, state + half + 1, sizeof sight.velocity);
+    /* about the vertical */
+    sight.yaw_rate = 2 * (p[1] * p[3] - p[0] * p[2]) * turn[0] + 2 * (p[2] * p[3] + p[0] * p[1]) * turn[1] +
+                     (2 * p[3] * p[3] + (2 * p[0] * p[0] - 1)) * turn[2];
+    return sight;
 }
 
 void driver_start(Driver *driver)

@@ -4,14 +4,9 @@
 #ifndef SCENE_DRIVER_H
 #define SCENE_DRIVER_H
 
-#include "scene/profile.h"
-#include "scene/scene.h"
+#include "profile_form.h"
 
-/* A polynomial of degree 7 in time that starts at `start` and ends at rest after `duration`, s; before it at c[0],
- * after it at `end`. */
-typedef struct Movement {
-    double start, duration, end, c[8];
-} Movement;
+#include <stdint.h>
 
 /* A line in the plane as points at equal distances `step` along it, m. */
 typedef struct Path {
@@ -26,7 +21,7 @@ typedef struct Sight {
     double position[3], velocity[3], yaw, yaw_rate;
 } Sight;
 
-struct Driver {
+typedef struct Driver {
     /* from the scene */
     int accelerator, brake;   /* inputs; -1: no speed is kept */
     Profile speed;            /* m/s */
@@ -47,8 +42,11 @@ struct Driver {
     double speed_sum, curvature_sum, along;
     bool seen;
     Movement pedal[2], wheel;
-};
+} Driver;
 
+/* The measurements of a base whose pose and velocities are in a state (models/FORMAT.md section 10); half: from a number
+ * of the pose's to its rate. */
+Sight sight_of(const double *state, int half);
 /* Begin at time 0 with pedals free and steering straight. */
 void driver_start(Driver *driver);
 /* True if a look is due. */

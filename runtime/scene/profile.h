@@ -7,38 +7,10 @@
 #include "base/message.h"
 #include "host/host.h"
 #include "model/model.h"
-
-typedef enum ProfileForm {
-    PROFILE_KNOTS, /* quintics from rest to rest at each knot; one knot: constant */
-    PROFILE_SINE,
-    PROFILE_CURVE, /* pieces through values, rates and accelerations */
-    PROFILE_CHIRP,
-    PROFILE_FORMULA
-} ProfileForm;
-
-typedef struct Profile {
-    int input;    /* index in input[] */
-    double begin; /* s: all its times count from here */
-    bool driven;  /* rate and acceleration follow */
-    const char *unit;
-    ProfileForm form;
-    int count; /* of knots, and of points of a curve */
-    double *time, *value;
-    /* curve: rates and accelerations at its points, quintic between them; acceleration NULL: cubic */
-    double *rate, *acceleration;
-    bool sampled; /* curve: its points are samples, at which variable steps need not end */
-    double amplitude, frequency, offset, start;
-    double end, last; /* chirp: when it ends, s; its frequency then, Hz */
-    double until;     /* end of the scene, s; 0: not known */
-    bool logarithmic; /* chirp: the frequency grows by the same factor in equal times */
-    const Law *law;   /* formula, of time (local 0) */
-    const Model *model;
-} Profile;
+#include "scene/profile_form.h"
 
 /* ---- profile.c */
 
-/* Value, rate and acceleration. */
-void profile_at(const Profile *profile, double time, double out[3]);
 /* True if it is constant for all time. */
 bool profile_is_constant(const Profile *profile);
 /* The first time after `time` at which it is less smooth; INFINITY: none. */

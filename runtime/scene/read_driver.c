@@ -155,14 +155,6 @@ static int find_pedal(Pool *pool, const Model *model, const Item *map, const cha
     return index;
 }
 
-static bool is_driven(const Model *model, int input)
-{
-    for (int i = 0; i < model->coordinates; ++i)
-        if (model->coordinate[i].driven && model->coordinate[i].input == input)
-            return true;
-    return false;
-}
-
 static double positive(const Item *map, const char *key, double absent)
 {
     const Item *item = doc_find(map, key);
@@ -202,7 +194,7 @@ static void read_steering(Pool *pool, const Model *model, const Item *item, Driv
                "adapt");
     read_path(pool, scene_need(item, "path", "the driver's steering"), &driver->path);
     driver->steering = find_input(pool, model, item, "input", "steering");
-    driver->driven = is_driven(model, driver->steering);
+    driver->driven = scene_driven_by(model, driver->steering);
     driver->straight = model->input[driver->steering].initial;
     driver->wheelbase = scene_positive(scene_need(item, "wheelbase", "the driver's steering"), "wheelbase");
     const Item *per_angle = scene_need(item, "per_angle", "the driver's steering");

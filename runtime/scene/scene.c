@@ -9,6 +9,7 @@
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"
+#include "scene/replay.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
 
@@ -328,8 +329,7 @@ static void read_initial(Reader *reader, const Item *initial)
 
 /* ---- inputs --------------------------------------------------------------------------------------------- */
 
-/* The driven coordinate whose value is this input, or NULL. */
-static const Coordinate *driven_by(const Model *model, int input)
+const Coordinate *scene_driven_by(const Model *model, int input)
 {
     for (int i = 0; i < model->coordinates; ++i)
         if (model->coordinate[i].driven && model->coordinate[i].input == input)
@@ -339,7 +339,7 @@ static const Coordinate *driven_by(const Model *model, int input)
 
 void scene_check_profile(const Scene *scene, const Model *model, const Profile *profile, Place at)
 {
-    const Coordinate *coordinate = driven_by(model, profile->input);
+    const Coordinate *coordinate = scene_driven_by(model, profile->input);
     if (!coordinate)
         return;
     const ProfilePeaks peaks = profile_peaks(profile, scene->duration);
@@ -360,7 +360,7 @@ Profile *scene_profile(Pool *pool, const Model *model, Scene *scene, const Item 
             diag_fail(key->at, "remove one of them", "input '%s' is described twice", name[i]);
     Profile *profile = POOL_PUSH(pool, scene->profile, scene->profiles);
     *profile = (Profile){.input = i,
-                         .driven = driven_by(model, i),
+                         .driven = scene_driven_by(model, i),
                          .unit = model->input[i].unit,
                          .offset = model->input[i].initial,
                          .end = scene->duration,
@@ -422,6 +422,8 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
     }
     if (scene->driver)
         driver_inputs(scene->driver, time, input);
+    if (scene->replay)
+        replay_inputs(scene->replay, time, input);
 }
 
 double scene_next_kink(const Scene *scene, double time)

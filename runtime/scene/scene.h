@@ -19,6 +19,7 @@ typedef struct Profile Profile; /* profile.h */
 typedef struct Driver Driver;   /* driver.h */
 typedef struct Actions Actions; /* action.h */
 typedef struct Sleep Sleep;     /* sleep.h */
+typedef struct Replay Replay;   /* replay.h */
 
 /* A line on the road: its points, m, world. */
 typedef struct Mark {
@@ -54,6 +55,7 @@ typedef struct Scene {
     Profile *profile;
     Driver *driver;     /* changes during the run; NULL: no driver */
     Sleep *rest;        /* changes during the run; NULL: the vehicle never sleeps */
+    Replay *replay;     /* the same; NULL: nothing is replayed */
     Actions *actions;   /* the same; NULL: nothing depends on a condition */
     RoadCourse *course; /* cones and lanes for pages; NULL: none */
     /* All signals: components of outputs in the order of output[], then inputs. Indices into it: columns of the
@@ -86,6 +88,8 @@ const char *integrator_name(int32_t method);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */
 /* A new profile for the input that `key` names; name: of all inputs. Fails if the input has one. */
 Profile *scene_profile(Pool *pool, const Model *model, Scene *scene, const Item *key, const char *const *name);
+/* The driven coordinate whose value is this input, or NULL. */
+const Coordinate *scene_driven_by(const Model *model, int input);
 /* Warn where a driven coordinate would leave its range. */
 void scene_check_profile(const Scene *scene, const Model *model, const Profile *profile, Place at);
 /* read_input_file.c: a profile for each column of the table that `input_file` names. */

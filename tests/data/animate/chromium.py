@@ -69,7 +69,7 @@ class Browser:
             self.complaints.append(json.dumps(params)[:400])
         if method == 'Network.requestWillBeSent':
             url = params['request']['url']
-            if not url.startswith(('file:', 'data:', 'about:')):
+            if not url.startswith(('file:', 'data:', 'about:', 'blob:')):
                 self.complaints.append('asks for ' + url)
 
     def open(self, path, address=''):
