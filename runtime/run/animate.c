@@ -48,7 +48,8 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
 {
     Animation *a = pool_alloc(pool, sizeof *a);
     const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
-    *a = (Animation){.page = {pool, model->name}, .pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
+    *a = (Animation){
+        .page = {pool, model->name}, .pool = pool, .model = model, .scene = scene, .scene_path = scene_path};
     a->shapes = shapes_of(pool, model, scene);
     a->every = (int64_t)fmax(ceil((double)scene->outputs / most), 1);
     a->wheels = POSE * model->bodies;

@@ -63,7 +63,8 @@ double shapes_size(const Model *model, const double low[3], const double high[3]
 void looks_choose(Pool *pool, const Model *model, Shapes *shapes);
 void json_look(Text *out, const Shape *shape);
 
-/* ---- animate_json.c: what the pages of --animate and --drive have in common ---------------------------------------- */
+/* ---- animate_json.c: what the pages of --animate and --drive have in common ----------------------------------------
+ */
 
 /* A page in the making: the first member of the context of its templates. */
 typedef struct Page {
@@ -80,8 +81,8 @@ int animate_output(const Model *model, OutputType type, int wheel);
 void json_text(Text *out, const char *s);
 void json_key(Text *out, const char *key, const char *value);
 void json_vector(Text *out, const char *key, const double v[3]);
-/* "bodies":[..], whose poses are 7 channels each; "lines":[..],; the object of a wheel but for its end, whose angle is a
- * channel. */
+/* "bodies":[..], whose poses are 7 channels each; "lines":[..],; the object of a wheel but for its end, whose angle is
+ * a channel. */
 void json_bodies(Text *out, const Model *model, const Shapes *shapes);
 void json_lines(Text *out, const Shapes *shapes);
 void json_wheel(Text *out, const Model *model, const Shapes *shapes, int w, int angle);

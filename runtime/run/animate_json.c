@@ -203,24 +203,23 @@ static void write_worker(void *context, Text *out, int indent)
     part(context, "drive_worker.js.in", out);
 }
 
-static const Insertion part_point[] = {
-    {"style", write_style},
-    {"vectors", write_vectors},
-    {"motion", write_motion},
-    {"mesh", write_mesh},
-    {"ground", write_ground},
-    {"view", write_view},
-    {"mouse", write_mouse},
-    {"ink", write_ink},
-    {"curves", write_curves},
-    {"save", write_save},
-    {"page", write_page},
-    {"drive_motion", write_drive_motion},
-    {"drive_ground", write_drive_ground},
-    {"drive_input", write_drive_input},
-    {"drive_curves", write_drive_curves},
-    {"drive_page", write_drive_page},
-    {"worker", write_worker},
-    {NULL, NULL}};
+static const Insertion part_point[] = {{"style", write_style},
+                                       {"vectors", write_vectors},
+                                       {"motion", write_motion},
+                                       {"mesh", write_mesh},
+                                       {"ground", write_ground},
+                                       {"view", write_view},
+                                       {"mouse", write_mouse},
+                                       {"ink", write_ink},
+                                       {"curves", write_curves},
+                                       {"save", write_save},
+                                       {"page", write_page},
+                                       {"drive_motion", write_drive_motion},
+                                       {"drive_ground", write_drive_ground},
+                                       {"drive_input", write_drive_input},
+                                       {"drive_curves", write_drive_curves},
+                                       {"drive_page", write_drive_page},
+                                       {"worker", write_worker},
+                                       {NULL, NULL}};
 
 const Insertions animate_parts = {(const char *const[]){NULL}, part_point, NULL};

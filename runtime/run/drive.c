@@ -39,7 +39,8 @@ static void number(Text *out, const char *key, double value)
     text_print(out, "\"%s\":%s", key, csv_digits(value, digits));
 }
 
-/* ---- what one may move -------------------------------------------------------------------------------------------- */
+/* ---- what one may move --------------------------------------------------------------------------------------------
+ */
 
 /* The ends of an input's slider: those of its role, of its driven coordinate, of the scene's profile, else 0 and 1. */
 static void ends_of(const DrivePage *p, int input, double *low, double *high)
@@ -121,7 +122,8 @@ static void json_parameters(const DrivePage *p, Text *out)
     text_print(out, "],\n");
 }
 
-/* ---- what is seen ------------------------------------------------------------------------------------------------- */
+/* ---- what is seen -------------------------------------------------------------------------------------------------
+ */
 
 static void json_drive_wheels(const DrivePage *p, Text *out)
 {
@@ -179,12 +181,12 @@ static void write_data(void *context, Text *out, int indent)
     mat_from_euler(p->model->body[BODY_BASE].euler, A);
     apply3_transposed(A, (const double[]){1, 0, 0}, ahead);
     json_vector(out, "ahead", ahead);
-    text_print(out, ",\"free\":%s,\"size\":%.6g,\"lowest\":%.6g,\"level\":%s,\n", p->model->free_base ? "true" : "false",
-               p->size, p->lowest, is_level(p->scene->road) ? "true" : "false");
+    text_print(out, ",\"free\":%s,\"size\":%.6g,\"lowest\":%.6g,\"level\":%s,\n",
+               p->model->free_base ? "true" : "false", p->size, p->lowest, is_level(p->scene->road) ? "true" : "false");
     number(out, "step", p->scene->step);
-    text_print(out, ",\"outputs\":%d,\"look\":%d,\"driver\":%s,\"states\":%d,\"gear\":%d,\n", p->code->output_count, hands_steps(p->scene->step),
-               p->scene->driver ? "true" : "false", p->code->slow_count + p->code->fast_count,
-               p->model->powertrain ? p->code->free_base : -1);
+    text_print(out, ",\"outputs\":%d,\"look\":%d,\"driver\":%s,\"states\":%d,\"gear\":%d,\n", p->code->output_count,
+               hands_steps(p->scene->step), p->scene->driver ? "true" : "false",
+               p->code->slow_count + p->code->fast_count, p->model->powertrain ? p->code->free_base : -1);
     json_bodies(out, p->model, &p->shapes);
     json_lines(out, &p->shapes);
     json_drive_wheels(p, out);

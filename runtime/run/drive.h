@@ -12,8 +12,8 @@
 
 /* ---- drive_scene.c: the scene as tables of C --------------------------------------------------------------------- */
 
-/* Road, initial state, profiles, driver and hands, as templates/drive.c.in includes them. Fails if the page can not have
- * the scene: variable steps, a road of too many numbers. */
+/* Road, initial state, profiles, driver and hands, as templates/drive.c.in includes them. Fails if the page can not
+ * have the scene: variable steps, a road of too many numbers. */
 void drive_scene(Text *out, const Model *model, const Scene *scene);
 
 /* ---- drive_code.c: the vehicle as WebAssembly -------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The vehicle of a page of --drive as WebAssembly: generated code for any scene, the runtime core, roads, driver and hands,
- * compiled by clang for a machine without a system. */
+ * The vehicle of a page of --drive as WebAssembly: generated code for any scene, the runtime core, roads, driver and
+ * hands, compiled by clang for a machine without a system. */
 #include "base/file.h"
 #include "base/message.h"
 #include "emit/emit.h"
@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* What is compiled with it, among the embedded files. */
-static const char *const part[] = {"gic_runtime.h",  "gic_runtime.c", "gic_road.h", "gic_road.c",
+static const char *const part[] = {"gic_runtime.h",  "gic_runtime.c",  "gic_road.h", "gic_road.c",
                                    "profile_form.h", "profile_form.c", "driver.h",   "driver.c",
                                    "hands.h",        "hands.c",        NULL};
 
@@ -77,11 +77,13 @@ static bool clang(Build *b, const char *folder, const char *words, const char *c
     return false;
 }
 
-/* One object at a time, and linked without options that optimize: clang would hand the module to a wasm-opt of any age. */
+/* One object at a time, and linked without options that optimize: clang would hand the module to a wasm-opt of any age.
+ */
 static void compile(Build *b, const char *folder)
 {
     static const char compiling[] = "--target=wasm32-wasi -std=c11 -O2 -ffp-contract=off -fno-math-errno -c -o";
-    static const char *const source[] = {"model", "drive", "gic_runtime", "gic_road", "profile_form", "driver", "hands"};
+    static const char *const source[] = {"model",        "drive",  "gic_runtime", "gic_road",
+                                         "profile_form", "driver", "hands"};
     enum { SOURCES = sizeof source / sizeof *source };
     const char *object[SOURCES + 1] = {NULL};
     if (!put_sources(b, folder)) {

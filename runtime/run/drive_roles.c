@@ -9,7 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double turn_least = 0.05; /* rad of a wheel over an input's range: bumps of a suspension turn wheels less */
+static const double turn_least =
+    0.05; /* rad of a wheel over an input's range: bumps of a suspension turn wheels less */
 
 static int input_named(const Model *model, const char *name)
 {

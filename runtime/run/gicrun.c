@@ -37,10 +37,9 @@ static const char help[] =
     "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
     "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
     "                     moves along its road\n"
-    "      --drive FILE   write a page for a browser, complete in itself, in which one drives the\n"
-    "                     model along the scene's road by keys, pads or gamepad; needs clang,\n"
-    "                     lld, wasi-libc and libclang-rt-dev-wasm32\n"
-    "      --replay FILE  move inputs as someone did on such a page, which saved this CSV\n"
+    "      --drive FILE   write a page for a browser in which one drives the model by keys, pads or\n"
+    "                     gamepad; needs clang and lld for WebAssembly\n"
+    "      --replay FILE  repeat what such a page recorded, CSV\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
     "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
@@ -197,15 +196,18 @@ static Request read_command_line(int count, char **word)
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
-        usage_fail("gicrun", "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                             "nor with --eval, --equilibrium, --modes and --linearize", NULL);
+        usage_fail("gicrun",
+                   "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
+                   "nor with --eval, --equilibrium, --modes and --linearize",
+                   NULL);
     if (request.driven && !path_ends(request.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
     if (request.recording && !runs)
         usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
-    if (!request.results && !request.picture && !request.page && !request.driven && (runs || request.states || request.linear))
+    if (!request.results && !request.picture && !request.page && !request.driven &&
+        (runs || request.states || request.linear))
         request.results = "-";
     return request;
 }
@@ -282,7 +284,8 @@ int main(int count, char **word)
                                      .compiler = request.compiler,
                                      .flags = request.flags,
                                      /* a page shows whatever outputs tell; lanes are for code for all scenes */
-                                     .facts = runs && !request.general && !request.page && !request.driven && !request.recording && !request.lanes
+                                     .facts = runs && !request.general && !request.page && !request.driven &&
+                                                      !request.recording && !request.lanes
                                                   ? scene_facts(pool, model, scene, request.scene, drawn)
                                                   : NULL,
                                      .validation = runs ? scene_validation(pool, model, scene) : NULL,

@@ -48,8 +48,8 @@ void animation_write(Animation *animation, const char *path);
 
 /* ---- drive.c: a page of HTML in which someone drives the model through the scene */
 
-/* The page request->driven, in which the vehicle is compiled to WebAssembly. engine: any, for poses and names. Exits with a
- * message when no compiler for it is there, or the page can't be written. */
+/* The page request->driven, in which the vehicle is compiled to WebAssembly. engine: any, for poses and names. Exits
+ * with a message when no compiler for it is there, or the page can't be written. */
 void drive_write(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request);
 
 typedef struct StepWatch StepWatch; /* stability_watch.h */

@@ -44,8 +44,8 @@ typedef struct Driver {
     Movement pedal[2], wheel;
 } Driver;
 
-/* The measurements of a base whose pose and velocities are in a state (models/FORMAT.md section 10); half: from a number
- * of the pose's to its rate. */
+/* The measurements of a base whose pose and velocities are in a state (models/FORMAT.md section 10); half: from a
+ * number of the pose's to its rate. */
 Sight sight_of(const double *state, int half);
 /* Begin at time 0 with pedals free and steering straight. */
 void driver_start(Driver *driver);

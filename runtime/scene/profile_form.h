@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What inputs do over time: profiles of scenes (models/SCENE.md section 4), and movements of drivers (section 5). It needs
- * the runtime core alone, so that pages of gicrun --drive compile it too. */
+ * What inputs do over time: profiles of scenes (models/SCENE.md section 4), and movements of drivers (section 5). It
+ * needs the runtime core alone, so that pages of gicrun --drive compile it too. */
 #ifndef SCENE_PROFILE_FORM_H
 #define SCENE_PROFILE_FORM_H
 

@@ -21,7 +21,7 @@ PAGES = ["README.md", "generator/README.md", "generator/THEORY.md", "runtime/REA
 # ---- commands -----------------------------------------------------------------------------------------------
 
 PLACES = {"MODEL.veh": "models/quarter_car.veh", "SCENE": "models/scenes/quarter_car.scene", "[SCENE]": "",
-          "FILE.html": "report.html", "NAME": "rk4", "N": "16", "W": "4"}
+          "FILE.html": "report.html", "PAGE.html": "page.html", "NAME": "rk4", "N": "16", "W": "4"}
 COMPLETE = {  # a command that begins so, and what it lacks
     "gicgen --dump-model": "models/quarter_car.veh",
     "gicgen --solve reduced": "models/quarter_car.veh -o -",
