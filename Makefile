@@ -53,7 +53,7 @@ programs_of_folders := $(wildcard generator/*.c) runtime/run/gicrun.c $(wildcard
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
 embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h \
-    $(addprefix runtime/,gic_road.h gic_road.c) $(foreach name,profile_form driver hands,runtime/scene/$(name).h runtime/scene/$(name).c)
+    $(addprefix runtime/,gic_road.h gic_road.c) $(foreach name,scene/profile_form scene/driver scene/hands run/knot_cross,runtime/$(name).h runtime/$(name).c)
 
 objects := $(sources:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 archive := $(BUILD)/gicgen.a

@@ -17,9 +17,9 @@
 #include <string.h>
 
 /* What is compiled with it, among the embedded files. */
-static const char *const part[] = {"gic_runtime.h",  "gic_runtime.c",  "gic_road.h", "gic_road.c",
-                                   "profile_form.h", "profile_form.c", "driver.h",   "driver.c",
-                                   "hands.h",        "hands.c",        NULL};
+static const char *const part[] = {"gic_runtime.h",  "gic_runtime.c", "gic_road.h", "gic_road.c", "profile_form.h",
+                                   "profile_form.c", "driver.h",      "driver.c",   "hands.h",    "hands.c",
+                                   "knot_cross.h",   "knot_cross.c",  NULL};
 
 typedef struct Build {
     Pool *pool;
@@ -83,7 +83,7 @@ static void compile(Build *b, const char *folder)
 {
     static const char compiling[] = "--target=wasm32-wasi -std=c11 -O2 -ffp-contract=off -fno-math-errno -c -o";
     static const char *const source[] = {"model",        "drive",  "gic_runtime", "gic_road",
-                                         "profile_form", "driver", "hands"};
+                                         "profile_form", "driver", "hands",       "knot_cross"};
     enum { SOURCES = sizeof source / sizeof *source };
     const char *object[SOURCES + 1] = {NULL};
     if (!put_sources(b, folder)) {

@@ -346,6 +346,18 @@ static void put_driver(Text *out, const Scene *scene)
     text_print(out, "};\n");
 }
 
+/* Times at which profiles of driven coordinates are less smooth: knot.c. */
+static void put_knots(Text *out, const Scene *scene)
+{
+    enum { MOST = 10000 };
+    double *time = NULL;
+    int count = 0;
+    for (double at = scene_next_knot(scene, 0); isfinite(at) && count < MOST; at = scene_next_knot(scene, at))
+        *POOL_PUSH(out->pool, time, count) = at;
+    numbers(out, "knot", time, count);
+    text_print(out, "enum { KNOTS = %d };\n", count);
+}
+
 /* All inputs but rates and accelerations of driven coordinates. */
 static void put_hands(Text *out, const Model *model)
 {
@@ -366,6 +378,7 @@ void drive_scene(Text *out, const Model *model, const Scene *scene)
     put_road(out, scene);
     put_state(out, model, scene);
     put_profiles(out, scene);
+    put_knots(out, scene);
     put_driver(out, scene);
     put_hands(out, model);
     text_print(out, "enum { PROFILES = %d, DRIVER = %d, PARAMETERS = %d, BODIES = %d };\n", scene->profiles,

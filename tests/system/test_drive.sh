@@ -73,9 +73,12 @@ page "$root/models/pendulum.veh" "$root/models/scenes/pendulum.scene" 1e-12
 
 # ---- in the browser
 
+tutorial=$root/models/tutorial/6_steering
+run --drive "$work/driver.html" "$tutorial.veh" "$tutorial.scene"
+check 'a page with a driver and a parameter' exits 0
 # shellcheck disable=SC2046  # three words a page
 timeout 900 /usr/bin/python3 -B "$root/tests/data/drive/browser.py" "$work/profile" "$work/drive.html" "$work/recording.csv" \
-    $(cat "$work/pages") >"$work/notes" 2>"$work/err"
+    "$work/driver.html" "$work/handed.csv" $(cat "$work/pages") >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]
@@ -86,6 +89,10 @@ for engine in auto tape; do
     check "engine $engine replays the recording" exits 0
     check "engine $engine finds its digits" compare "$work/recording.csv" "$work/replay.csv" 1e-9
 done
+
+check 'the other recording has the parameter' grep -q 'parameter.bar' "$work/handed.csv"
+run -q --replay "$work/handed.csv" "$tutorial.veh" "$tutorial.scene" -o "$work/handed_replay.csv"
+check 'a recording of a driver, a gamepad and the driver again is replayed' compare "$work/handed.csv" "$work/handed_replay.csv" 1e-9
 
 # ---- mistakes
 

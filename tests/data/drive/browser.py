@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE DRIVE.html RECORDING.csv [SCENE.html RESULTS.csv DIGITS]...: drives in a page of `gicrun --drive` in
-# chromium by real keys, saves the recording; and steps the vehicles of the other pages through their scenes, whose results
+# browser.py PROFILE DRIVE.html RECORDING.csv DRIVER.html HANDED.csv [SCENE.html RESULTS.csv DIGITS]...: drives in a page of `gicrun --drive` in
+# chromium by real keys, saves the recording; takes over from a driver and hands back in another one; and steps the vehicles of the other pages through their scenes, whose results
 # must be those of gicrun to DIGITS of the largest value of each column. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import os
@@ -72,9 +72,7 @@ class Keys:
 
 
 def use(browser, path, recording, profile):
-    keys, folder = Keys(browser), profile + '/saved'
-    os.makedirs(folder)
-    browser.whole('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+    keys = Keys(browser)
 
     def shows(name, condition, seconds=60):
         note(name, browser.wait(condition, seconds), browser.ask('JSON.stringify([state, live.time, live.speed, '
@@ -115,15 +113,7 @@ def use(browser, path, recording, profile):
     shows('slow motion', 'state.speed === 0.5 && document.getElementById("speed").value === "0.5"')
     browser.press(' ', ' ')
     shows('pause', '!state.playing && !state.waiting')
-    browser.press('o', 'o')
-    end = time.time() + 60
-    while time.time() < end and not [f for f in os.listdir(folder) if f.endswith('.csv')]:
-        browser.ask('1')
-        time.sleep(.05)
-    saved = [f for f in os.listdir(folder) if f.endswith('.csv')]
-    note('the recording is saved', len(saved) == 1, str(os.listdir(folder)))
-    if saved:
-        os.replace(folder + '/' + saved[0], recording)
+    save(browser, profile, recording)
 
     # pads, by the mouse; sliders
     browser.press('r', 'r')
@@ -155,6 +145,46 @@ def use(browser, path, recording, profile):
     note('the picture is not blank', len({p for row in rows for p in row}) > 500, '%d by %d' % (WIDTH, TALL))
 
 
+def save(browser, profile, recording):
+    """The recording by its key."""
+    folder = profile + '/saved'
+    os.makedirs(folder, exist_ok=True)
+    browser.whole('Browser.setDownloadBehavior', behavior='allow', downloadPath=folder)
+    browser.press('o', 'o')
+    end = time.time() + 60
+    while time.time() < end and not [f for f in os.listdir(folder) if f.endswith('.csv')]:
+        browser.ask('1')
+        time.sleep(.05)
+    saved = [f for f in os.listdir(folder) if f.endswith('.csv')]
+    note('%s is saved' % os.path.basename(recording), len(saved) == 1, str(os.listdir(folder)))
+    if saved:
+        os.replace(folder + '/' + saved[0], recording)
+
+
+def hand_back(browser, path, recording, profile):
+    """A driver's vehicle with a parameter moved, taken over by a gamepad, and handed back."""
+    def shows(name, condition):
+        note(name, browser.wait(condition, 60), browser.ask('JSON.stringify([state, live.time, driving.steer, target])') +
+             browser.text('trouble'))
+
+    browser.open(path)
+    browser.ask("""(() => {const bar = document.querySelector('#parameters input'); bar.value = 1.5 * bar.value;
+        bar.dispatchEvent(new Event('input')); return 1})()""")
+    browser.press('r', 'r')
+    shows('a parameter is moved, and the run begins again', 'live.time > 0.3 && live.time < 5 && !driving.hold')
+    browser.ask("""(() => {navigator.getGamepads = () => [{connected: true, axes: [window.stick],
+        buttons: Array.from({length: 8}, (_, k) => ({value: k === 7 ? .4 : 0}))}]; window.stick = -.5; return 1})()""")
+    shows('a gamepad takes over', 'driving.hold && driving.steer === .5 && target[role.accelerator] === .4')
+    taken = browser.ask('live.time')
+    shows('and drives', 'live.time > %r' % (taken + .5))
+    browser.ask('(() => {navigator.getGamepads = () => []; return 1})()')
+    browser.press('t', 't')
+    shows('the driver has it back', '!driving.hold && /Driver/.test(document.getElementById("who").textContent)')
+    given = browser.ask('live.time')
+    shows('the driver drives', 'live.time > %r' % (given + 1))
+    save(browser, profile, recording)
+
+
 # Visible things that hold text or are used: [what, left, top, right, bottom].
 SEEN = """[...document.querySelectorAll(`h1, #subtitle, #clock, #facts, #velocity, .pad, #controls button, #controls select,
     #side .row`)].flatMap((e) => {
@@ -183,9 +213,10 @@ def narrow(browser, path):
 
 
 def main():
-    profile, drive, recording, *pages = sys.argv[1:]
+    profile, drive, recording, driver, handed, *pages = sys.argv[1:]
     browser = Browser(profile)
     use(browser, drive, recording, profile)
+    hand_back(browser, driver, handed, profile)
     narrow(browser, drive)
     scenes(browser, pages)
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
