@@ -317,7 +317,7 @@ static void check_templates(Pool *pool, const char *templates)
 const char *batch_missing(const Formulation *formulation)
 {
     if (formulation->wheels)
-        return "wheels with tires";
+        return formulation->wheels->count > 0 ? "wheels with tires" : "states of its own";
     if (formulation_reacts(formulation))
         return "outputs of reactions, which the reduced form finds afterwards";
     return NULL;

@@ -133,7 +133,7 @@ static void write_numbers_of_wheels(const Generation *g, Text *out, int indent)
 {
     const Naming *naming = g->style->naming;
     const Model *model = g->model;
-    if (!g->formulation->wheels)
+    if (!g->formulation->wheels || g->formulation->wheels->count == 0)
         return;
     WRITE_ENUMERATORS(g, out, indent, "LINK_", link_name);
     WRITE_ENUMERATORS(g, out, indent, "GRIP_", grip_name);

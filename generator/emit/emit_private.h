@@ -149,7 +149,7 @@ void write_images(void *context, Text *out, int indent);    /* copies the number
 void write_condition(void *context, Text *out, int indent); /* the text that the last status is about */
 
 /* wheels.c, wheel_lanes.c, powertrain.c: insertion points of their templates. */
-extern const Insertions wheels_points, wheel_points, dual_rate_points;
+extern const Insertions wheels_points, wheel_points, dual_rate_points, states_points, states_rate_points;
 extern const Insertions wheel_lanes_points, wheel_vector_points;
 extern const Insertions powertrain_points;
 

@@ -587,7 +587,8 @@ static void write_turn_wheels(void *context, Text *out, int indent)
     if (!g->formulation->wheels)
         return;
     line(out, indent, "if (status == GIC_OK)");
-    line(out, indent + 4, "status = %s_turn_wheels(self, time, y, e, rate + %s_SLOW);", g->model->name, g->upper);
+    line(out, indent + 4, "status = %s_turn_%s(self, time, y, e, rate + %s_SLOW);", g->model->name,
+         g->formulation->wheels->count > 0 ? "wheels" : "states", g->upper);
 }
 
 static void write_identity(void *context, Text *out, int indent)
@@ -664,7 +665,8 @@ static void check_templates(Pool *pool, const char *templates)
         &code_points,         &header_points,     &derive_points,     &subset_points,
         &lane_class_points,   &lane_width_points, &lane_fold_points,  &assumption_points,
         &road_points,         &wheels_points,     &wheel_points,      &wheel_lanes_points,
-        &wheel_vector_points, &dual_rate_points,  &powertrain_points, NULL};
+        &wheel_vector_points, &dual_rate_points,  &powertrain_points,  &states_points,
+        &states_rate_points, NULL};
     templates_check(pool, templates, points);
 }
 

@@ -204,12 +204,24 @@ static const Insertion wheels_point[] = {{"friction", write_friction},
 const Insertions wheels_points = {(const char *const[]){"wheels.c.in", "friction.c.in", "friction_across.c.in", NULL},
                                   wheels_point, NULL};
 
+static const Insertion states_point[] = {{"link", write_link}, {"torque", write_torque}, {NULL, NULL}};
+
+const Insertions states_points = {(const char *const[]){"states.c.in", NULL}, states_point, NULL};
+
+/* Wheels with tires; else, if it has fast states, the model's own are all of them. */
+static bool rolls(const Generation *g)
+{
+    return g->formulation->wheels && g->formulation->wheels->count > 0;
+}
+
 void write_wheels(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (g->formulation->wheels)
+    if (rolls(g))
         template_expand(g->pool, out, g->templates, "wheels.c.in", g->model->name, NULL, &wheels_points, g);
+    else if (g->formulation->wheels)
+        template_expand(g->pool, out, g->templates, "states.c.in", g->model->name, NULL, &states_points, g);
 }
 
 /* ---- dual rate */
@@ -235,12 +247,18 @@ static const Insertion dual_rate_point[] = {{"assume", write_assume_caller}, {"r
 
 const Insertions dual_rate_points = {(const char *const[]){"dual_rate.c.in", NULL}, dual_rate_point, NULL};
 
+static const Insertion states_rate_point[] = {{"assume", write_assume_caller}, {NULL, NULL}};
+
+const Insertions states_rate_points = {(const char *const[]){"states_rate.c.in", NULL}, states_rate_point, NULL};
+
 void write_wheel_functions(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (g->formulation->wheels)
+    if (rolls(g))
         template_expand(g->pool, out, g->templates, "dual_rate.c.in", g->model->name, NULL, &dual_rate_points, g);
+    else if (g->formulation->wheels)
+        template_expand(g->pool, out, g->templates, "states_rate.c.in", g->model->name, NULL, &states_rate_points, g);
     write_shift(g, out);
 }
 
@@ -253,7 +271,7 @@ void write_dual_rate(void *context, Text *out, int indent)
         line(out, indent, "offsetof(%s, link),", name);
         line(out, indent, "%s_any_link,", name);
         line(out, indent, "%s_any_fast,", name);
-        line(out, indent, "%s_any_roll,", name);
+        line(out, indent, rolls(g) ? "%s_any_roll," : "NULL, /* %s has no wheels with tires */", name);
         line(out, indent, "%s", g->model->powertrain ? pool_print(g->pool, "%s_any_shift,", name) : "NULL,");
         return;
     }
@@ -270,6 +288,8 @@ void write_wheel_members(void *context, Text *out, int indent)
         return;
     line(out, indent, "gic_real link[5 * %s_LINKS]; /* how the multibody system moves the wheels, at slow steps */",
          g->upper);
+    if (!rolls(g))
+        return;
     line(out, indent, "gic_real grip[%s_GRIP * %s_ROLLING]; /* what the wheels do, %s_GRIP numbers each */", g->upper,
          g->upper, g->upper);
     write_powertrain_members(g, out, indent);
@@ -280,6 +300,10 @@ void write_wheel_sizes(Generation *g, Text *out, int indent)
     const Wheels *wheels = g->formulation->wheels;
     if (!wheels)
         return;
+    if (!rolls(g)) {
+        line(out, indent, "%s_LINKS = %d,", g->upper, wheels->links);
+        return;
+    }
     line(out, indent, "%s_ROLLING = %d,", g->upper, wheels->count);
     line(out, indent, "%s_LINKS = %d,", g->upper, wheels->links);
     line(out, indent, "%s_GRIP = %d,", g->upper, GRIP_NUMBERS);
@@ -291,8 +315,13 @@ void wheel_counts(Generation *g, Text *out, const Figures *figures)
     const Wheels *wheels = g->formulation->wheels;
     if (!wheels)
         return;
+    if (!rolls(g)) {
+        count_line(out, "what rates of own states read", figures->link);
+        count_line(out, "rates of own states", figures->torque);
+        return;
+    }
     count_line(out, "motion of the wheels", figures->link);
-    count_line(out, "drives and brakes", figures->torque);
+    count_line(out, g->model->states ? "drives, brakes, rates of own states" : "drives and brakes", figures->torque);
     for (int c = 0; c < wheels->classes; ++c)
         count_line(out, pool_print(g->pool, "wheel '%s' (%d times)", wheels->class[c].name, figures->wheel_times[c]),
                    figures->wheel[c]);

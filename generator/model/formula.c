@@ -143,6 +143,8 @@ static const Law *reference(Parser *p, LawOp op, int index, const char *name)
         model->parameter[index].read = true;
     if (op == LAW_INPUT)
         model->input[index].read = true;
+    if (op == LAW_STATE)
+        model->state[index].read = true;
     return node(p, (Law){.op = op, .index = index, .name = name, .size = stands ? stands->size : 0});
 }
 
@@ -175,6 +177,8 @@ _Noreturn void law_name_unknown(Pool *pool, const LawNames *names, const char *w
         *POOL_PUSH(pool, known, knowns) = model->parameter[i].name;
     for (int i = 0; i < model->inputs && !names->constant; ++i)
         *POOL_PUSH(pool, known, knowns) = model->input[i].name;
+    for (int i = 0; i < model->states && !names->constant; ++i)
+        *POOL_PUSH(pool, known, knowns) = model->state[i].name;
     if (!names->constant)
         *POOL_PUSH(pool, known, knowns) = "time";
     *POOL_PUSH(pool, known, knowns) = "pi";
@@ -296,6 +300,8 @@ static void has_one_meaning(Parser *p, const char *where, const char *name, cons
         other = strcmp(name, model->input[i].name) ? other : "input";
     for (int i = 0; i < model->parameters; ++i)
         other = strcmp(name, model->parameter[i].name) ? other : "parameter";
+    for (int i = 0; i < model->states; ++i)
+        other = strcmp(name, model->state[i].name) ? other : "state";
     if (other)
         fail(p, where, pool_print(p->pool, "give the %s another name", other),
              "'%s' is %s here, and the name of a%s %s", name, meaning, *other == 'i' ? "n" : "", other);
@@ -347,6 +353,11 @@ static const Law *parse_name(Parser *p)
         if (!strcmp(name, model->input[i].name)) {
             only_constants(p, where, name);
             return reference(p, LAW_INPUT, i, model->input[i].name);
+        }
+    for (int i = 0; i < model->states; ++i)
+        if (!strcmp(name, model->state[i].name)) {
+            only_constants(p, where, name);
+            return reference(p, LAW_STATE, i, model->state[i].name);
         }
     return signal_named(p, where, name);
 }
@@ -545,6 +556,7 @@ double law_number(const Law *law, const Model *model)
     }
     case LAW_INPUT: return model->input[law->index].initial;
     case LAW_VALUE: return model->coordinate[law->index].initial;
+    case LAW_STATE: return model->state[law->index].initial;
     default: return 0;
     }
 }

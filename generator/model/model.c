@@ -125,6 +125,20 @@ const char *model_massless(const Model *model)
     return NULL;
 }
 
+bool output_is_motion(OutputType type, int component)
+{
+    switch (type) {
+    case OUTPUT_POSITION:
+    case OUTPUT_VELOCITY:
+    case OUTPUT_ORIENTATION:
+    case OUTPUT_ROLL_PITCH_YAW:
+    case OUTPUT_ANGULAR_VELOCITY: return true;
+    case OUTPUT_COORDINATE: return component < 2;
+    case OUTPUT_TIRE: return component == TIRE_SPIN;
+    default: return false;
+    }
+}
+
 /* A search for outputs of a type, of one index or of any (-1), among all that something reads. */
 typedef struct Search {
     const Model *model;
@@ -168,6 +182,8 @@ bool model_reads(const Model *model, OutputType type)
     for (int i = 0; i < model->forces; ++i)
         for (int k = 0; k < FORCE_MOST_LAWS; ++k)
             law_signals(model->force[i].law[k], search_signal, &search);
+    for (int i = 0; i < model->states; ++i)
+        law_signals(model->state[i].rate, search_signal, &search);
     return search.found;
 }
 

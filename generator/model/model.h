@@ -17,6 +17,7 @@ typedef enum LawOp {
     LAW_NUMBER,    /* number */
     LAW_PARAMETER, /* index */
     LAW_INPUT,     /* index */
+    LAW_STATE,     /* index, among entries of `states` */
     LAW_VALUE,     /* of coordinate index */
     LAW_RATE,
     LAW_TIME,
@@ -48,7 +49,9 @@ typedef struct LawNames {
     bool constant;      /* only numbers and parameters are allowed */
     const char *remedy; /* the remedy if another name is used */
     SignalReads *reads; /* where names are noted that may be signals; NULL: such a name is unknown at once */
-    const char *barred; /* "formulas of wheels", which may read no signals: signals noted are refused; NULL: allowed */
+    const char *barred; /* "formulas of gears", which may read no signals: signals noted are refused; NULL: allowed */
+    const char *early;  /* "states", whose formulas are evaluated before forces are known: signals that follow forces are
+                         * refused; NULL: allowed */
 } LawNames;
 
 /* A name in a formula that is none of the names known when the formula is read: one of a signal, which the reader finds
@@ -157,6 +160,16 @@ typedef struct Input {
     double initial;
     bool read; /* a formula names it, or it belongs to a driven coordinate */
 } Input;
+
+/* A number of the model's own that changes at a rate (FORMAT.md section 7.3). */
+typedef struct State {
+    const char *name, *unit;
+    Place at;
+    double initial;
+    const struct Law *rate;
+    int fast;  /* index among the model's fast states */
+    bool read; /* a formula names it */
+} State;
 
 typedef struct Parameter {
     const char *name, *unit;
@@ -320,7 +333,7 @@ typedef enum OutputType {
     OUTPUT_TYPES
 } OutputType;
 
-enum { OUTPUT_MAX_COMPONENTS = 12 };
+enum { OUTPUT_MAX_COMPONENTS = 12, TIRE_SPIN = 8 /* component of OUTPUT_TIRE; its rate follows */ };
 
 typedef struct Output {
     const char *name;
@@ -353,6 +366,7 @@ typedef struct Model {
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
     int parameters, tunables, tables, ports, tires, fast_states;
+    int states;  /* entries of `states` */
     int signals; /* entries of `signals`, then the components of outputs that formulas read */
     Body *body;
     Joint *joint;
@@ -366,6 +380,7 @@ typedef struct Model {
     Parameter *parameter;
     Table *table;
     Port *port;
+    State *state;
     Signal *signal;
     struct Tuning *tuning; /* tunable.h; NULL: only numbers of force laws are tunable */
     const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
@@ -385,6 +400,8 @@ extern const char *const output_type_name[OUTPUT_TYPES];
 enum { BASE_STATES = 13 };
 extern const char *const base_state_name[BASE_STATES];
 
+/* True if a component of outputs of this type follows from the motion of bodies alone, spins of wheels included. */
+bool output_is_motion(OutputType type, int component);
 /* True if an output is of a type, or a signal whose formula reads such an output. */
 bool output_reads(const Model *model, const Output *output, OutputType type);
 /* True if an output or the formula of a force element reads an output of a type. */

@@ -24,6 +24,7 @@ enum {
     FILE_PARAMETERS,
     FILE_TABLES,
     FILE_PORTS,
+    FILE_STATES,
     FILE_SIGNALS,
     FILE_FORCES,
     FILE_TIRES,
@@ -48,6 +49,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_PARAMETERS] = {"parameters", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TABLES] = {"tables", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_PORTS] = {"ports", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_STATES] = {"states", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_SIGNALS] = {"signals", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TIRES] = {"tires", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -71,6 +73,7 @@ static const char *const file_about[FILE_KEYS] = {
     [FILE_PARAMETERS] = "named numbers, worked into the code or tunable at run time",
     [FILE_TABLES] = "functions of one number, for formulas",
     [FILE_PORTS] = "external forces and torques that the calling program supplies",
+    [FILE_STATES] = "numbers that change at rates by formulas: filters, actuators, controllers",
     [FILE_SIGNALS] = "formulas with names, which other formulas and outputs read",
     [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
     [FILE_TIRES] = "tires of wheels that roll, from .tir files or with their data",
@@ -116,10 +119,12 @@ const Model *model_read(Pool *pool, const char *path)
     coordinates_read(&reader, value[FILE_COORDINATES].item);
     inputs_read(&reader, value[FILE_INPUTS].item);
     ports_read(&reader, value[FILE_PORTS].item);
+    states_declare(&reader, value[FILE_STATES].item);
     signals_read(&reader, value[FILE_SIGNALS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
+    states_read(&reader, value[FILE_STATES].item);
     powertrain_read(&reader, value[FILE_POWERTRAIN].item);
     wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);

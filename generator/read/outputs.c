@@ -103,7 +103,7 @@ bool output_follows_accelerations(OutputType type, int component)
     case OUTPUT_REACTION:
     case OUTPUT_ENERGY: return true;
     case OUTPUT_COORDINATE: return component == 2;
-    case OUTPUT_TIRE: return component == 9; /* spin_rate */
+    case OUTPUT_TIRE: return component == TIRE_SPIN + 1; /* spin_rate */
     default: return false;
     }
 }

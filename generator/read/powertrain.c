@@ -126,7 +126,7 @@ static const char *of(Reader *reader, const Key *key, const char *what)
 /* What formulas of the powertrain read. */
 static LawNames law_names(Reader *reader)
 {
-    return (LawNames){.model = reader->model, .reads = &reader->reads, .barred = "formulas of the powertrain"};
+    return (LawNames){.model = reader->model, .reads = &reader->reads, .early = "the powertrain"};
 }
 
 static void engine_read(Reader *reader, const Item *item, Powertrain *powertrain)
@@ -203,7 +203,8 @@ static void gears_read(Reader *reader, const Value *value, Powertrain *powertrai
 static const Law **shifts_read(Reader *reader, const Item *map, const Value *value, int key, int count)
 {
     const char *what = of(reader, &transmission_key[key], "the transmission");
-    const LawNames names = law_names(reader);
+    LawNames names = law_names(reader);
+    names.barred = "formulas of gears"; /* which are evaluated after a step, without the bodies */
     const Law **law = pool_alloc(reader->pool, (size_t)(count + 1) * sizeof *law);
     const Item *item = value[key].item;
     if (!item && count)
@@ -229,7 +230,8 @@ static int start_gear(const Model *model, const Powertrain *powertrain)
 static void transmission_read(Reader *reader, const Item *item, Powertrain *powertrain)
 {
     static const char what[] = "the transmission";
-    const LawNames names = law_names(reader);
+    LawNames names = law_names(reader);
+    names.barred = "formulas of gears";
     Value value[SHIFT_KEYS];
     section_read(reader, &transmission_section, 0, &(Entry){"transmission", what, item->at, item}, value);
     gears_read(reader, value, powertrain);

@@ -125,7 +125,7 @@ extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
 extern const Section coordinate_section;
-extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section;
+extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section, state_section;
 extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
 /* An example of each kind of value, for remedies. */
@@ -234,10 +234,19 @@ bool output_is_odd(OutputType type, int component);
 /* True if it follows accelerations, which follow forces, or all forces of elements. */
 bool output_follows_accelerations(OutputType type, int component);
 
+/* ---- states.c ---- */
+
+/* The entries of `states` but their rates, which formulas follow: before any formula but those of parameters is read. */
+void states_declare(Reader *reader, const Item *map);
+/* Their rates, after the wheels, whose fast states come before theirs. */
+void states_read(Reader *reader, const Item *map);
+
 /* ---- signals.c ---- */
 
 /* True for a word that means something of its own in some formula: `time`, or `speed` of a force between points. */
 bool is_formula_word(const char *name);
+/* Refuse a name that formulas have for something else; thing: "signal". */
+void formula_name_check(const Model *model, const Entry *entry, const char *thing);
 /* The entries of `signals`, before forces are read. */
 void signals_read(Reader *reader, const Item *map);
 /* Once outputs are read: find the signals that formulas read, and refuse forces that would follow accelerations or

@@ -89,6 +89,7 @@ static const struct {
     {"forces", &force_section, false},
     {"tires", &tire_section, false},
     {"wheels", &wheel_section, false},
+    {"states", &state_section, true},
     {"signals", &signal_section, true},
     {"outputs", &output_section, false},
 };

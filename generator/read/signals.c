@@ -32,8 +32,7 @@ bool is_formula_word(const char *name)
     return false;
 }
 
-/* Refuse a name that formulas have for something else. */
-static void name_is_free(const Model *model, const Entry *entry)
+void formula_name_check(const Model *model, const Entry *entry, const char *thing)
 {
     const char *other = is_formula_word(entry->name) ? "word of formulas" : NULL;
     for (int i = 0; i < model->parameters; ++i)
@@ -42,9 +41,11 @@ static void name_is_free(const Model *model, const Entry *entry)
         other = strcmp(entry->name, model->coordinate[i].name) ? other : "coordinate";
     for (int i = 0; i < model->inputs; ++i)
         other = strcmp(entry->name, model->input[i].name) ? other : "input";
+    for (int i = 0; i < model->states; ++i)
+        other = strcmp(entry->name, model->state[i].name) ? other : "state";
     if (other)
-        diag_fail(entry->at, "give the signal another name", "%s has the name of a%s %s", entry->what,
-                  *other == 'i' ? "n" : "", other);
+        diag_fail(entry->at, *thing == 's' && thing[1] == 'i' ? "give the signal another name" : "give the state another name",
+                  "%s has the name of a%s %s", entry->what, *other == 'i' ? "n" : "", other);
 }
 
 void signals_read(Reader *reader, const Item *map)
@@ -57,7 +58,7 @@ void signals_read(Reader *reader, const Item *map)
         Value value[SIGNAL_KEYS] = {{0}};
         if (entry[i].item->kind == ITEM_MAP)
             section_read(reader, &signal_section, 0, entry + i, value);
-        name_is_free(model, entry + i);
+        formula_name_check(model, entry + i, "signal");
         const Item *formula = entry[i].item->kind == ITEM_MAP ? value[SIGNAL_VALUE].item : entry[i].item;
         model->signal[i] = (Signal){
             .name = entry[i].name,
@@ -196,6 +197,32 @@ static void closed_circle(const Order *order)
               "%s: '%s' follows itself: %s", read->what, read->name, way_text(order, first));
 }
 
+static bool law_contains(const Law *law, const Law *part)
+{
+    return law && (law == part || law_contains(law->arg[0], part) || law_contains(law->arg[1], part) ||
+                   law_contains(law->arg[2], part));
+}
+
+/* Formulas of wheels, of the powertrain and of states: the motion of bodies is known there, forces are not. */
+static void early_visit(Order *order, const SignalRead *read)
+{
+    const Signal *signal = &order->reader->model->signal[read->law->index];
+    *POOL_PUSH(order->reader->pool, order->way, order->ways) = read;
+    if (signal->law) {
+        const Reader *reader = order->reader;
+        for (int i = 0; i < reader->reads.count; ++i)
+            if (law_contains(signal->law, reader->reads.read[i].law))
+                early_visit(order, &reader->reads.read[i]);
+    } else if (!output_is_motion(signal->output.type, signal->component)) {
+        diag_fail(order->way[0]->at,
+                  "read positions, velocities, attitude, coordinates and their rates, spins of wheels, or a state that "
+                  "follows it",
+                  "formulas of %s are evaluated before forces are known: %s, an output of type %s",
+                  order->way[0]->names.early, way_text(order, 0), output_type_name[signal->output.type]);
+    }
+    --order->ways;
+}
+
 static void force_visit(Order *order, int index)
 {
     Thing *thing = &order->force[index];
@@ -261,4 +288,7 @@ void signals_close(Reader *reader)
             laws_visit(&order, &order.signal[i], &model->signal[i].law, 1);
             order.signal[i].visit = DONE;
         }
+    for (int i = 0; i < reader->reads.count; ++i)
+        if (reader->reads.read[i].names.early)
+            early_visit(&order, &reader->reads.read[i]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Warnings about entries that nothing reads: tunable parameters, tables, inputs and signals (FORMAT.md section 6). */
+ * Warnings about entries that nothing reads: tunable parameters, tables, inputs, states and signals (FORMAT.md section 6). */
 #include "base/message.h"
 #include "base/pool.h"
 #include "base/table.h"
@@ -42,6 +42,9 @@ void unread_tell(const Reader *reader)
     for (int i = 0; i < model->tables; ++i)
         if (!model->table[i].read)
             tell(model->table[i].at, "table", model->table[i].name);
+    for (int i = 0; i < model->states; ++i)
+        if (!model->state[i].read)
+            tell(model->state[i].at, "state", model->state[i].name);
     for (int i = 0; i < model->signals; ++i) {
         const Signal *signal = &model->signal[i];
         if (signal->law && !is_image(signal->at) && !signal_is_read(reader, i))

@@ -69,7 +69,7 @@ static const Law *spin_law(Reader *reader, const Entry *entry, const Value *valu
 {
     static const char *const local[] = {"spin"};
     LawNames names = {
-        .model = reader->model, .local = local, .locals = 1, .reads = &reader->reads, .barred = "formulas of wheels"};
+        .model = reader->model, .local = local, .locals = 1, .reads = &reader->reads, .early = "wheels"};
     if (!value[key].item)
         return NULL;
     return law_parse(reader->pool, value[key].item,

@@ -195,7 +195,7 @@ static void signal_read(Text *out, const Law *law, const Model *model)
 static void formula(Text *out, const Law *law, const Model *model)
 {
     static const char *const word[] = {
-        [LAW_INPUT] = "input", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
+        [LAW_INPUT] = "input", [LAW_STATE] = "state", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
     switch (law->op) {
     case LAW_SIGNAL: signal_read(out, law, model); return;
     case LAW_NUMBER:
@@ -293,6 +293,20 @@ static void parameters(Text *out, const Model *model)
         number_pair(out, "value", &parameter->value, 0, true);
         key(out, "tunable");
         add(out, parameter->tunable ? "true}" : "false}");
+    }
+}
+
+static void states(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->states; ++i) {
+        const State *state = model->state + i;
+        begin(out, i, state->name);
+        text_pair(out, "unit", state->unit);
+        number_pair(out, "initial", &state->initial, 0, true);
+        integer_pair(out, "fast", state->fast);
+        key(out, "rate");
+        formula(out, state->rate, model);
+        add(out, "}");
     }
 }
 
@@ -522,6 +536,11 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
     for (size_t i = 0; i < sizeof list / sizeof *list; ++i) {
         text_print(out, ",\n  \"%s\": [", list[i].name);
         list[i].entries(out, model);
+        add(out, "]");
+    }
+    if (model->states) {
+        add(out, ",\n  \"states\": [");
+        states(out, model);
         add(out, "]");
     }
     if (model->powertrain)

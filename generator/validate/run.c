@@ -441,6 +441,7 @@ static void turn_wheels(Run *run)
     run_play(run, run->programs->link, 0, "links of wheels");
     bind(run, PLAY_fast, run->y + run->plan->states);
     bind(run, PLAY_torque, run->torque);
+    bind(run, PLAY_rate, run->rate + run->plan->states);
     run_play(run, run->programs->torque, 0, "torques of wheels");
     for (int c = 0; c < wheels->classes; ++c)
         for (int i = 0; i < wheels->class[c].members; ++i)

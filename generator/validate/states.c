@@ -243,6 +243,9 @@ static void place_fast(const Validator *v, Random *random, int index, int k)
         for (int s = FAST_SLIP_X; s < wheel_fast_states(wheel); ++s)
             fast[wheel->fast + s][k] = index ? number(random, s == FAST_BRAKE ? 0.01 : 0.3) : 0;
     }
+    for (int i = 0; i < model->states; ++i)
+        fast[model->state[i].fast][k] =
+            index ? number(random, 1 + fabs(model->state[i].initial)) : model->state[i].initial;
     if (!model->powertrain)
         return;
     const Powertrain *powertrain = model->powertrain;

@@ -104,6 +104,7 @@ Ex whole_law(Whole *whole, const Law *law, const Ex *local)
         return ex_is_number(dag, number) ? ex_literal(dag, law->number) : number;
     }
     case LAW_INPUT: return ex_input(dag, element_at(ARRAY_u, law->index), NULL);
+    case LAW_STATE: return whole->z[law->index];
     case LAW_VALUE: return whole->x[law->index];
     case LAW_RATE: return whole->xd[law->index];
     case LAW_TIME: return ex_input(dag, element_at(ARRAY_time, 0), NULL);

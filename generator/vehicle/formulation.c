@@ -175,6 +175,9 @@ static StateNumber fast_number(Pool *pool, const Model *model, int index)
         return (StateNumber){powertrain_fast_name[index - powertrain->fast], speed ? "rad/s" : "s",
                              speed ? powertrain->idle : POWERTRAIN_FIRST_AGE};
     }
+    for (int i = 0; i < model->states; ++i)
+        if (model->state[i].fast == index)
+            return (StateNumber){model->state[i].name, model->state[i].unit, model->state[i].initial};
     const Wheel *wheel = model->wheel;
     while (index >= wheel->fast + wheel_fast_states(wheel) || wheel->tire < 0)
         ++wheel;

@@ -195,6 +195,8 @@ Ex whole_signal(Whole *whole, int index)
     const Signal *signal = &whole->model->signal[index];
     if (signal->law)
         return whole_law(whole, signal->law, NULL);
+    if (whole->linked)
+        return whole->linked[index];
     Ex out[OUTPUT_MAX_COMPONENTS] = {0};
     output_components(whole, &signal->output, out);
     return out[signal->component];

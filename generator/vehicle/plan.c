@@ -174,7 +174,10 @@ Whole *whole_open(Pool *pool, const Plan *plan, bool open)
                      .open = open,
                      .motion = pool_alloc(pool, (size_t)model->bodies * sizeof(Motion)),
                      .x = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex)),
-                     .xd = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex))};
+                     .xd = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(Ex)),
+                     .z = pool_alloc(pool, ((size_t)model->states + 1) * sizeof(Ex))};
+    for (int i = 0; i < model->states; ++i)
+        whole->z[i] = indexed(whole, ARRAY_y, plan->states + model->state[i].fast);
     motion_base(dag, &whole->motion[BODY_BASE]);
     for (int b = 1; b < model->bodies; ++b)
         body_motion(whole, b);

@@ -288,5 +288,8 @@ void powertrain_formulate(Pool *pool, Linking *l)
 {
     const Powertrain *powertrain = l->whole->model->powertrain;
     drive_block(l, powertrain, &l->wheels->drive);
-    shift_block(whole_new(pool, l->whole->plan), powertrain, &l->wheels->shift);
+    Whole *shift = whole_new(pool, l->whole->plan);
+    for (int i = 0; i < shift->model->states; ++i)
+        shift->z[i] = ex_input(shift->dag, element_at(ARRAY_fast, shift->model->state[i].fast), NULL);
+    shift_block(shift, powertrain, &l->wheels->shift);
 }

@@ -84,6 +84,9 @@ typedef struct Whole {
     Ex turn[3];                            /* angular velocity of the base, base frame */
     Ex gravity[3];                         /* base frame */
     Ex *x, *xd;                            /* [coordinates] */
+    Ex *z;                                 /* [states] the model's own */
+    const Ex *linked;                      /* [signals] where bodies are not known: components of outputs from link[], 0:
+                                            * not there; NULL: bodies are known */
     struct Loads *loads;                   /* while forces are made and after; NULL: not yet */
     const struct Accelerated *accelerated; /* of outputs; NULL: formulas read nothing that follows accelerations */
     bool open;                             /* constant numbers stay inputs, for block_pack to compare */
@@ -207,7 +210,8 @@ typedef struct Wheels {
     WheelClass *class;
     int links;    /* numbers of link[] */
     Block link;   /* link[] from a Whole */
-    Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire, from link, fast, u, p, time */
+    Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire; rate[] of the model's own states; from
+                   * link, fast, u, p, time */
     Block drive;  /* of a powertrain, after the wheels: corrections of rate[] and grip[] of all wheels, and watch[];
                    * from these, link, fast, gear, u, p, time (model/powertrain_numbers.h) */
     Block spins;  /* for proofs: the equations of the driven wheels' spins without solving them: left[], their residual

@@ -366,29 +366,56 @@ static void classes_find(Pool *pool, const Model *model, Wheels *wheels)
 
 /* ---- what moves wheels, and turns them */
 
-/* Add the free coordinates that a formula reads to link[]. */
-static void link_coordinates(Linking *l, const Law *law)
+/* Add a number to link[]; returns it as formulas read it. */
+static Ex link_number(Linking *l, Ex value)
+{
+    const int place = l->wheels->links++;
+    block_store(&l->wheels->link, value, element_at(ARRAY_link, place));
+    return ex_input(l->formulas->dag, element_at(ARRAY_link, place), NULL);
+}
+
+/* A fast state as formulas at fast steps read it. */
+static Ex fast_state(const Linking *l, int index)
+{
+    return ex_input(l->formulas->dag, element_at(ARRAY_fast, index), NULL);
+}
+
+/* Add a component of an output, one that follows from motion alone (read/signals.c). */
+static void link_signal(Linking *l, int index)
+{
+    const Signal *signal = &l->whole->model->signal[index];
+    const bool spin = signal->output.type == OUTPUT_TIRE;
+    l->linked[index] = spin ? fast_state(l, l->whole->model->wheel[signal->output.index].fast + FAST_SPIN)
+                            : link_number(l, whole_signal(l->whole, index));
+}
+
+/* Add what a formula reads to link[]: free coordinates and signals. */
+static void link_names(Linking *l, const Law *law)
 {
     if (!law)
         return;
+    if (law->op == LAW_SIGNAL) {
+        const Law *const named = l->whole->model->signal[law->index].law;
+        if (named)
+            link_names(l, named);
+        else if (!l->linked[law->index])
+            link_signal(l, law->index);
+    }
     if ((law->op == LAW_VALUE || law->op == LAW_RATE) && !l->whole->model->coordinate[law->index].driven) {
         bool rate = law->op == LAW_RATE;
-        int *place = &l->place[rate][law->index];
-        if (!*place) {
-            *place = l->wheels->links++;
-            block_store(&l->wheels->link, (rate ? l->whole->xd : l->whole->x)[law->index],
-                        element_at(ARRAY_link, *place));
+        bool *there = &l->there[rate][law->index];
+        if (!*there)
             (rate ? l->formulas->xd : l->formulas->x)[law->index] =
-                ex_input(l->formulas->dag, element_at(ARRAY_link, *place), NULL);
-        }
+                link_number(l, (rate ? l->whole->xd : l->whole->x)[law->index]);
+        *there = true;
     }
     for (int i = 0; i < 3; ++i)
-        link_coordinates(l, law->arg[i]);
+        link_names(l, law->arg[i]);
 }
 
 Ex fast_law(Linking *l, const Law *law, const Ex *local)
 {
-    link_coordinates(l, law);
+    link_names(l, law);
     return whole_law(l->formulas, law, local);
 }
 
@@ -430,7 +457,11 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
     Linking l = {.whole = whole_new(pool, plan),
                  .formulas = whole_new(pool, plan),
                  .wheels = wheels,
-                 .place = {pool_alloc(pool, coordinates * sizeof(int)), pool_alloc(pool, coordinates * sizeof(int))}};
+                 .there = {pool_alloc(pool, coordinates * sizeof(bool)), pool_alloc(pool, coordinates * sizeof(bool))},
+                 .linked = pool_alloc(pool, ((size_t)model->signals + 1) * sizeof(Ex))};
+    l.formulas->linked = l.linked;
+    for (int i = 0; i < model->states; ++i)
+        l.formulas->z[i] = fast_state(&l, model->state[i].fast);
     wheels->link.dag = l.whole->dag;
     wheels->torque.dag = l.formulas->dag;
     classes_find(pool, model, wheels);
@@ -447,7 +478,12 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
     for (int i = 0; i < model->wheels; ++i)
         if (model->wheel[i].tire >= 0)
             formula_torques(&l, &model->wheel[i], 2 * wheel_rolling(model, i));
+    for (int i = 0; i < model->states; ++i)
+        block_store(&wheels->torque, fast_law(&l, model->state[i].rate, NULL),
+                    element_at(ARRAY_rate, model->state[i].fast));
     if (model->powertrain)
         powertrain_formulate(pool, &l);
+    if (wheels->links == 0)
+        link_number(&l, 0); /* arrays have at least one number */
     return wheels;
 }

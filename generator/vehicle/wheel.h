@@ -46,13 +46,14 @@ Ex tmeasy_radius(Dag *dag, const Tire *tire, Ex loaded);
 
 /* ---- wheel.c: what the powertrain shares ---- */
 
-/* Formulas evaluated at fast steps: the free coordinates that they read are part of link[]. */
+/* Formulas evaluated at fast steps: the free coordinates and components of outputs that they read are part of link[].
+ */
 typedef struct Linking {
     Whole *whole;    /* makes link[] */
     Whole *formulas; /* makes the formulas */
     Wheels *wheels;
-    int *place[2]; /* [coordinates] places of values and of rates in link[]; 0: not there, since a wheel's centre comes
-                    * first */
+    bool *there[2]; /* [coordinates] values, rates that are in link[] */
+    Ex *linked;     /* [signals] as `formulas` reads them; 0: not there yet */
 } Linking;
 
 Ex fast_law(Linking *l, const Law *law, const Ex *local);

@@ -350,6 +350,14 @@ static void set_powertrain(const Instance *self, const Powertrain *powertrain)
         gear_of(self)[i] = powertrain->start_gear;
 }
 
+static void set_states(const Instance *self, const Model *model)
+{
+    const gic_model *code = &context_of(self)->code;
+    double *fast = array_of(self, code->state_offset) + code->slow_count;
+    for (int i = 0; i < model->states; ++i)
+        fast[model->state[i].fast] = model->state[i].initial;
+}
+
 /* State and inputs at their initial values. */
 static void set_initial(Instance *self)
 {
@@ -369,6 +377,7 @@ static void set_initial(Instance *self)
     }
     if (model->powertrain)
         set_powertrain(self, model->powertrain);
+    set_states(self, model);
 }
 
 static int any_setup_with(void *instance, const double *parameter)

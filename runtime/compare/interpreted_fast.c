@@ -20,7 +20,7 @@ int interpreted_link_count(const Model *model)
     int rolling = 0;
     for (int i = 0; i < model->wheels; ++i)
         rolling += model->wheel[i].tire >= 0;
-    return MOTION_NUMBERS * rolling + 2 * model->coordinates;
+    return MOTION_NUMBERS * rolling + model->signals + 2 * model->coordinates;
 }
 
 int interpreted_link(void *instance, double time, const double *slow, double *link)
@@ -43,6 +43,11 @@ int interpreted_link(void *instance, double time, const double *slow, double *li
             memcpy(next, &motion, sizeof motion);
             next += MOTION_NUMBERS;
         }
+    for (int i = 0; i < world->model->signals; ++i) {
+        const Signal *signal = &world->model->signal[i];
+        const bool motion = !signal->law && output_is_motion(signal->output.type, signal->component);
+        *next++ = motion ? world_signal(world, i) : 0;
+    }
     memcpy(next, world->x, sizeof *link * coordinates);
     memcpy(next + coordinates, world->xd, sizeof *link * coordinates);
     if (!gic_finite(found, count))
@@ -80,8 +85,11 @@ int interpreted_fast(void *instance, double time, const double *link, const doub
             memcpy(&world->motion[i], link, sizeof *world->motion);
             link += MOTION_NUMBERS;
         }
+    world->linked = link;
+    world->fast = fast;
     if (status == GIC_OK)
         status = world_wheels_turn(world, fast, result);
+    world->linked = NULL;
     if (status == GIC_OK && !gic_finite(result, count))
         status = GIC_ERROR_RESULT;
     if (status == GIC_OK)

@@ -24,6 +24,8 @@ const gic_signal *descriptor_fast_states(Pool *pool, const Model *model)
     for (int i = 0; i < model->wheels; ++i)
         for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k)
             *next++ = (gic_signal){pool_print(pool, "%s.%s", model->wheel[i].name, part[k].name), part[k].unit};
+    for (int i = 0; i < model->states; ++i)
+        *next++ = (gic_signal){model->state[i].name, model->state[i].unit};
     for (int i = 0; model->powertrain && i < POWERTRAIN_FAST; ++i)
         *next++ = (gic_signal){powertrain_fast_name[i], i == POWERTRAIN_SPEED ? "rad/s" : "s"};
     return signal;

@@ -206,7 +206,10 @@ static int look(const Search *s, Instance *self, double *f, double *A)
     const Linear *linear = s->found->linear;
     const int count = linear->count;
     const int status = linearize(linear, self, f, A);
+    const int own = 2 * linear->places + linear->of_wheels; /* the model's own states are not locked */
     for (int i = 2 * linear->places; i < count && s->found->locked; ++i) {
+        if (i >= own && i < own + s->found->model->states)
+            continue;
         f[i] = 0;
         memset(A + i * count, 0, (size_t)count * sizeof *A);
         for (int row = 0; row < count && !linear->slips[i]; ++row)

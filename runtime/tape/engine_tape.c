@@ -316,7 +316,7 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
         tape->code.link_count = tape->formulation->wheels->links;
         tape->code.link = tape_link_wheels;
         tape->code.fast = tape_fast;
-        tape->code.roll = tape_roll;
+        tape->code.roll = tape->formulation->wheels->count > 0 ? tape_roll : NULL;
     }
     if (model->powertrain)
         tape->code.shift = tape_shift;

@@ -20,7 +20,7 @@ void tape_record_wheels(Pool *pool, TapeEngine *engine, const Element *array)
         engine->drive = tape_record(pool, &wheels->drive, array, WHOLE_COUNT);
         engine->shift = tape_record(pool, &wheels->shift, array, WHOLE_COUNT);
     }
-    engine->wheel = pool_alloc(pool, (size_t)wheels->classes * sizeof *engine->wheel);
+    engine->wheel = pool_alloc(pool, ((size_t)wheels->classes + 1) * sizeof *engine->wheel);
     for (int c = 0; c < wheels->classes; ++c)
         engine->wheel[c] = (TapeWheel){.contact = tape_record(pool, &wheels->class[c].contact, array, WHOLE_COUNT),
                                        .tire = tape_record(pool, &wheels->class[c].tire, array, WHOLE_COUNT),

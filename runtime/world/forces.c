@@ -90,6 +90,7 @@ double world_law(const World *world, const Law *law, const double *local)
         return parameter->tunable ? world->parameter[parameter->index] : parameter->value;
     }
     case LAW_INPUT: return world->input[law->index];
+    case LAW_STATE: return world->fast[world->model->state[law->index].fast];
     case LAW_VALUE: return world->x[law->index];
     case LAW_RATE: return world->xd[law->index];
     case LAW_TIME: return world->time;
@@ -355,6 +356,8 @@ int world_wheels_turn(World *world, const double *fast, double *rate)
         if (status != GIC_OK)
             return status;
     }
+    for (int i = 0; i < model->states; ++i)
+        rate[model->state[i].fast] = world_law(world, model->state[i].rate, NULL);
     if (model->powertrain)
         world_drive(world, fast, rate);
     return GIC_OK;

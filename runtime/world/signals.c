@@ -12,6 +12,9 @@ double world_signal(const World *world, int index)
     const Signal *signal = &world->model->signal[index];
     if (signal->law)
         return world_law(world, signal->law, NULL);
+    const bool spin = signal->output.type == OUTPUT_TIRE && signal->component == TIRE_SPIN;
+    if (world->linked && !spin)
+        return world->linked[index];
     double out[OUTPUT_MAX_COMPONENTS] = {0};
     world_output(world, &signal->output, out);
     return out[signal->component];
@@ -132,6 +135,11 @@ bool world_signals_are_sure(const World *world)
             sure = sure && law_is_sure(world, model->force[f].law[k], &signals);
     for (int f = 0; f < model->forces; ++f)
         sure = sure && (model->force[f].type != FORCE_AERO || sideslip_is_sure(world, &model->force[f]));
+    for (int i = 0; i < model->states; ++i)
+        sure = sure && law_is_sure(world, model->state[i].rate, &signals);
+    for (int i = 0; i < model->wheels; ++i)
+        sure = sure && law_is_sure(world, model->wheel[i].drive, &signals) &&
+               law_is_sure(world, model->wheel[i].brake, &signals);
     for (int i = 0; i < model->outputs; ++i)
         if (model->output[i].type == OUTPUT_SIGNAL)
             sure = sure && law_is_sure(world, model->signal[model->output[i].index].law, &signals);
