@@ -50,8 +50,8 @@ typedef struct LawNames {
     const char *remedy; /* the remedy if another name is used */
     SignalReads *reads; /* where names are noted that may be signals; NULL: such a name is unknown at once */
     const char *barred; /* "formulas of gears", which may read no signals: signals noted are refused; NULL: allowed */
-    const char *early;  /* "states", whose formulas are evaluated before forces are known: signals that follow forces are
-                         * refused; NULL: allowed */
+    const char *early; /* "states", whose formulas are evaluated before forces are known: signals that follow forces are
+                        * refused; NULL: allowed */
 } LawNames;
 
 /* A name in a formula that is none of the names known when the formula is read: one of a signal, which the reader finds

@@ -125,7 +125,8 @@ extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
 extern const Section coordinate_section;
-extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section, state_section;
+extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section,
+    state_section;
 extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
 /* An example of each kind of value, for remedies. */
@@ -236,7 +237,8 @@ bool output_follows_accelerations(OutputType type, int component);
 
 /* ---- states.c ---- */
 
-/* The entries of `states` but their rates, which formulas follow: before any formula but those of parameters is read. */
+/* The entries of `states` but their rates, which formulas follow: before any formula but those of parameters is read.
+ */
 void states_declare(Reader *reader, const Item *map);
 /* Their rates, after the wheels, whose fast states come before theirs. */
 void states_read(Reader *reader, const Item *map);

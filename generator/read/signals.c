@@ -44,7 +44,8 @@ void formula_name_check(const Model *model, const Entry *entry, const char *thin
     for (int i = 0; i < model->states; ++i)
         other = strcmp(entry->name, model->state[i].name) ? other : "state";
     if (other)
-        diag_fail(entry->at, *thing == 's' && thing[1] == 'i' ? "give the signal another name" : "give the state another name",
+        diag_fail(entry->at,
+                  *thing == 's' && thing[1] == 'i' ? "give the signal another name" : "give the state another name",
                   "%s has the name of a%s %s", entry->what, *other == 'i' ? "n" : "", other);
 }
 

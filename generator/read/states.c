@@ -76,7 +76,8 @@ void states_read(Reader *reader, const Item *map)
     for (int i = 0; i < count; ++i) {
         const char *what = pool_print(reader->pool, "rate of %s", entry[i].what);
         const bool read = model->state[i].read; /* by others: its own rate does not count */
-        model->state[i].rate = law_parse(reader->pool, doc_find(entry[i].item, state_key[STATE_RATE].name), what, &names);
+        model->state[i].rate =
+            law_parse(reader->pool, doc_find(entry[i].item, state_key[STATE_RATE].name), what, &names);
         model->state[i].read = read;
         model->state[i].fast = model->fast_states++;
     }

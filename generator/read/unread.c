@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Warnings about entries that nothing reads: tunable parameters, tables, inputs, states and signals (FORMAT.md section 6). */
+ * Warnings about entries that nothing reads: tunable parameters, tables, inputs, states and signals (FORMAT.md section
+ * 6). */
 #include "base/message.h"
 #include "base/pool.h"
 #include "base/table.h"

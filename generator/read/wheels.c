@@ -68,8 +68,7 @@ const Section wheel_section = {wheel_key, ROLL_KEYS, NULL, 0, wheel_form, NULL, 
 static const Law *spin_law(Reader *reader, const Entry *entry, const Value *value, int key)
 {
     static const char *const local[] = {"spin"};
-    LawNames names = {
-        .model = reader->model, .local = local, .locals = 1, .reads = &reader->reads, .early = "wheels"};
+    LawNames names = {.model = reader->model, .local = local, .locals = 1, .reads = &reader->reads, .early = "wheels"};
     if (!value[key].item)
         return NULL;
     return law_parse(reader->pool, value[key].item,

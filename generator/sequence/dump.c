@@ -194,8 +194,11 @@ static void signal_read(Text *out, const Law *law, const Model *model)
 /* A formula as nested lists, operator first; parameters as their values. */
 static void formula(Text *out, const Law *law, const Model *model)
 {
-    static const char *const word[] = {
-        [LAW_INPUT] = "input", [LAW_STATE] = "state", [LAW_VALUE] = "value", [LAW_RATE] = "rate", [LAW_TABLE] = "table"};
+    static const char *const word[] = {[LAW_INPUT] = "input",
+                                       [LAW_STATE] = "state",
+                                       [LAW_VALUE] = "value",
+                                       [LAW_RATE] = "rate",
+                                       [LAW_TABLE] = "table"};
     switch (law->op) {
     case LAW_SIGNAL: signal_read(out, law, model); return;
     case LAW_NUMBER:

@@ -79,15 +79,15 @@ typedef struct Whole {
     const Plan *plan;
     const Model *model;
     Dag *dag;
-    Motion *motion;                        /* [bodies] relative to the base */
-    Ex r[3], e[4], R[9], v[3];             /* base: position, Euler parameters, rotation to the world, world velocity */
-    Ex turn[3];                            /* angular velocity of the base, base frame */
-    Ex gravity[3];                         /* base frame */
-    Ex *x, *xd;                            /* [coordinates] */
-    Ex *z;                                 /* [states] the model's own */
-    const Ex *linked;                      /* [signals] where bodies are not known: components of outputs from link[], 0:
-                                            * not there; NULL: bodies are known */
-    struct Loads *loads;                   /* while forces are made and after; NULL: not yet */
+    Motion *motion;            /* [bodies] relative to the base */
+    Ex r[3], e[4], R[9], v[3]; /* base: position, Euler parameters, rotation to the world, world velocity */
+    Ex turn[3];                /* angular velocity of the base, base frame */
+    Ex gravity[3];             /* base frame */
+    Ex *x, *xd;                /* [coordinates] */
+    Ex *z;                     /* [states] the model's own */
+    const Ex *linked;          /* [signals] where bodies are not known: components of outputs from link[], 0:
+                                * not there; NULL: bodies are known */
+    struct Loads *loads;       /* while forces are made and after; NULL: not yet */
     const struct Accelerated *accelerated; /* of outputs; NULL: formulas read nothing that follows accelerations */
     bool open;                             /* constant numbers stay inputs, for block_pack to compare */
     bool sized;                            /* loads also sum the magnitudes of their terms */

@@ -129,7 +129,8 @@ static void write_header(const Engine *engine, Csv *csv)
     for (int i = engine->standard_count - model->fast_count; i < engine->standard_count; ++i) {
         const gic_signal *state = &engine->standard[i];
         snprintf(name, sizeof name, "%s.rate", state->name);
-        csv_name(csv, name, !strcmp(state->unit, "rad/s") ? "rad/s^2" : strcmp(state->unit, "s") ? "1/s" : "1");
+        snprintf(unit, sizeof unit, "%s/s", state->unit);
+        csv_name(csv, name, !strcmp(state->unit, "rad/s") ? "rad/s^2" : strcmp(state->unit, "s") ? unit : "1");
     }
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k) {

@@ -59,8 +59,7 @@ typedef struct World {
     const double *input, *parameter, *port;
     const gic_road *road;
     int32_t lane;
-    const double
-        *linked, /* [signals] components of outputs where bodies are not known, from links; NULL: they are */
+    const double *linked, /* [signals] components of outputs where bodies are not known, from links; NULL: they are */
         *fast; /* [fast states] of wheels with tires and of the powertrain: TIRES.md, POWERTRAIN.md section 2 */
     const int32_t *gear; /* [POWERTRAIN_DISCRETE] of the powertrain */
 

@@ -313,6 +313,30 @@ static void add_reader(Vehicle *v)
     say(echo, "type: force, coordinate: %s, value: \"0.5 * %s - %.6g * time\"", along, seen->name, size);
 }
 
+/* A filter of what moves, and a force that follows it; perhaps another one behind it. */
+static void add_filter(Vehicle *v)
+{
+    const int coordinate = pick(v, v->section[COORDINATE].count), body = pick(v, v->section[BODY].count);
+    const char *along = v->section[COORDINATE].entry[coordinate].name, *before = along;
+    const double size = nice_size(v, 0.1, 10), lag = nice_size(v, 0.05, 1);
+    Entry *output = add(v, OUTPUT, "read");
+    say(output, "type: %s, body: %s", body == BASE && v->fixed ? "position" : "velocity", body_name(v, body));
+    for (int i = 1 + chance(v, 0.3); i > 0; --i) {
+        Entry *state = add(v, STATE, "lag");
+        say(state, "rate: \"(%s%s - %s) / %.6g", before, i == 1 ? "" : " + time", state->name, lag);
+        if (chance(v, 0.5))
+            say(state, " + %.6g * %s.%c", size, output->name, "xyz"[pick(v, 3)]);
+        if (chance(v, 0.3))
+            say(state, " - tanh(rate(%s))", along);
+        say(state, "\"");
+        if (chance(v, 0.5))
+            say(state, ", initial: %.6g", nice_size(v, -1, 1));
+        before = state->name;
+    }
+    Entry *force = add(v, FORCE, "follower");
+    say(force, "type: force, coordinate: %s, value: \"-%.6g * %s\"", along, size, before);
+}
+
 /* Air on a body, still or in a wind, by numbers or by how the body moves through it; no coefficient jumps where the
  * sideslip does, at motion backward or along z, which nice states have but for rounding. */
 static void add_air(Vehicle *v)
@@ -452,6 +476,8 @@ void build_mechanism(Vehicle *v)
         add_reader(v);
     if (!v->conserves && !v->halves && chance(v, 0.3))
         add_air(v);
+    if (!v->conserves && !v->halves && chance(v, 0.3))
+        add_filter(v);
     for (int i = 0; i < v->section[COORDINATE].count; ++i)
         say(add(v, OUTPUT, "out"), "type: coordinate, coordinate: %s", v->section[COORDINATE].entry[i].name);
     for (int i = v->fixed; i < v->section[BODY].count; ++i) {

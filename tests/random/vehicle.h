@@ -20,6 +20,7 @@ typedef enum Kind {
     POINT,
     INPUT,
     TIRE,
+    STATE,
     DIFFERENTIAL,
     KINDS
 } Kind;

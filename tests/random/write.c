@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const title[KINDS] = {"parameters", "tables",  "bodies", "joints", "coordinates", "forces",
-                                         "wheels",     "outputs", "points", "inputs", "tires",       NULL};
+static const char *const title[KINDS] = {"parameters", "tables", "bodies", "joints", "coordinates", "forces", "wheels",
+                                         "outputs",    "points", "inputs", "tires",  "states",      NULL};
 
 /* The entries of a section in random order; a parameter may need what stands before it. */
 static void shuffle(Vehicle *v, Kind kind, int order[])

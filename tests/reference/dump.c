@@ -368,6 +368,21 @@ static double model_length(const Model *model)
     return cloud_size(&cloud, 1);
 }
 
+static void read_states(Model *model, const Json *json)
+{
+    const Json *states = list_of(json, "states", &model->states);
+    const size_t count = (size_t)model->states;
+    model->state = grab(count, sizeof *model->state);
+    model->state_name = grab(count, sizeof *model->state_name);
+    model->state_rate = grab(count, sizeof *model->state_rate);
+    for (int i = 0; i < model->states; ++i) {
+        const char *name = json_text(states->item[i], "name");
+        model->state_name[i] = strcpy(grab(strlen(name) + 1, 1), name);
+        model->state[i] = json_number(states->item[i], "initial");
+        model->state_rate[i] = formula_read(json_get(states->item[i], "rate"));
+    }
+}
+
 Model *model_parse(const char *text, const char *name)
 {
     Json *json = json_parse(text, name);
@@ -412,6 +427,9 @@ Model *model_parse(const char *text, const char *name)
         read_tire(&model->tire[i], tires->item[i]);
     for (int i = 0; i < model->wheels; ++i)
         read_wheel(&model->wheel[i], wheels->item[i], model);
+    for (int i = 0; i < json->count; ++i)
+        if (!strcmp(json->key[i], "states"))
+            read_states(model, json);
     for (int i = 0; i < json->count; ++i)
         if (!strcmp(json->key[i], "powertrain") && json->item[i]->kind != JSON_NULL)
             model->powertrain = read_powertrain(json->item[i], model);
@@ -464,6 +482,13 @@ void model_free(Model *model)
     for (int i = 0; i < model->inputs; ++i)
         free(model->input_name[i]);
     free(model->input_name);
+    for (int i = 0; i < model->states; ++i) {
+        free(model->state_name[i]);
+        formula_free(model->state_rate[i]);
+    }
+    free(model->state);
+    free(model->state_name);
+    free(model->state_rate);
     free(model->input);
     free(model->table);
     free(model->body);

@@ -116,10 +116,13 @@ typedef struct Model {
     Wheel *wheel;
     Powertrain *powertrain; /* NULL: none */
     Subset *subset;
-    int inputs, tables;
+    int inputs, tables, states;
     int driven_inputs; /* how many belong to driven coordinates: the first ones */
     double *input;     /* values */
     char **input_name;
+    double *state; /* values of its own states */
+    char **state_name;
+    Formula **state_rate;
     Lookup *table;
     double length; /* length scale, m: largest distance between two points at design; 1 when all coincide */
 } Model;

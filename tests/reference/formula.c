@@ -38,7 +38,8 @@ Formula *formula_read(const Json *json)
         formula->source = source_read(json);
         return formula;
     }
-    bool indexed = !strcmp(op, "value") || !strcmp(op, "rate") || !strcmp(op, "input") || !strcmp(op, "table");
+    bool indexed = !strcmp(op, "value") || !strcmp(op, "rate") || !strcmp(op, "input") || !strcmp(op, "state") ||
+                   !strcmp(op, "table");
     int first = 1 + indexed;
     if (json->count < first || json->count - first > 3)
         fail("wrong number of arguments of '%s' in a formula", op);
@@ -130,6 +131,8 @@ quad formula_value(const Formula *formula, const Surroundings *around)
         return around->w_rate[formula->index];
     if (!strcmp(op, "input"))
         return around->input[formula->index];
+    if (!strcmp(op, "state"))
+        return around->state[formula->index];
     if (!strcmp(op, "table"))
         return lookup_at(&around->table[formula->index], x[0]);
     if (!strcmp(op, "time"))

@@ -38,6 +38,7 @@ typedef struct Locals {
 typedef struct Surroundings {
     const quad *w, *w_rate; /* of the coordinates */
     const quad *input;
+    const double *state; /* the model's own */
     const Lookup *table;
     quad time;
     Locals local;

@@ -53,6 +53,8 @@ static void write_head(FILE *out, const Model *model)
             }
     for (int i = 0; i < LINE_RESULTS && model->powertrain; ++i)
         fprintf(out, "%s,scale.%s,", line_column[i], line_column[i]);
+    for (int i = 0; i < model->states; ++i)
+        fprintf(out, "%s.rate,scale.%s.rate,", model->state_name[i], model->state_name[i]);
     for (int i = 0; i < 3; ++i)
         fprintf(out, "energies.%s,scale.energies.%s,", energy_name[i], energy_name[i]);
     for (int i = 0; i < model->subsets; ++i)
@@ -112,6 +114,12 @@ static void write_row(FILE *out, Solver *solver)
         write_numbers(out, &solver->line.value[i], 1);
         write_numbers(out, &solver->line.scale[i], 1);
     }
+    for (int i = 0; i < model->states; ++i) {
+        const quad rate = law_value(model, solver->configuration, model->state_rate[i], (Locals){0}),
+                   size = law_size(model, solver->configuration, model->state_rate[i], (Locals){0});
+        write_numbers(out, &rate, 1);
+        write_numbers(out, &size, 1);
+    }
     for (int i = 0; i < 3; ++i) {
         write_numbers(out, &solver->energy[i], 1);
         write_numbers(out, &solver->energy_scale[i], 1);
@@ -125,7 +133,8 @@ static void write_row(FILE *out, Solver *solver)
 static void write_unreached(FILE *out, const Model *model)
 {
     int cells = (model->free_base ? 8 : 0) + 7 * (model->bodies - (model->free_base ? 0 : 1)) + 3;
-    cells += 2 * model->coordinates + 8 * model->joints + (model->powertrain ? 2 * LINE_RESULTS : 0) + 6;
+    cells +=
+        2 * model->coordinates + 8 * model->joints + (model->powertrain ? 2 * LINE_RESULTS : 0) + 6 + 2 * model->states;
     for (int w = 0; w < model->wheels; ++w)
         for (int i = 0; i < WHEEL_COLUMNS; ++i)
             cells += 2 * wheel_shows(&model->wheel[w], i);

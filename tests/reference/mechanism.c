@@ -375,6 +375,7 @@ static quad of_law(const Model *model, const Configuration *configuration, const
     Surroundings around = {.w = configuration->w,
                            .w_rate = configuration->w_rate,
                            .input = input,
+                           .state = model->state,
                            .table = model->table,
                            .local = local,
                            .model = model,

@@ -88,6 +88,8 @@ void state_read(Model *model, const Table *table, int row, State *state)
     }
     for (int i = model->driven_inputs; i < model->inputs; ++i)
         model->input[i] = (double)optional_cell(table, row, model->input_name[i], model->input[i]);
+    for (int i = 0; i < model->states; ++i)
+        model->state[i] = (double)optional_cell(table, row, model->state_name[i], model->state[i]);
     wheels_read(model, table, row, state);
     if (model->powertrain)
         line_read(model, table, row, &state->line);

@@ -120,6 +120,10 @@ static void find_wheels(Groups *groups, const Model *model, const Table *referen
             }
     for (int i = 0; i < LINE_RESULTS && model->powertrain; ++i)
         add_number(groups, reference, eval, line_column[i], i >= ENGINE_SPEED);
+    for (int i = 0; i < model->states; ++i) {
+        snprintf(name, sizeof name, "%s.rate", model->state_name[i]);
+        add_number(groups, reference, eval, name, false);
+    }
     for (int i = 0; i < 3; ++i) {
         snprintf(name, sizeof name, "energies.%s", energy_name[i]);
         add_number(groups, reference, eval, name, true);
@@ -132,7 +136,7 @@ static Groups groups_find(const Model *model, const Table *reference, const Tabl
     static const char *const base[] = {"a", "alpha"};
     Groups groups = {.group =
                          grab((size_t)(5 + LINE_RESULTS + 2 * (model->coordinates + model->bodies + model->joints) +
-                                       WHEEL_COLUMNS * model->wheels),
+                                       WHEEL_COLUMNS * model->wheels + model->states),
                               sizeof *groups.group)};
     for (int i = 0; i < 2 && model->free_base; ++i) {
         Group *group = add_group(&groups, base[i], "");

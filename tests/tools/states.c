@@ -212,6 +212,8 @@ static void write_wheels(FILE *out, const Model *model, uint64_t *random, int ro
         spin[i] = write_wheel(out, &model->wheel[i], random, motion_of(model, row));
     for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
         fprintf(out, ",%.17g", model->input[i] + uniform(random, 0, 1));
+    for (int i = 0; i < model->states; ++i)
+        fprintf(out, ",%.17g", model->state[i] + uniform(random, -1, 1));
     if (model->powertrain)
         write_powertrain(out, model->powertrain, spin, random, row);
 }
@@ -224,6 +226,8 @@ static void write_wheel_names(FILE *out, const Model *model)
                 fprintf(out, ",%s.%s", model->wheel[i].name, fast_name[k]);
     for (int i = model->driven_inputs; i < model->inputs && model->tires; ++i)
         fprintf(out, ",%s", model->input_name[i]);
+    for (int i = 0; i < model->states; ++i)
+        fprintf(out, ",%s", model->state_name[i]);
     if (model->powertrain)
         fputs(",engine.speed,transmission.age,transmission.gear,transmission.before", out);
 }
