@@ -216,8 +216,7 @@ static void early_visit(Order *order, const SignalRead *read)
                 early_visit(order, &reader->reads.read[i]);
     } else if (!output_is_motion(signal->output.type, signal->component)) {
         diag_fail(order->way[0]->at,
-                  "read positions, velocities, attitude, coordinates and their rates, spins of wheels, or a state that "
-                  "follows it",
+                  "read positions, velocities, attitude, coordinates and their rates or spins of wheels",
                   "formulas of %s are evaluated before forces are known: %s, an output of type %s",
                   order->way[0]->names.early, way_text(order, 0), output_type_name[signal->output.type]);
     }

@@ -64,7 +64,7 @@ static int evaluate(const gic_model *model, void *self, const Table *table, int 
 {
     float *state = array(self, model->state_offset), *input = array(self, model->input_offset);
     int status = model->setup(self);
-    for (int i = 0; i < model->slow_count && status == GIC_OK; ++i)
+    for (int i = 0; i < model->slow_count + model->fast_count && status == GIC_OK; ++i)
         state[i] = (float)table_number(table, row, table_want(table, model->state[i].name));
     for (int i = 0; i < model->input_count && status == GIC_OK; ++i)
         if (table_find(table, model->input[i].name) >= 0)
@@ -102,7 +102,7 @@ int main(int argc, char **argv)
     } else {
         const gic_model *model = load(argv[1], argv[2]);
         void *self = grab(1, model->size);
-        float *rate = grab((size_t)model->slow_count + 1, sizeof *rate);
+        float *rate = grab((size_t)(model->slow_count + model->fast_count) + 1, sizeof *rate);
         float *pose = grab(7 * (size_t)model->body_count, sizeof *pose);
         write_head(model, out);
         for (int row = 0; row < table->rows; ++row)
