@@ -99,9 +99,11 @@ static void identity(void *context, Text *out, int indent)
                sequence->unknowns / 7, model->free_base ? "free" : "fixed", model->body[BODY_BASE].name, model->joints,
                model->coordinates, model->forces, model->wheels, sequence->unknowns, sequence->equations,
                sequence->dof);
-    if (model->fast_states)
+    if (model->fast_states > model->states)
         text_print(out, "<p>Wheels with tires%s have %d fast states.</p>\n",
-                   model->powertrain ? " and the powertrain" : "", model->fast_states);
+                   model->powertrain ? " and the powertrain" : "", model->fast_states - model->states);
+    if (model->states)
+        text_print(out, "<p>It has %d state%s of its own.</p>\n", model->states, model->states > 1 ? "s" : "");
     text_print(out, "<p>Equations of motion in the %s form. Code of gicgen %s; model hash <code>%s</code>.</p>\n",
                solve_name[r->formulation->plan->solve], GICGEN_VERSION, r->formulation->hash);
 }
@@ -231,8 +233,13 @@ static void operations(void *context, Text *out, int indent)
     count_row(out, "all together", "forces and equations of motion", 1, f->dynamics);
     const Wheels *wheels = r->formulation->wheels;
     if (wheels) {
-        count_row(out, "all together", "motion of the wheels", 1, f->link);
-        count_row(out, "all together", "drives and brakes", 1, f->torque);
+        const bool rolls = wheels->count > 0, own = r->model->states > 0;
+        count_row(out, "all together", rolls ? "motion of the wheels" : "what rates of own states read", 1, f->link);
+        count_row(out, "all together",
+                  !own    ? "drives and brakes"
+                  : rolls ? "drives, brakes, rates of own states"
+                          : "rates of own states",
+                  1, f->torque);
         for (int c = 0; c < wheels->classes; ++c)
             count_row(out, wheels->class[c].name, "wheel with its tire", wheels->class[c].members, f->wheel[c]);
         if (r->model->powertrain)
@@ -288,7 +295,7 @@ static void totals(void *context, Text *out, int indent)
     total_row(out, "RK4 step or one of the first two AB3 steps, usual", usual, STAGES_OF_RK4);
     total_row(out, "RK4 step or one of the first two AB3 steps, worst case", worst, STAGES_OF_RK4);
     if (r->formulation->wheels)
-        total_row(out, "fast step: all wheels", f->fast, 1);
+        total_row(out, r->formulation->wheels->count > 0 ? "fast step: all wheels" : "fast step", f->fast, 1);
     total_row(out, "outputs, usual", asked, 1);
     table_close(out);
 }

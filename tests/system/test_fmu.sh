@@ -66,19 +66,23 @@ as_run() {
     python3 "$here/compare.py" "$2" "$work/unit.csv" "$1" $3 >"$work/out" 2>&1
 }
 
-# every_model MODEL SCENE DURATION OUTPUT_STEP [INPUT=VALUE ...]
+# every_model MODEL SCENE DURATION OUTPUT_STEP [INPUT=VALUE ...]: of models/, or of tests/data/laws
 every_model() {
     model=$1
+    file=$root/models/$1.veh
+    drawn=$root/models/scenes/$2.scene
+    [ -e "$file" ] || file=$root/tests/data/laws/$1.veh
+    [ -e "$drawn" ] || drawn=$root/tests/data/laws/$2.scene
     scene=$work/$1.scene
     duration=$3
     output=$4
-    python3 "$here/scene.py" "$root/models/scenes/$2.scene" "$duration" "$output" ${5:+"$5"} ${6:+"$6"} >"$scene" &&
-        "$gicrun" -q --general "$root/models/$model.veh" "$scene" -o "$work/steps.csv" 2>"$work/err" &&
-        "$gicrun" -q --general --integrator adams --tolerance 1e-11 "$root/models/$model.veh" "$scene" \
+    python3 "$here/scene.py" "$drawn" "$duration" "$output" ${5:+"$5"} ${6:+"$6"} >"$scene" &&
+        "$gicrun" -q --general "$file" "$scene" -o "$work/steps.csv" 2>"$work/err" &&
+        "$gicrun" -q --general --integrator adams --tolerance 1e-11 "$file" "$scene" \
             -o "$work/variable.csv" 2>>"$work/err"
     verdict $? "$model: gicrun"
     for version in 2 3; do
-        unit "$root/models/$model.veh" "$scene"
+        unit "$file" "$scene"
         verdict $? "$model: FMI $version.0"
         check "$model: its description" described
         [ $version = 2 ] || check "$model: sources and terminals" parts
@@ -95,6 +99,7 @@ every_model() {
 }
 
 every_model andrews andrews 0.005 0.0001
+every_model states states 1 0.02
 every_model pendulum pendulum 2 0.01
 every_model quarter_car quarter_car 2 0.01
 every_model trailing_arm trailing_arm 2 0.01

@@ -180,6 +180,25 @@ done
 column pedal way.csv | tail -n 1 | awk '{ exit !($1 > 0.99 && $1 < 1) }'
 verdict $? 'the pedal arrives'
 
+# ---- an engine held at a speed by a controller with an integral part
+sed 's/^    throttle: .*/    throttle: "0.2 * (11 - ahead.x) + lasting"/' parts/hmmwv_powertrain.veh >held && mv held parts/hmmwv_powertrain.veh
+cat >cruise.veh <<'END'
+gicgen: 1
+model: cruise
+include: hmmwv_vehicle.veh
+states: {lasting: {initial: 0.1, rate: "0.05 * (11 - ahead.x)"}}
+outputs:
+  ahead: {type: velocity, body: chassis, in: chassis}
+  drive: {type: powertrain}
+END
+sed 's/^duration: .*/duration: 3/; /^inputs/,$d' "$root/models/scenes/straight.scene" >cruise.scene
+"$gicrun" -q --engine gic cruise.veh cruise.scene -o gic.csv 2>err
+for way in '' --general '--engine tape'; do
+    # shellcheck disable=SC2086  # options
+    "$gicrun" -q $way cruise.veh cruise.scene -o way.csv 2>err && off=$(apart way.csv gic.csv)
+    check "a controller of the engine, $way: ${off:-no run}" within "${off:-1}" 1e-8
+done
+
 # ---- entries that nothing reads, and mistakes
 # said PLACE MESSAGE: gicgen warns
 cat >idle.veh <<'END'
