@@ -365,6 +365,7 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     if (status != GIC_OK)
         return status;
     self->road = scene->road;
+    self->locate = scene->locate;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     if (scene->driver)
