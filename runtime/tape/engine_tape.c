@@ -264,7 +264,7 @@ static int contacts(void *instance, double time, const double *y, double *press)
     if (status == GIC_OK && engine->wheel)
         status = tape_turn_wheels(self, time, y, e, engine->result);
     if (status == GIC_OK)
-        tape_whole(self, engine->contacts, time, y, e, NULL, NULL, press);
+        status = tape_whole(self, engine->contacts, time, y, e, NULL, NULL, press);
     if (status == GIC_OK && !gic_finite(press, engine->code.contact_count))
         status = GIC_ERROR_RESULT;
     return self->head.status = status;
