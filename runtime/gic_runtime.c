@@ -394,8 +394,8 @@ static int change_gears(const gic_model *model, void *self)
     return GIC_OK;
 }
 
-/* ---- contacts: the same for what head.locate asks for. Rows of the scratch array: 0 the rate where a piece begins, 2 the
- * state there, 3 and 4 state and rate at the step's end, 3 to 6 work. */
+/* ---- contacts: the same for what head.locate asks for. Rows of the scratch array: 0 the rate where a piece begins, 2
+ * the state there, 3 and 4 state and rate at the step's end, 3 to 6 work. */
 
 /* How near to them contacts are; above: those with a load, a bit each. */
 typedef struct Touch {
@@ -430,8 +430,8 @@ static int touch_between(const gic_model *model, void *self, const Rest *rest, g
 /* Shares of a step that are the same time: what a force that begins or ends loses in it is 1e-12 of a step's error. */
 #define SAME_TIME GIC_R(1e-6)
 
-/* The share of the rest at which contact i changes, which has other signs at its ends a and b. *slope: of its number over
- * the share there. Every third look halves what is left. */
+/* The share of the rest at which contact i changes, which has other signs at its ends a and b. *slope: of its number
+ * over the share there. Every third look halves what is left. */
 static int locate_contact(const gic_model *model, void *self, const Rest *rest, int32_t i, const Touch *a,
                           const Touch *b, gic_real *share, gic_real *slope)
 {
@@ -458,8 +458,8 @@ static int locate_contact(const gic_model *model, void *self, const Rest *rest, 
     return status;
 }
 
-/* Move the instance to the first change of a contact in the rest, at whose ends are *touch and b: to *share of it, where
- * *touch has what is above, the contacts that change included. */
+/* Move the instance to the first change of a contact in the rest, at whose ends are *touch and b: to *share of it,
+ * where *touch has what is above, the contacts that change included. */
 static int go_to_contact(const gic_model *model, void *self, const Rest *rest, const Touch *b, gic_real *share,
                          Touch *touch)
 {

@@ -678,8 +678,9 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {NULL, NULL}};
 
 const Insertions code_points = {(const char *const[]){"model.c.in", "independent.c.in", "reactions.c.in", "bounds.c.in",
-                                                      "base_free.c.in", "base_fixed.c.in", "contacts.c.in", "self_test.c.in",
-                                                      "self_test_constraints.c.in", "about.c.in", NULL},
+                                                      "base_free.c.in", "base_fixed.c.in", "contacts.c.in",
+                                                      "self_test.c.in", "self_test_constraints.c.in", "about.c.in",
+                                                      NULL},
                                 code_point, NULL};
 
 /* ---- both files -------------------------------------------------------------------------------------------------- */

@@ -516,7 +516,8 @@ static void drop_inertia(Narrower *n)
 {
     const Formulation *f = n->out;
     const Sequence *sequence = n->plan->sequence;
-    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->check, f->wrenches, f->contacts};
+    const Block *const block[] = {f->dynamics, f->outputs, f->poses,    f->inverse,
+                                  f->energy,   f->check,   f->wrenches, f->contacts};
     bool *read = pool_alloc(n->pool, (size_t)n->plan->inertia_size + 1);
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i)
         if (block[i])
@@ -540,8 +541,9 @@ static void drop_inertia(Narrower *n)
 static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
-    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,     f->check,
-                                  f->wrenches, &wheels->link, &wheels->torque, &wheels->drive, &wheels->shift, f->contacts};
+    const Block *const block[] = {f->dynamics,     f->outputs,     f->poses,       f->inverse,
+                                  f->energy,       f->check,       f->wrenches,    &wheels->link,
+                                  &wheels->torque, &wheels->drive, &wheels->shift, f->contacts};
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i) {
         if (!block[i] || !block[i]->dag)
             continue;

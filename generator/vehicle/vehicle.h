@@ -149,10 +149,10 @@ typedef struct Loads {
     Ex (*wrench)[6]; /* [bodies] moment about the reference point, force; base frame */
     Ex *own;         /* [coordinates] of elements along a coordinate, which are not among the wrenches */
     Ex moment[3], force[3];
-    Ex *along;                           /* [coordinates] of all elements */
-    Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
-    Ex (*wheel)[4];                      /* [wheels] fz, deflection, deflection rate, road height */
-    Ex *press;                           /* [contacts] of all wheels, then of ends of stops: GRIP_PRESS */
+    Ex *along;      /* [coordinates] of all elements */
+    Ex *element;    /* [forces] Q or T of FORMAT.md section 7 */
+    Ex (*wheel)[4]; /* [wheels] fz, deflection, deflection rate, road height */
+    Ex *press;      /* [contacts] of all wheels, then of ends of stops: GRIP_PRESS */
     int presses;
     Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
     Ex terms;      /* sum of the magnitudes of the terms of the latest element; only if sizes are asked for */

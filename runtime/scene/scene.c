@@ -473,7 +473,8 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
     const Item *locate = doc_find(root, "locate");
     scene->locate = locate && doc_bool(locate, "locate") && scene->method < METHOD_ADAMS;
     if (locate && scene->method >= METHOD_ADAMS && !replaced)
-        diag_fail(locate->at, "write `integrator: ab3` and a step", "only constant steps are made in parts at contacts");
+        diag_fail(locate->at, "write `integrator: ab3` and a step",
+                  "only constant steps are made in parts at contacts");
     if (sleep && scene->method >= METHOD_ADAMS && !replaced)
         diag_fail(sleep->at, "write `integrator: ab3` and a step", "only constant steps can be slept through");
     if (sleep && scene->method < METHOD_ADAMS)
