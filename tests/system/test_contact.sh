@@ -107,11 +107,11 @@ for way in 'rk4 0.0002' 'ab3 0.000005'; do
         : >results
         "$gicrun" -q --engine $engine hop.veh now.scene -o results 2>err
         check "$way, $engine" follows results 1e-10
-        mv results $way.$engine
+        mv results "$way.$engine"
     done
-    check "$way: the same digits" cmp $way.tcc $way.tape
+    check "$way: the same digits" cmp "$way.tcc" "$way.tape"
     "$gicrun" -q --engine tcc hop.veh now.scene -o results 2>err
-    check "$way: the same again" cmp $way.tcc results
+    check "$way: the same again" cmp "$way.tcc" results
 done
 
 # The same on a tire that does not turn, at one rate and at two
