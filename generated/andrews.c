@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xdd6e4b99
+#if ANDREWS_H != 0x308844e3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -4007,4 +4007,6 @@ const gic_model andrews_model = {
     NULL,
     NULL,
     andrews_any_check,
+    0,
+    NULL,
 };

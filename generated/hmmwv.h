@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  580       694       0      0         7
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0xccbef019
+#define HMMWV_H 0x0c3c1633
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
-#error "hmmwv.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
+#error "hmmwv.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -91,7 +91,8 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV_ABI = 7,
+    HMMWV_CONTACTS = 4,
+    HMMWV_ABI = 8,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_SLOW = 23,

@@ -80,7 +80,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x82be9b55
+#if HMMWV14_H != 0x740abd0d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -9846,6 +9846,194 @@ GIC_COLD int hmmwv14_self_test(hmmwv14 *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int hmmwv14_press(const hmmwv14 *self, gic_real time, const gic_real *y, const gic_real *e, gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        const gic_real t1 = e[2] + e[2];
+        const gic_real t2 = e[3] * t1;
+        const gic_real t3 = e[1] + e[1];
+        const gic_real t4 = e[0] * t3;
+        const gic_real t5 = t2 - t4;
+        /* wheel tire_f_l */
+        const gic_real t6 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_YX] * R(-0.004825999999999997));
+        const gic_real t7 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_XX] * R(-0.004825999999999997));
+        const gic_real t8 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Y] + t6;
+        const gic_real t9 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_X] + t7;
+        const gic_real t10 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t6 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t7) +
+            (y[HMMWV14_STATE_OMEGA_X] * t8 - y[HMMWV14_STATE_OMEGA_Y] * t9);
+        const gic_real t11 = e[1] * t3;
+        const gic_real t12 = e[3] + e[3];
+        const gic_real t13 = e[3] * t12;
+        const gic_real t14 = R(1.0) - (t11 + t13);
+        const gic_real t15 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_A_ZX] * R(-0.004825999999999997));
+        const gic_real t16 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_C_Z] + t15;
+        const gic_real t17 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t7 - m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_X] * t15) +
+            (y[HMMWV14_STATE_OMEGA_Z] * t9 - y[HMMWV14_STATE_OMEGA_X] * t16);
+        const gic_real t18 = e[2] * t3;
+        const gic_real t19 = e[0] * t12;
+        const gic_real t20 = t18 + t19;
+        const gic_real t21 = m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Y] * t15 -
+            m[HMMWV14_MOTION_WHEEL_F_L + HMMWV14_OMEGA_Z] * t6 + (y[HMMWV14_STATE_OMEGA_Y] * t16 -
+            y[HMMWV14_STATE_OMEGA_Z] * t8);
+        const gic_real t22 = y[HMMWV14_STATE_V_Y] + (t5 * t10 + (t14 * t17 + t20 * t21));
+        const gic_real t23 = e[1] * t12;
+        const gic_real t24 = e[0] * t1;
+        const gic_real t25 = t23 + t24;
+        const gic_real t26 = t18 - t19;
+        const gic_real t27 = e[2] * t1;
+        const gic_real t28 = R(1.0) - (t27 + t13);
+        const gic_real t29 = y[HMMWV14_STATE_R_X] + (t25 * t16 + (t26 * t8 + t28 * t9));
+        const gic_real t30 = y[HMMWV14_STATE_R_Y] + (t5 * t16 + (t14 * t8 + t20 * t9));
+        gic_real road31[3];
+        if (!hmmwv14_road_height(self, time, t29, t30, road31))
+            return GIC_ERROR_ROAD;
+        const gic_real t32 = y[HMMWV14_STATE_V_X] + (t25 * t10 + (t26 * t17 + t28 * t21));
+        const gic_real t33 = R(1.0) - (t11 + t27);
+        const gic_real t34 = t2 + t4;
+        const gic_real t35 = t23 - t24;
+        const gic_real t36 = y[HMMWV14_STATE_V_Z] + (t33 * t10 + (t34 * t17 + t35 * t21));
+        const gic_real t37 = t22 * road31[2] + t32 * road31[1] - t36;
+        const gic_real t38 = y[HMMWV14_STATE_R_Z] + (t33 * t16 + (t34 * t8 + t35 * t9));
+        const gic_real t39 = road31[0] + R(0.4699) - t38;
+        const gic_real t40 = GIC_MIN(GIC_MAX(t39 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t41 = t37 * ((R(3.0) - (t40 + t40)) * (t40 * t40) * R(500.0));
+        /* wheel tire_f_r */
+        const gic_real t42 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_XX] * R(-0.004825999999999997));
+        const gic_real t44 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Y] + t42;
+        const gic_real t45 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_X] + t43;
+        const gic_real t46 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] * t42 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] *
+            t43) + (y[HMMWV14_STATE_OMEGA_X] * t44 - y[HMMWV14_STATE_OMEGA_Y] * t45);
+        const gic_real t47 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_A_ZX] * R(-0.004825999999999997));
+        const gic_real t48 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_C_Z] + t47;
+        const gic_real t49 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t43 - m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_X] *
+            t47) + (y[HMMWV14_STATE_OMEGA_Z] * t45 - y[HMMWV14_STATE_OMEGA_X] * t48);
+        const gic_real t50 = m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Y] * t47 -
+            m[HMMWV14_MOTION_WHEEL_F_R + HMMWV14_OMEGA_Z] * t42 + (y[HMMWV14_STATE_OMEGA_Y] * t48 -
+            y[HMMWV14_STATE_OMEGA_Z] * t44);
+        const gic_real t51 = y[HMMWV14_STATE_V_Y] + (t5 * t46 + (t14 * t49 + t20 * t50));
+        const gic_real t52 = y[HMMWV14_STATE_R_X] + (t25 * t48 + (t26 * t44 + t28 * t45));
+        const gic_real t53 = y[HMMWV14_STATE_R_Y] + (t5 * t48 + (t14 * t44 + t20 * t45));
+        gic_real road54[3];
+        if (!hmmwv14_road_height(self, time, t52, t53, road54))
+            return GIC_ERROR_ROAD;
+        const gic_real t55 = y[HMMWV14_STATE_V_X] + (t25 * t46 + (t26 * t49 + t28 * t50));
+        const gic_real t56 = y[HMMWV14_STATE_V_Z] + (t33 * t46 + (t34 * t49 + t35 * t50));
+        const gic_real t57 = t51 * road54[2] + t55 * road54[1] - t56;
+        const gic_real t58 = y[HMMWV14_STATE_R_Z] + (t33 * t48 + (t34 * t44 + t35 * t45));
+        const gic_real t59 = R(0.4699) + road54[0] - t58;
+        const gic_real t60 = GIC_MIN(GIC_MAX(R(100.0) * t59, R(0.0)), R(1.0));
+        const gic_real t61 = t57 * (R(500.0) * ((R(3.0) - (t60 + t60)) * (t60 * t60)));
+        /* wheel tire_r_l */
+        const gic_real t62 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_YY] * R(0.12319000000000002);
+        const gic_real t63 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_XY] * R(0.12319000000000002);
+        const gic_real t64 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Y] + t62;
+        const gic_real t65 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_X] + t63;
+        const gic_real t66 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] * t62 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] *
+            t63) + (y[HMMWV14_STATE_OMEGA_X] * t64 - y[HMMWV14_STATE_OMEGA_Y] * t65);
+        const gic_real t67 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_A_ZY] * R(0.12319000000000002);
+        const gic_real t68 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_C_Z] + t67;
+        const gic_real t69 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t63 - m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_X] *
+            t67) + (y[HMMWV14_STATE_OMEGA_Z] * t65 - y[HMMWV14_STATE_OMEGA_X] * t68);
+        const gic_real t70 = m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Y] * t67 -
+            m[HMMWV14_MOTION_WHEEL_R_L + HMMWV14_OMEGA_Z] * t62 + (y[HMMWV14_STATE_OMEGA_Y] * t68 -
+            y[HMMWV14_STATE_OMEGA_Z] * t64);
+        const gic_real t71 = y[HMMWV14_STATE_V_Y] + (t5 * t66 + (t14 * t69 + t20 * t70));
+        const gic_real t72 = y[HMMWV14_STATE_R_X] + (t25 * t68 + (t26 * t64 + t28 * t65));
+        const gic_real t73 = y[HMMWV14_STATE_R_Y] + (t5 * t68 + (t14 * t64 + t20 * t65));
+        gic_real road74[3];
+        if (!hmmwv14_road_height(self, time, t72, t73, road74))
+            return GIC_ERROR_ROAD;
+        const gic_real t75 = y[HMMWV14_STATE_V_X] + (t25 * t66 + (t26 * t69 + t28 * t70));
+        const gic_real t76 = y[HMMWV14_STATE_V_Z] + (t33 * t66 + (t34 * t69 + t35 * t70));
+        const gic_real t77 = t71 * road74[2] + t75 * road74[1] - t76;
+        const gic_real t78 = y[HMMWV14_STATE_R_Z] + (t33 * t68 + (t34 * t64 + t35 * t65));
+        const gic_real t79 = R(0.4699) + road74[0] - t78;
+        const gic_real t80 = GIC_MIN(GIC_MAX(R(100.0) * t79, R(0.0)), R(1.0));
+        const gic_real t81 = t77 * (R(500.0) * ((R(3.0) - (t80 + t80)) * (t80 * t80)));
+        /* wheel tire_r_r */
+        const gic_real t82 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_YY] * R(-0.12319000000000002);
+        const gic_real t83 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_XY] * R(-0.12319000000000002);
+        const gic_real t84 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Y] + t82;
+        const gic_real t85 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_X] + t83;
+        const gic_real t86 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Z] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] * t82 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] *
+            t83) + (y[HMMWV14_STATE_OMEGA_X] * t84 - y[HMMWV14_STATE_OMEGA_Y] * t85);
+        const gic_real t87 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_A_ZY] * R(-0.12319000000000002);
+        const gic_real t88 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_C_Z] + t87;
+        const gic_real t89 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_VELOCITY_Y] +
+            (m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t83 - m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_X] *
+            t87) + (y[HMMWV14_STATE_OMEGA_Z] * t85 - y[HMMWV14_STATE_OMEGA_X] * t88);
+        const gic_real t90 = m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Y] * t87 -
+            m[HMMWV14_MOTION_WHEEL_R_R + HMMWV14_OMEGA_Z] * t82 + (y[HMMWV14_STATE_OMEGA_Y] * t88 -
+            y[HMMWV14_STATE_OMEGA_Z] * t84);
+        const gic_real t91 = y[HMMWV14_STATE_V_Y] + (t5 * t86 + (t14 * t89 + t20 * t90));
+        const gic_real t92 = y[HMMWV14_STATE_R_X] + (t25 * t88 + (t26 * t84 + t28 * t85));
+        const gic_real t93 = y[HMMWV14_STATE_R_Y] + (t5 * t88 + (t14 * t84 + t20 * t85));
+        gic_real road94[3];
+        if (!hmmwv14_road_height(self, time, t92, t93, road94))
+            return GIC_ERROR_ROAD;
+        const gic_real t95 = y[HMMWV14_STATE_V_X] + (t25 * t86 + (t26 * t89 + t28 * t90));
+        const gic_real t96 = y[HMMWV14_STATE_V_Z] + (t33 * t86 + (t34 * t89 + t35 * t90));
+        const gic_real t97 = t91 * road94[2] + t95 * road94[1] - t96;
+        const gic_real t98 = y[HMMWV14_STATE_R_Z] + (t33 * t88 + (t34 * t84 + t35 * t85));
+        const gic_real t99 = R(0.4699) + road94[0] - t98;
+        const gic_real t100 = GIC_MIN(GIC_MAX(R(100.0) * t99, R(0.0)), R(1.0));
+        const gic_real t101 = t97 * (R(500.0) * ((R(3.0) - (t100 + t100)) * (t100 * t100)));
+        const gic_real t102 = t41 + t39 * R(283000.0);
+        const gic_real t103 = t61 + R(283000.0) * t59;
+        const gic_real t104 = t81 + R(283000.0) * t79;
+        const gic_real t105 = t101 + R(283000.0) * t99;
+        press[0] = t102;
+        press[1] = t103;
+        press[2] = t104;
+        press[3] = t105;
+    }
+    return GIC_OK;
+}
+
+static int hmmwv14_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    hmmwv14 *const self = (hmmwv14 *)instance;
+    gic_real e[4], rate[HMMWV14_STATE_ROOM];
+    int status = hmmwv14_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = hmmwv14_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, HMMWV14_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv14_any_setup(void *self)
@@ -9961,4 +10149,6 @@ const gic_model hmmwv14_model = {
     NULL,
     NULL,
     hmmwv14_any_check,
+    HMMWV14_CONTACTS,
+    hmmwv14_any_contacts,
 };

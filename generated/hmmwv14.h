@@ -79,12 +79,12 @@
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x82be9b55
+#define HMMWV14_H 0x740abd0d
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
-#error "hmmwv14.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
+#error "hmmwv14.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -93,7 +93,8 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    HMMWV14_ABI = 7,
+    HMMWV14_CONTACTS = 4,
+    HMMWV14_ABI = 8,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_SLOW = 23,

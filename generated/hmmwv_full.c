@@ -78,7 +78,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0xb4b07d9f
+#if HMMWV_FULL_H != 0x81b10091
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7644,6 +7644,214 @@ GIC_COLD int hmmwv_full_self_test(hmmwv_full *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int hmmwv_full_press(const hmmwv_full *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        const gic_real t1 = e[2] + e[2];
+        const gic_real t2 = e[3] * t1;
+        const gic_real t3 = e[1] + e[1];
+        const gic_real t4 = e[0] * t3;
+        const gic_real t5 = t2 - t4;
+        /* wheel tire_f_l */
+        const gic_real t6 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_YY] * R(0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_YX] * R(-0.004825999999999997));
+        const gic_real t7 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_XY] * R(0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_XX] * R(-0.004825999999999997));
+        const gic_real t8 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_C_Y] + t6;
+        const gic_real t9 = R(1.653405) + t7;
+        const gic_real t10 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_VELOCITY_Z] +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_X] * t6 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_Y] * t7) + (y[HMMWV_FULL_STATE_OMEGA_X] * t8 -
+            y[HMMWV_FULL_STATE_OMEGA_Y] * t9);
+        const gic_real t11 = e[1] * t3;
+        const gic_real t12 = e[3] + e[3];
+        const gic_real t13 = e[3] * t12;
+        const gic_real t14 = R(1.0) - (t11 + t13);
+        const gic_real t15 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_ZY] * R(0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_A_ZX] * R(-0.004825999999999997));
+        const gic_real t16 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_C_Z] + t15;
+        const gic_real t17 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_VELOCITY_Y] +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_Z] * t7 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_X] * t15) + (y[HMMWV_FULL_STATE_OMEGA_Z] * t9 -
+            y[HMMWV_FULL_STATE_OMEGA_X] * t16);
+        const gic_real t18 = e[2] * t3;
+        const gic_real t19 = e[0] * t12;
+        const gic_real t20 = t18 + t19;
+        const gic_real t21 = m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_Y] * t15 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_L + HMMWV_FULL_OMEGA_Z] * t6 + (y[HMMWV_FULL_STATE_OMEGA_Y] * t16 -
+            y[HMMWV_FULL_STATE_OMEGA_Z] * t8);
+        const gic_real t22 = y[HMMWV_FULL_STATE_V_Y] + (t5 * t10 + (t14 * t17 + t20 * t21));
+        const gic_real t23 = e[1] * t12;
+        const gic_real t24 = e[0] * t1;
+        const gic_real t25 = t23 + t24;
+        const gic_real t26 = t18 - t19;
+        const gic_real t27 = e[2] * t1;
+        const gic_real t28 = R(1.0) - (t27 + t13);
+        const gic_real t29 = y[HMMWV_FULL_STATE_R_X] + (t25 * t16 + (t26 * t8 + t28 * t9));
+        const gic_real t30 = y[HMMWV_FULL_STATE_R_Y] + (t5 * t16 + (t14 * t8 + t20 * t9));
+        gic_real road31[3];
+        if (!hmmwv_full_road_height(self, time, t29, t30, road31))
+            return GIC_ERROR_ROAD;
+        const gic_real t32 = y[HMMWV_FULL_STATE_V_X] + (t25 * t10 + (t26 * t17 + t28 * t21));
+        const gic_real t33 = R(1.0) - (t11 + t27);
+        const gic_real t34 = t2 + t4;
+        const gic_real t35 = t23 - t24;
+        const gic_real t36 = y[HMMWV_FULL_STATE_V_Z] + (t33 * t10 + (t34 * t17 + t35 * t21));
+        const gic_real t37 = t22 * road31[2] + t32 * road31[1] - t36;
+        const gic_real t38 = y[HMMWV_FULL_STATE_R_Z] + (t33 * t16 + (t34 * t8 + t35 * t9));
+        const gic_real t39 = road31[0] + R(0.4699) - t38;
+        const gic_real t40 = GIC_MIN(GIC_MAX(R(100.0) * t39, R(0.0)), R(1.0));
+        const gic_real t41 = t37 * ((R(3.0) - (t40 + t40)) * (t40 * t40) * R(500.0));
+        /* wheel tire_f_r */
+        const gic_real t42 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_YZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_YY] * R(-0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_XZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_XY] * R(-0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_XX] * R(-0.004825999999999997));
+        const gic_real t44 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_C_Y] + t42;
+        const gic_real t45 = R(1.653405) + t43;
+        const gic_real t46 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_VELOCITY_Z] +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_X] * t42 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_Y] * t43) + (y[HMMWV_FULL_STATE_OMEGA_X] * t44 -
+            y[HMMWV_FULL_STATE_OMEGA_Y] * t45);
+        const gic_real t47 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_ZZ] * R(0.09182100000000004) +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_ZY] * R(-0.12319000000000002) +
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_A_ZX] * R(-0.004825999999999997));
+        const gic_real t48 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_C_Z] + t47;
+        const gic_real t49 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_VELOCITY_Y] +
+            (m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_Z] * t43 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_X] * t47) + (y[HMMWV_FULL_STATE_OMEGA_Z] * t45 -
+            y[HMMWV_FULL_STATE_OMEGA_X] * t48);
+        const gic_real t50 = m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_Y] * t47 -
+            m[HMMWV_FULL_MOTION_WHEEL_F_R + HMMWV_FULL_OMEGA_Z] * t42 + (y[HMMWV_FULL_STATE_OMEGA_Y] * t48 -
+            y[HMMWV_FULL_STATE_OMEGA_Z] * t44);
+        const gic_real t51 = y[HMMWV_FULL_STATE_V_Y] + (t5 * t46 + (t14 * t49 + t20 * t50));
+        const gic_real t52 = y[HMMWV_FULL_STATE_R_X] + (t25 * t48 + (t26 * t44 + t28 * t45));
+        const gic_real t53 = y[HMMWV_FULL_STATE_R_Y] + (t5 * t48 + (t14 * t44 + t20 * t45));
+        gic_real road54[3];
+        if (!hmmwv_full_road_height(self, time, t52, t53, road54))
+            return GIC_ERROR_ROAD;
+        const gic_real t55 = y[HMMWV_FULL_STATE_V_X] + (t25 * t46 + (t26 * t49 + t28 * t50));
+        const gic_real t56 = y[HMMWV_FULL_STATE_V_Z] + (t33 * t46 + (t34 * t49 + t35 * t50));
+        const gic_real t57 = t51 * road54[2] + t55 * road54[1] - t56;
+        const gic_real t58 = y[HMMWV_FULL_STATE_R_Z] + (t33 * t48 + (t34 * t44 + t35 * t45));
+        const gic_real t59 = R(0.4699) + road54[0] - t58;
+        const gic_real t60 = GIC_MIN(GIC_MAX(R(100.0) * t59, R(0.0)), R(1.0));
+        const gic_real t61 = t57 * (R(500.0) * ((R(3.0) - (t60 + t60)) * (t60 * t60)));
+        /* wheel tire_r_l */
+        const gic_real t62 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_A_YY] * R(0.12319000000000002);
+        const gic_real t63 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_C_Y] + t62;
+        const gic_real t64 = R(-1.653405) * y[HMMWV_FULL_STATE_OMEGA_Y];
+        const gic_real t65 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_VELOCITY_Z] +
+            m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_OMEGA_X] * t62 + (y[HMMWV_FULL_STATE_OMEGA_X] * t63 - t64);
+        const gic_real t66 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_A_ZY] * R(0.12319000000000002);
+        const gic_real t67 = R(-1.653405) * y[HMMWV_FULL_STATE_OMEGA_Z];
+        const gic_real t68 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_C_Z] + t66;
+        const gic_real t69 = m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_VELOCITY_Y] -
+            m[HMMWV_FULL_MOTION_WHEEL_R_L + HMMWV_FULL_OMEGA_X] * t66 + (t67 - y[HMMWV_FULL_STATE_OMEGA_X] * t68);
+        const gic_real t70 = y[HMMWV_FULL_STATE_OMEGA_Y] * t68 - y[HMMWV_FULL_STATE_OMEGA_Z] * t63;
+        const gic_real t71 = y[HMMWV_FULL_STATE_V_Y] + (t5 * t65 + (t14 * t69 + t20 * t70));
+        const gic_real t72 = R(-1.653405) * t28;
+        const gic_real t73 = R(-1.653405) * t20;
+        gic_real road74[3];
+        if (!hmmwv_full_road_height(self, time, y[HMMWV_FULL_STATE_R_X] + (t25 * t68 + (t26 * t63 + t72)),
+            y[HMMWV_FULL_STATE_R_Y] + (t5 * t68 + (t14 * t63 + t73)), road74))
+            return GIC_ERROR_ROAD;
+        const gic_real t75 = y[HMMWV_FULL_STATE_V_X] + (t25 * t65 + (t26 * t69 + t28 * t70));
+        const gic_real t76 = y[HMMWV_FULL_STATE_V_Z] + (t33 * t65 + (t34 * t69 + t35 * t70));
+        const gic_real t77 = t71 * road74[2] + t75 * road74[1] - t76;
+        const gic_real t78 = R(-1.653405) * t35;
+        const gic_real t79 = R(0.4699) + road74[0] - (y[HMMWV_FULL_STATE_R_Z] + (t33 * t68 + (t34 * t63 + t78)));
+        const gic_real t80 = GIC_MIN(GIC_MAX(R(100.0) * t79, R(0.0)), R(1.0));
+        const gic_real t81 = t77 * (R(500.0) * ((R(3.0) - (t80 + t80)) * (t80 * t80)));
+        /* wheel tire_r_r */
+        const gic_real t82 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_A_YZ] * R(0.09182100000000004) +
+            m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_A_YY] * R(-0.12319000000000002);
+        const gic_real t83 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_C_Y] + t82;
+        const gic_real t84 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_VELOCITY_Z] +
+            m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_OMEGA_X] * t82 + (y[HMMWV_FULL_STATE_OMEGA_X] * t83 - t64);
+        const gic_real t85 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_A_ZZ] * R(0.09182100000000004) +
+            m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_A_ZY] * R(-0.12319000000000002);
+        const gic_real t86 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_C_Z] + t85;
+        const gic_real t87 = m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_VELOCITY_Y] -
+            m[HMMWV_FULL_MOTION_WHEEL_R_R + HMMWV_FULL_OMEGA_X] * t85 + (t67 - y[HMMWV_FULL_STATE_OMEGA_X] * t86);
+        const gic_real t88 = y[HMMWV_FULL_STATE_OMEGA_Y] * t86 - y[HMMWV_FULL_STATE_OMEGA_Z] * t83;
+        const gic_real t89 = y[HMMWV_FULL_STATE_V_Y] + (t5 * t84 + (t14 * t87 + t20 * t88));
+        gic_real road90[3];
+        if (!hmmwv_full_road_height(self, time, y[HMMWV_FULL_STATE_R_X] + (t25 * t86 + (t72 + t26 * t83)),
+            y[HMMWV_FULL_STATE_R_Y] + (t5 * t86 + (t73 + t14 * t83)), road90))
+            return GIC_ERROR_ROAD;
+        const gic_real t91 = y[HMMWV_FULL_STATE_V_X] + (t25 * t84 + (t26 * t87 + t28 * t88));
+        const gic_real t92 = y[HMMWV_FULL_STATE_V_Z] + (t33 * t84 + (t34 * t87 + t35 * t88));
+        const gic_real t93 = t89 * road90[2] + t91 * road90[1] - t92;
+        const gic_real t94 = R(0.4699) + road90[0] - (y[HMMWV_FULL_STATE_R_Z] + (t33 * t86 + (t78 + t34 * t83)));
+        const gic_real t95 = GIC_MIN(GIC_MAX(R(100.0) * t94, R(0.0)), R(1.0));
+        const gic_real t96 = t93 * (R(500.0) * ((R(3.0) - (t95 + t95)) * (t95 * t95)));
+        /* force stop_f_l */
+        const gic_real t97 = x[HMMWV_FULL_X_SPRING_F_L] - R(0.3);
+        const gic_real t98 = R(0.15) - x[HMMWV_FULL_X_SPRING_F_L];
+        /* force stop_f_r */
+        const gic_real t99 = x[HMMWV_FULL_X_SPRING_F_R] - R(0.3);
+        const gic_real t100 = R(0.15) - x[HMMWV_FULL_X_SPRING_F_R];
+        /* force stop_r_l */
+        const gic_real t101 = x[HMMWV_FULL_X_SPRING_R_L] - R(0.35);
+        const gic_real t102 = R(0.15) - x[HMMWV_FULL_X_SPRING_R_L];
+        /* force stop_r_r */
+        const gic_real t103 = x[HMMWV_FULL_X_SPRING_R_R] - R(0.35);
+        const gic_real t104 = R(0.15) - x[HMMWV_FULL_X_SPRING_R_R];
+        const gic_real t105 = t41 + t39 * R(283000.0);
+        const gic_real t106 = t61 + R(283000.0) * t59;
+        const gic_real t107 = t81 + R(283000.0) * t79;
+        const gic_real t108 = t96 + R(283000.0) * t94;
+        const gic_real t109 = (t97 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t97, R(0.0))) : t97);
+        const gic_real t110 = (t98 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t98, R(0.0))) : t98);
+        const gic_real t111 = (t99 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t99, R(0.0))) : t99);
+        const gic_real t112 = (t100 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t100, R(0.0))) : t100);
+        const gic_real t113 = (t101 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t101, R(0.0))) : t101);
+        const gic_real t114 = (t102 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t102, R(0.0))) : t102);
+        const gic_real t115 = (t103 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t103, R(0.0))) : t103);
+        const gic_real t116 = (t104 > GIC_R(0) ? gic_table_value(&hmmwv_full_table[2], GIC_MAX(t104, R(0.0))) : t104);
+        press[0] = t105;
+        press[1] = t106;
+        press[2] = t107;
+        press[3] = t108;
+        press[4] = t109;
+        press[5] = t110;
+        press[6] = t111;
+        press[7] = t112;
+        press[8] = t113;
+        press[9] = t114;
+        press[10] = t115;
+        press[11] = t116;
+    }
+    return GIC_OK;
+}
+
+static int hmmwv_full_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    hmmwv_full *const self = (hmmwv_full *)instance;
+    gic_real e[4], rate[HMMWV_FULL_STATE_ROOM];
+    int status = hmmwv_full_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = hmmwv_full_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, HMMWV_FULL_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_full_any_setup(void *self)
@@ -7759,4 +7967,6 @@ const gic_model hmmwv_full_model = {
     NULL,
     NULL,
     hmmwv_full_any_check,
+    HMMWV_FULL_CONTACTS,
+    hmmwv_full_any_contacts,
 };

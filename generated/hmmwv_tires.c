@@ -75,14 +75,14 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               195       313      23     12        37
- *   a fast step: all wheels                                  780      1254      92     48       148
- *   all together                                            2620      3536     111     58       148
+ *   wheel 'tire_f_l' (4 times)                               195       314      23     12        37
+ *   a fast step: all wheels                                  780      1258      92     48       148
+ *   all together                                            2620      3540     111     58       148
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x9c5c4b55
+#if HMMWV_TIRES_H != 0x25fd4dbb
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -372,6 +372,7 @@ enum {
     HMMWV_TIRES_GRIP_SPEED_Y = 24,
     HMMWV_TIRES_GRIP_RADIUS = 25,
     HMMWV_TIRES_GRIP_POWER = 26,
+    HMMWV_TIRES_GRIP_PRESS = 27,
     HMMWV_TIRES_CONTACT_LOAD = 0,
     HMMWV_TIRES_CONTACT_KAPPA = 1,
     HMMWV_TIRES_CONTACT_TANGENT = 2,
@@ -408,15 +409,15 @@ enum {
     HMMWV_TIRES_TORQUE_OF_TIRE_F_L = 0,
     HMMWV_TIRES_FAST_OF_TIRE_F_L = 0,
     HMMWV_TIRES_LINK_OF_TIRE_F_R = 12,
-    HMMWV_TIRES_GRIP_OF_TIRE_F_R = 27,
+    HMMWV_TIRES_GRIP_OF_TIRE_F_R = 28,
     HMMWV_TIRES_TORQUE_OF_TIRE_F_R = 2,
     HMMWV_TIRES_FAST_OF_TIRE_F_R = 4,
     HMMWV_TIRES_LINK_OF_TIRE_R_L = 24,
-    HMMWV_TIRES_GRIP_OF_TIRE_R_L = 54,
+    HMMWV_TIRES_GRIP_OF_TIRE_R_L = 56,
     HMMWV_TIRES_TORQUE_OF_TIRE_R_L = 4,
     HMMWV_TIRES_FAST_OF_TIRE_R_L = 8,
     HMMWV_TIRES_LINK_OF_TIRE_R_R = 36,
-    HMMWV_TIRES_GRIP_OF_TIRE_R_R = 81,
+    HMMWV_TIRES_GRIP_OF_TIRE_R_R = 84,
     HMMWV_TIRES_TORQUE_OF_TIRE_R_R = 6,
     HMMWV_TIRES_FAST_OF_TIRE_R_R = 12,
     HMMWV_TIRES_LAYOUT_END = 0
@@ -1818,7 +1819,7 @@ static const gic_real hmmwv_tires_k_wheel_tire_f_l[4][1] = {
 /* Wheels with the tire 'all': tire_f_l, tire_f_r, tire_r_l, tire_r_r.
  * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the carrier,
  * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz 12, slips and camber 17
- * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */
+ * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26, press 27. */
 static int hmmwv_tires_wheel_tire_f_l(hmmwv_tires *self, const gic_real *GIC_RESTRICT k, gic_real time,
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
@@ -1899,66 +1900,69 @@ static int hmmwv_tires_wheel_tire_f_l(hmmwv_tires *self, const gic_real *GIC_RES
         const gic_real t58 = (R(3.0) - (t57 + t57)) * (t57 * t57);
         const gic_real t59 = fast[HMMWV_TIRES_FAST_SLIP_X] * (t48 + t51 * GIC_FABS(t56)) + t58 * t56;
         const gic_real t60 = t31 * (t16 * t42 - (t19 * t46 + t17 * t45));
-        const gic_real t61 = GIC_MAX(t53 * R(441900.0) - t60 * (t58 * R(500.0)), R(0.0));
-        const gic_real t62 = GIC_MIN(GIC_MAX(t61, R(20.331669610000002)), R(78750.0));
-        const gic_real t63 = t62 - R(20331.66961);
-        const gic_real t64 = GIC_EXP(-(t63 * R(4.918435225349897e-05))) * (t62 * (t63 * R(6.885809315489855e-05) +
+        const gic_real t61 = t53 * R(441900.0) - t60 * (t58 * R(500.0));
+        const gic_real t62 = GIC_MAX(t61, R(0.0));
+        const gic_real t63 = GIC_MIN(GIC_MAX(t62, R(20.331669610000002)), R(78750.0));
+        const gic_real t64 = t63 - R(20331.66961);
+        const gic_real t65 = GIC_EXP(-(t64 * R(4.918435225349897e-05))) * (t63 * (t64 * R(6.885809315489855e-05) +
             R(1.5)));
-        const gic_real t65 = t59 / GIC_MAX(t64 * R(1.3425714285714285e-05), R(0.09398000000000001));
-        const gic_real t66 = t19 * t27 + t17 * t24;
-        const gic_real t67 = t17 * t25 + t16 * t27;
-        const gic_real t68 = t16 * t24 - t19 * t25;
-        const gic_real t69 = t66 * t42 + (t67 * t46 + t68 * t45);
-        const gic_real t70 = t58 * t69 - fast[HMMWV_TIRES_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t69));
-        const gic_real t71 = GIC_MIN(link[HMMWV_TIRES_LINK_S_Z] * t16 - (link[HMMWV_TIRES_LINK_S_Y] * t19 +
+        const gic_real t66 = t59 / GIC_MAX(t65 * R(1.3425714285714285e-05), R(0.09398000000000001));
+        const gic_real t67 = t19 * t27 + t17 * t24;
+        const gic_real t68 = t17 * t25 + t16 * t27;
+        const gic_real t69 = t16 * t24 - t19 * t25;
+        const gic_real t70 = t67 * t42 + (t68 * t46 + t69 * t45);
+        const gic_real t71 = t58 * t70 - fast[HMMWV_TIRES_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t70));
+        const gic_real t72 = GIC_MIN(link[HMMWV_TIRES_LINK_S_Z] * t16 - (link[HMMWV_TIRES_LINK_S_Y] * t19 +
             link[HMMWV_TIRES_LINK_S_X] * t17), R(1.0));
-        const gic_real t72 = GIC_ASIN(GIC_MAX(t71, R(-1.0)));
-        const gic_real t73 = R(1.0) - GIC_FABS(GIC_MIN(GIC_MAX(k[0] * t72, R(-0.26181)), R(0.26181))) * R(-0.25732);
-        const gic_real t74 = t62 * R(1.9673740901399588e-05);
-        const gic_real t75 = t73 * ((t74 + t74) / (R(1.0) + t74 * t74)) * R(0.32756062456248);
-        const gic_real t76 = t70 / GIC_MAX(t75, R(0.09398000000000001));
-        const gic_real t77 = R(0.01) * t50;
-        const gic_real t78 = -t65;
-        const gic_real t79 = fast[HMMWV_TIRES_FAST_SLIP_X] - t77 * t65;
-        const gic_real t80 = fast[HMMWV_TIRES_FAST_SLIP_Y] + t77 * t76;
-        const gic_real t81 = -t24;
-        const gic_real t82 = -t17;
-        const gic_real t83 = -t19;
-        const gic_real t84 = -t44;
-        const gic_real t85 = -t60;
-        const gic_real t86 = road14[0];
-        const gic_real t87 = link[HMMWV_TIRES_LINK_C_Z] - t44;
-        rate[HMMWV_TIRES_FAST_SLIP_X] = t78;
-        rate[HMMWV_TIRES_FAST_SLIP_Y] = t76;
-        contact[HMMWV_TIRES_CONTACT_LOAD] = t61;
-        contact[HMMWV_TIRES_CONTACT_KAPPA] = t79;
-        contact[HMMWV_TIRES_CONTACT_TANGENT] = t80;
-        contact[HMMWV_TIRES_CONTACT_CAMBER] = t72;
+        const gic_real t73 = GIC_ASIN(GIC_MAX(t72, R(-1.0)));
+        const gic_real t74 = R(1.0) - GIC_FABS(GIC_MIN(GIC_MAX(k[0] * t73, R(-0.26181)), R(0.26181))) * R(-0.25732);
+        const gic_real t75 = t63 * R(1.9673740901399588e-05);
+        const gic_real t76 = t74 * ((t75 + t75) / (R(1.0) + t75 * t75)) * R(0.32756062456248);
+        const gic_real t77 = t71 / GIC_MAX(t76, R(0.09398000000000001));
+        const gic_real t78 = R(0.01) * t50;
+        const gic_real t79 = -t66;
+        const gic_real t80 = fast[HMMWV_TIRES_FAST_SLIP_X] - t78 * t66;
+        const gic_real t81 = fast[HMMWV_TIRES_FAST_SLIP_Y] + t78 * t77;
+        const gic_real t82 = -t24;
+        const gic_real t83 = -t17;
+        const gic_real t84 = -t19;
+        const gic_real t85 = -t44;
+        const gic_real t86 = -t60;
+        const gic_real t87 = road14[0];
+        const gic_real t88 = (t52 > GIC_R(0) ? t61 * R(2.2629554197782305e-06) : t52);
+        const gic_real t89 = link[HMMWV_TIRES_LINK_C_Z] - t44;
+        rate[HMMWV_TIRES_FAST_SLIP_X] = t79;
+        rate[HMMWV_TIRES_FAST_SLIP_Y] = t77;
+        contact[HMMWV_TIRES_CONTACT_LOAD] = t62;
+        contact[HMMWV_TIRES_CONTACT_KAPPA] = t80;
+        contact[HMMWV_TIRES_CONTACT_TANGENT] = t81;
+        contact[HMMWV_TIRES_CONTACT_CAMBER] = t73;
         contact[HMMWV_TIRES_CONTACT_FRICTION] = t38;
         contact[HMMWV_TIRES_CONTACT_SPEED] = t47;
         contact[HMMWV_TIRES_CONTACT_DEFLECTION] = t52;
         contact[HMMWV_TIRES_CONTACT_RADIUS] = t33;
         contact[HMMWV_TIRES_CONTACT_X_X] = t27;
-        contact[HMMWV_TIRES_CONTACT_X_Y] = t81;
+        contact[HMMWV_TIRES_CONTACT_X_Y] = t82;
         contact[HMMWV_TIRES_CONTACT_X_Z] = t25;
-        contact[HMMWV_TIRES_CONTACT_Y_X] = t68;
-        contact[HMMWV_TIRES_CONTACT_Y_Y] = t67;
-        contact[HMMWV_TIRES_CONTACT_Y_Z] = t66;
-        contact[HMMWV_TIRES_CONTACT_N_X] = t82;
-        contact[HMMWV_TIRES_CONTACT_N_Y] = t83;
+        contact[HMMWV_TIRES_CONTACT_Y_X] = t69;
+        contact[HMMWV_TIRES_CONTACT_Y_Y] = t68;
+        contact[HMMWV_TIRES_CONTACT_Y_Z] = t67;
+        contact[HMMWV_TIRES_CONTACT_N_X] = t83;
+        contact[HMMWV_TIRES_CONTACT_N_Y] = t84;
         contact[HMMWV_TIRES_CONTACT_N_Z] = t16;
         contact[HMMWV_TIRES_CONTACT_ARM_X] = t34;
         contact[HMMWV_TIRES_CONTACT_ARM_Y] = t36;
-        contact[HMMWV_TIRES_CONTACT_ARM_Z] = t84;
-        grip[HMMWV_TIRES_GRIP_LOAD] = t61;
+        contact[HMMWV_TIRES_CONTACT_ARM_Z] = t85;
+        grip[HMMWV_TIRES_GRIP_LOAD] = t62;
         grip[HMMWV_TIRES_GRIP_DEFLECTION] = t52;
-        grip[HMMWV_TIRES_GRIP_DEFLECTION_RATE] = t85;
-        grip[HMMWV_TIRES_GRIP_HEIGHT] = t86;
+        grip[HMMWV_TIRES_GRIP_DEFLECTION_RATE] = t86;
+        grip[HMMWV_TIRES_GRIP_HEIGHT] = t87;
+        grip[HMMWV_TIRES_GRIP_PRESS] = t88;
         grip[HMMWV_TIRES_GRIP_POINT_X] = t35;
         grip[HMMWV_TIRES_GRIP_POINT_Y] = t37;
-        grip[HMMWV_TIRES_GRIP_POINT_Z] = t87;
+        grip[HMMWV_TIRES_GRIP_POINT_Z] = t89;
         grip[HMMWV_TIRES_GRIP_SPEED_X] = t47;
-        grip[HMMWV_TIRES_GRIP_SPEED_Y] = t69;
+        grip[HMMWV_TIRES_GRIP_SPEED_Y] = t70;
         grip[HMMWV_TIRES_GRIP_RADIUS] = t55;
     }
     /* the tire; a wheel in the air has none */
@@ -8318,6 +8322,46 @@ static int hmmwv_tires_any_roll(void *instance)
     return self->head.status = status;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int hmmwv_tires_press(const hmmwv_tires *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        /* wheel tire_f_l */
+        const gic_real t1 = self->grip[HMMWV_TIRES_GRIP_OF_TIRE_F_L + HMMWV_TIRES_GRIP_PRESS];
+        /* wheel tire_f_r */
+        const gic_real t2 = self->grip[HMMWV_TIRES_GRIP_OF_TIRE_F_R + HMMWV_TIRES_GRIP_PRESS];
+        /* wheel tire_r_l */
+        const gic_real t3 = self->grip[HMMWV_TIRES_GRIP_OF_TIRE_R_L + HMMWV_TIRES_GRIP_PRESS];
+        /* wheel tire_r_r */
+        const gic_real t4 = self->grip[HMMWV_TIRES_GRIP_OF_TIRE_R_R + HMMWV_TIRES_GRIP_PRESS];
+        press[0] = t1;
+        press[1] = t2;
+        press[2] = t3;
+        press[3] = t4;
+    }
+    return GIC_OK;
+}
+
+static int hmmwv_tires_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    hmmwv_tires *const self = (hmmwv_tires *)instance;
+    gic_real e[4], rate[HMMWV_TIRES_STATE_ROOM];
+    int status = hmmwv_tires_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = hmmwv_tires_turn_wheels(self, time, y, e, rate + HMMWV_TIRES_SLOW);
+    if (status == GIC_OK)
+        status = hmmwv_tires_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, HMMWV_TIRES_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_tires_any_setup(void *self)
@@ -8433,4 +8477,6 @@ const gic_model hmmwv_tires_model = {
     hmmwv_tires_any_roll,
     NULL,
     hmmwv_tires_any_check,
+    HMMWV_TIRES_CONTACTS,
+    hmmwv_tires_any_contacts,
 };

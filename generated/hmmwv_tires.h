@@ -75,18 +75,18 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               195       313      23     12        37
- *   a fast step: all wheels                                  780      1254      92     48       148
- *   all together                                            2620      3536     111     58       148
+ *   wheel 'tire_f_l' (4 times)                               195       314      23     12        37
+ *   a fast step: all wheels                                  780      1258      92     48       148
+ *   all together                                            2620      3540     111     58       148
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x9c5c4b55
+#define HMMWV_TIRES_H 0x25fd4dbb
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
-#error "hmmwv_tires.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
+#error "hmmwv_tires.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -97,8 +97,9 @@ extern "C" {
 enum {
     HMMWV_TIRES_ROLLING = 4,
     HMMWV_TIRES_LINKS = 48,
-    HMMWV_TIRES_GRIP = 27,
-    HMMWV_TIRES_ABI = 7,
+    HMMWV_TIRES_GRIP = 28,
+    HMMWV_TIRES_CONTACTS = 4,
+    HMMWV_TIRES_ABI = 8,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,

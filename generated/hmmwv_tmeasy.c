@@ -75,14 +75,14 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
- *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2480      3268     151     66        20
+ *   wheel 'tire_f_l' (4 times)                               160       247      33     14         5
+ *   a fast step: all wheels                                  640       990     132     56        20
+ *   all together                                            2480      3272     151     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xbce195d1
+#if HMMWV_TMEASY_H != 0xc1a69b97
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -372,6 +372,7 @@ enum {
     HMMWV_TMEASY_GRIP_SPEED_Y = 24,
     HMMWV_TMEASY_GRIP_RADIUS = 25,
     HMMWV_TMEASY_GRIP_POWER = 26,
+    HMMWV_TMEASY_GRIP_PRESS = 27,
     HMMWV_TMEASY_CONTACT_LOAD = 0,
     HMMWV_TMEASY_CONTACT_KAPPA = 1,
     HMMWV_TMEASY_CONTACT_TANGENT = 2,
@@ -408,15 +409,15 @@ enum {
     HMMWV_TMEASY_TORQUE_OF_TIRE_F_L = 0,
     HMMWV_TMEASY_FAST_OF_TIRE_F_L = 0,
     HMMWV_TMEASY_LINK_OF_TIRE_F_R = 12,
-    HMMWV_TMEASY_GRIP_OF_TIRE_F_R = 27,
+    HMMWV_TMEASY_GRIP_OF_TIRE_F_R = 28,
     HMMWV_TMEASY_TORQUE_OF_TIRE_F_R = 2,
     HMMWV_TMEASY_FAST_OF_TIRE_F_R = 4,
     HMMWV_TMEASY_LINK_OF_TIRE_R_L = 24,
-    HMMWV_TMEASY_GRIP_OF_TIRE_R_L = 54,
+    HMMWV_TMEASY_GRIP_OF_TIRE_R_L = 56,
     HMMWV_TMEASY_TORQUE_OF_TIRE_R_L = 4,
     HMMWV_TMEASY_FAST_OF_TIRE_R_L = 8,
     HMMWV_TMEASY_LINK_OF_TIRE_R_R = 36,
-    HMMWV_TMEASY_GRIP_OF_TIRE_R_R = 81,
+    HMMWV_TMEASY_GRIP_OF_TIRE_R_R = 84,
     HMMWV_TMEASY_TORQUE_OF_TIRE_R_R = 6,
     HMMWV_TMEASY_FAST_OF_TIRE_R_R = 12,
     HMMWV_TMEASY_LAYOUT_END = 0
@@ -1818,7 +1819,7 @@ static const gic_real hmmwv_tmeasy_k_wheel_tire_f_l[4][1] = {
 /* Wheels with the tire 'all': tire_f_l, tire_f_r, tire_r_l, tire_r_r.
  * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the carrier,
  * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz 12, slips and camber 17
- * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */
+ * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26, press 27. */
 static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_RESTRICT k, gic_real time,
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
@@ -1906,50 +1907,53 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t65 = GIC_MAX(t54, R(0.0)) * R(411120.9) + GIC_MAX(t54 - R(0.25034999999999996), R(0.0)) *
             R(2055604.5);
         const gic_real t66 = t31 * (t16 * t42 - (t19 * t46 + t17 * t45));
-        const gic_real t67 = GIC_MAX(t65 - t66 * (t56 * R(3931.685)), R(0.0));
-        const gic_real t68 = R(0.01) * t50;
-        const gic_real t69 = GIC_MIN(link[HMMWV_TMEASY_LINK_S_Z] * t16 - (link[HMMWV_TMEASY_LINK_S_Y] * t19 +
+        const gic_real t67 = t65 - t66 * (t56 * R(3931.685));
+        const gic_real t68 = GIC_MAX(t67, R(0.0));
+        const gic_real t69 = R(0.01) * t50;
+        const gic_real t70 = GIC_MIN(link[HMMWV_TMEASY_LINK_S_Z] * t16 - (link[HMMWV_TMEASY_LINK_S_Y] * t19 +
             link[HMMWV_TMEASY_LINK_S_X] * t17), R(1.0));
-        const gic_real t70 = -t58;
-        const gic_real t71 = fast[HMMWV_TMEASY_FAST_SLIP_X] - t68 * t58;
-        const gic_real t72 = fast[HMMWV_TMEASY_FAST_SLIP_Y] + t68 * t64;
-        const gic_real t73 = GIC_ASIN(GIC_MAX(t69, R(-1.0)));
-        const gic_real t74 = -t24;
-        const gic_real t75 = -t17;
-        const gic_real t76 = -t19;
-        const gic_real t77 = -t44;
-        const gic_real t78 = -t66;
-        const gic_real t79 = road14[0];
-        const gic_real t80 = link[HMMWV_TMEASY_LINK_C_Z] - t44;
-        rate[HMMWV_TMEASY_FAST_SLIP_X] = t70;
+        const gic_real t71 = -t58;
+        const gic_real t72 = fast[HMMWV_TMEASY_FAST_SLIP_X] - t69 * t58;
+        const gic_real t73 = fast[HMMWV_TMEASY_FAST_SLIP_Y] + t69 * t64;
+        const gic_real t74 = GIC_ASIN(GIC_MAX(t70, R(-1.0)));
+        const gic_real t75 = -t24;
+        const gic_real t76 = -t17;
+        const gic_real t77 = -t19;
+        const gic_real t78 = -t44;
+        const gic_real t79 = -t66;
+        const gic_real t80 = road14[0];
+        const gic_real t81 = (t54 > GIC_R(0) ? t67 * R(2.4323745156230196e-06) : t54);
+        const gic_real t82 = link[HMMWV_TMEASY_LINK_C_Z] - t44;
+        rate[HMMWV_TMEASY_FAST_SLIP_X] = t71;
         rate[HMMWV_TMEASY_FAST_SLIP_Y] = t64;
-        contact[HMMWV_TMEASY_CONTACT_LOAD] = t67;
-        contact[HMMWV_TMEASY_CONTACT_KAPPA] = t71;
-        contact[HMMWV_TMEASY_CONTACT_TANGENT] = t72;
-        contact[HMMWV_TMEASY_CONTACT_CAMBER] = t73;
+        contact[HMMWV_TMEASY_CONTACT_LOAD] = t68;
+        contact[HMMWV_TMEASY_CONTACT_KAPPA] = t72;
+        contact[HMMWV_TMEASY_CONTACT_TANGENT] = t73;
+        contact[HMMWV_TMEASY_CONTACT_CAMBER] = t74;
         contact[HMMWV_TMEASY_CONTACT_FRICTION] = t38;
         contact[HMMWV_TMEASY_CONTACT_SPEED] = t47;
         contact[HMMWV_TMEASY_CONTACT_DEFLECTION] = t54;
         contact[HMMWV_TMEASY_CONTACT_RADIUS] = t33;
         contact[HMMWV_TMEASY_CONTACT_X_X] = t27;
-        contact[HMMWV_TMEASY_CONTACT_X_Y] = t74;
+        contact[HMMWV_TMEASY_CONTACT_X_Y] = t75;
         contact[HMMWV_TMEASY_CONTACT_X_Z] = t25;
         contact[HMMWV_TMEASY_CONTACT_Y_X] = t61;
         contact[HMMWV_TMEASY_CONTACT_Y_Y] = t60;
         contact[HMMWV_TMEASY_CONTACT_Y_Z] = t59;
-        contact[HMMWV_TMEASY_CONTACT_N_X] = t75;
-        contact[HMMWV_TMEASY_CONTACT_N_Y] = t76;
+        contact[HMMWV_TMEASY_CONTACT_N_X] = t76;
+        contact[HMMWV_TMEASY_CONTACT_N_Y] = t77;
         contact[HMMWV_TMEASY_CONTACT_N_Z] = t16;
         contact[HMMWV_TMEASY_CONTACT_ARM_X] = t34;
         contact[HMMWV_TMEASY_CONTACT_ARM_Y] = t36;
-        contact[HMMWV_TMEASY_CONTACT_ARM_Z] = t77;
-        grip[HMMWV_TMEASY_GRIP_LOAD] = t67;
+        contact[HMMWV_TMEASY_CONTACT_ARM_Z] = t78;
+        grip[HMMWV_TMEASY_GRIP_LOAD] = t68;
         grip[HMMWV_TMEASY_GRIP_DEFLECTION] = t54;
-        grip[HMMWV_TMEASY_GRIP_DEFLECTION_RATE] = t78;
-        grip[HMMWV_TMEASY_GRIP_HEIGHT] = t79;
+        grip[HMMWV_TMEASY_GRIP_DEFLECTION_RATE] = t79;
+        grip[HMMWV_TMEASY_GRIP_HEIGHT] = t80;
+        grip[HMMWV_TMEASY_GRIP_PRESS] = t81;
         grip[HMMWV_TMEASY_GRIP_POINT_X] = t35;
         grip[HMMWV_TMEASY_GRIP_POINT_Y] = t37;
-        grip[HMMWV_TMEASY_GRIP_POINT_Z] = t80;
+        grip[HMMWV_TMEASY_GRIP_POINT_Z] = t82;
         grip[HMMWV_TMEASY_GRIP_SPEED_X] = t47;
         grip[HMMWV_TMEASY_GRIP_SPEED_Y] = t62;
         grip[HMMWV_TMEASY_GRIP_RADIUS] = t52;
@@ -8364,6 +8368,46 @@ static int hmmwv_tmeasy_any_roll(void *instance)
     return self->head.status = status;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int hmmwv_tmeasy_press(const hmmwv_tmeasy *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        /* wheel tire_f_l */
+        const gic_real t1 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_L + HMMWV_TMEASY_GRIP_PRESS];
+        /* wheel tire_f_r */
+        const gic_real t2 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_F_R + HMMWV_TMEASY_GRIP_PRESS];
+        /* wheel tire_r_l */
+        const gic_real t3 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_L + HMMWV_TMEASY_GRIP_PRESS];
+        /* wheel tire_r_r */
+        const gic_real t4 = self->grip[HMMWV_TMEASY_GRIP_OF_TIRE_R_R + HMMWV_TMEASY_GRIP_PRESS];
+        press[0] = t1;
+        press[1] = t2;
+        press[2] = t3;
+        press[3] = t4;
+    }
+    return GIC_OK;
+}
+
+static int hmmwv_tmeasy_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    hmmwv_tmeasy *const self = (hmmwv_tmeasy *)instance;
+    gic_real e[4], rate[HMMWV_TMEASY_STATE_ROOM];
+    int status = hmmwv_tmeasy_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = hmmwv_tmeasy_turn_wheels(self, time, y, e, rate + HMMWV_TMEASY_SLOW);
+    if (status == GIC_OK)
+        status = hmmwv_tmeasy_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, HMMWV_TMEASY_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_tmeasy_any_setup(void *self)
@@ -8479,4 +8523,6 @@ const gic_model hmmwv_tmeasy_model = {
     hmmwv_tmeasy_any_roll,
     NULL,
     hmmwv_tmeasy_any_check,
+    HMMWV_TMEASY_CONTACTS,
+    hmmwv_tmeasy_any_contacts,
 };

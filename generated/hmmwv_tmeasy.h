@@ -75,18 +75,18 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               160       246      33     14         5
- *   a fast step: all wheels                                  640       986     132     56        20
- *   all together                                            2480      3268     151     66        20
+ *   wheel 'tire_f_l' (4 times)                               160       247      33     14         5
+ *   a fast step: all wheels                                  640       990     132     56        20
+ *   all together                                            2480      3272     151     66        20
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0xbce195d1
+#define HMMWV_TMEASY_H 0xc1a69b97
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
-#error "hmmwv_tmeasy.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
+#error "hmmwv_tmeasy.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -97,8 +97,9 @@ extern "C" {
 enum {
     HMMWV_TMEASY_ROLLING = 4,
     HMMWV_TMEASY_LINKS = 48,
-    HMMWV_TMEASY_GRIP = 27,
-    HMMWV_TMEASY_ABI = 7,
+    HMMWV_TMEASY_GRIP = 28,
+    HMMWV_TMEASY_CONTACTS = 4,
+    HMMWV_TMEASY_ABI = 8,
     HMMWV_TMEASY_FREE_BASE = 1,
     HMMWV_TMEASY_STATES = 37,
     HMMWV_TMEASY_SLOW = 21,

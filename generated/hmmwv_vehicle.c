@@ -75,15 +75,15 @@
  *   forces and equations of motion                           608       555       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
- *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
+ *   wheel 'tire_f_l' (4 times)                               194       314      23     12        37
  *   powertrain                                                50        71       6      0         4
- *   a fast step: all of these                                826      1324      98     48       152
- *   all together                                            2706      3654     117     58       152
+ *   a fast step: all of these                                826      1328      98     48       152
+ *   all together                                            2706      3658     117     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x4604e391
+#if HMMWV_VEHICLE_H != 0x8f7dd953
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -373,6 +373,7 @@ enum {
     HMMWV_VEHICLE_GRIP_SPEED_Y = 24,
     HMMWV_VEHICLE_GRIP_RADIUS = 25,
     HMMWV_VEHICLE_GRIP_POWER = 26,
+    HMMWV_VEHICLE_GRIP_PRESS = 27,
     HMMWV_VEHICLE_CONTACT_LOAD = 0,
     HMMWV_VEHICLE_CONTACT_KAPPA = 1,
     HMMWV_VEHICLE_CONTACT_TANGENT = 2,
@@ -409,15 +410,15 @@ enum {
     HMMWV_VEHICLE_TORQUE_OF_TIRE_F_L = 0,
     HMMWV_VEHICLE_FAST_OF_TIRE_F_L = 0,
     HMMWV_VEHICLE_LINK_OF_TIRE_F_R = 12,
-    HMMWV_VEHICLE_GRIP_OF_TIRE_F_R = 27,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_F_R = 28,
     HMMWV_VEHICLE_TORQUE_OF_TIRE_F_R = 2,
     HMMWV_VEHICLE_FAST_OF_TIRE_F_R = 4,
     HMMWV_VEHICLE_LINK_OF_TIRE_R_L = 24,
-    HMMWV_VEHICLE_GRIP_OF_TIRE_R_L = 54,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_R_L = 56,
     HMMWV_VEHICLE_TORQUE_OF_TIRE_R_L = 4,
     HMMWV_VEHICLE_FAST_OF_TIRE_R_L = 8,
     HMMWV_VEHICLE_LINK_OF_TIRE_R_R = 36,
-    HMMWV_VEHICLE_GRIP_OF_TIRE_R_R = 81,
+    HMMWV_VEHICLE_GRIP_OF_TIRE_R_R = 84,
     HMMWV_VEHICLE_TORQUE_OF_TIRE_R_R = 6,
     HMMWV_VEHICLE_FAST_OF_TIRE_R_R = 12,
     HMMWV_VEHICLE_GEAR_NUMBER = 0,
@@ -1895,7 +1896,7 @@ static const gic_real hmmwv_vehicle_k_wheel_tire_f_l[4][1] = {
 /* Wheels with the tire 'all': tire_f_l, tire_f_r, tire_r_l, tire_r_r.
  * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the carrier,
  * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz 12, slips and camber 17
- * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */
+ * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26, press 27. */
 static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC_RESTRICT k, gic_real time,
     const gic_real *GIC_RESTRICT link, const gic_real *GIC_RESTRICT fast, const gic_real *GIC_RESTRICT torque,
     gic_real *GIC_RESTRICT rate, gic_real *GIC_RESTRICT grip)
@@ -1977,66 +1978,69 @@ static int hmmwv_vehicle_wheel_tire_f_l(hmmwv_vehicle *self, const gic_real *GIC
         const gic_real t58 = (R(3.0) - (t57 + t57)) * (t57 * t57);
         const gic_real t59 = fast[HMMWV_VEHICLE_FAST_SLIP_X] * (t48 + t51 * GIC_FABS(t56)) + t58 * t56;
         const gic_real t60 = t31 * (t16 * t42 - (t19 * t46 + t17 * t45));
-        const gic_real t61 = GIC_MAX(t53 * R(441900.0) - t60 * (t58 * R(500.0)), R(0.0));
-        const gic_real t62 = GIC_MIN(GIC_MAX(t61, R(20.331669610000002)), R(78750.0));
-        const gic_real t63 = t62 - R(20331.66961);
-        const gic_real t64 = GIC_EXP(-(t63 * R(4.918435225349897e-05))) * (t62 * (t63 * R(6.885809315489855e-05) +
+        const gic_real t61 = t53 * R(441900.0) - t60 * (t58 * R(500.0));
+        const gic_real t62 = GIC_MAX(t61, R(0.0));
+        const gic_real t63 = GIC_MIN(GIC_MAX(t62, R(20.331669610000002)), R(78750.0));
+        const gic_real t64 = t63 - R(20331.66961);
+        const gic_real t65 = GIC_EXP(-(t64 * R(4.918435225349897e-05))) * (t63 * (t64 * R(6.885809315489855e-05) +
             R(1.5)));
-        const gic_real t65 = t59 / GIC_MAX(t64 * R(1.3425714285714285e-05), R(0.09398000000000001));
-        const gic_real t66 = t19 * t27 + t17 * t24;
-        const gic_real t67 = t17 * t25 + t16 * t27;
-        const gic_real t68 = t16 * t24 - t19 * t25;
-        const gic_real t69 = t66 * t42 + (t67 * t46 + t68 * t45);
-        const gic_real t70 = t58 * t69 - fast[HMMWV_VEHICLE_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t69));
-        const gic_real t71 = GIC_MIN(link[HMMWV_VEHICLE_LINK_S_Z] * t16 - (link[HMMWV_VEHICLE_LINK_S_Y] * t19 +
+        const gic_real t66 = t59 / GIC_MAX(t65 * R(1.3425714285714285e-05), R(0.09398000000000001));
+        const gic_real t67 = t19 * t27 + t17 * t24;
+        const gic_real t68 = t17 * t25 + t16 * t27;
+        const gic_real t69 = t16 * t24 - t19 * t25;
+        const gic_real t70 = t67 * t42 + (t68 * t46 + t69 * t45);
+        const gic_real t71 = t58 * t70 - fast[HMMWV_VEHICLE_FAST_SLIP_Y] * (t48 + t51 * GIC_FABS(t70));
+        const gic_real t72 = GIC_MIN(link[HMMWV_VEHICLE_LINK_S_Z] * t16 - (link[HMMWV_VEHICLE_LINK_S_Y] * t19 +
             link[HMMWV_VEHICLE_LINK_S_X] * t17), R(1.0));
-        const gic_real t72 = GIC_ASIN(GIC_MAX(t71, R(-1.0)));
-        const gic_real t73 = R(1.0) - GIC_FABS(GIC_MIN(GIC_MAX(k[0] * t72, R(-0.26181)), R(0.26181))) * R(-0.25732);
-        const gic_real t74 = t62 * R(1.9673740901399588e-05);
-        const gic_real t75 = t73 * ((t74 + t74) / (R(1.0) + t74 * t74)) * R(0.32756062456248);
-        const gic_real t76 = t70 / GIC_MAX(t75, R(0.09398000000000001));
-        const gic_real t77 = R(0.01) * t50;
-        const gic_real t78 = -t65;
-        const gic_real t79 = fast[HMMWV_VEHICLE_FAST_SLIP_X] - t77 * t65;
-        const gic_real t80 = fast[HMMWV_VEHICLE_FAST_SLIP_Y] + t77 * t76;
-        const gic_real t81 = -t24;
-        const gic_real t82 = -t17;
-        const gic_real t83 = -t19;
-        const gic_real t84 = -t44;
-        const gic_real t85 = -t60;
-        const gic_real t86 = road14[0];
-        const gic_real t87 = link[HMMWV_VEHICLE_LINK_C_Z] - t44;
-        rate[HMMWV_VEHICLE_FAST_SLIP_X] = t78;
-        rate[HMMWV_VEHICLE_FAST_SLIP_Y] = t76;
-        contact[HMMWV_VEHICLE_CONTACT_LOAD] = t61;
-        contact[HMMWV_VEHICLE_CONTACT_KAPPA] = t79;
-        contact[HMMWV_VEHICLE_CONTACT_TANGENT] = t80;
-        contact[HMMWV_VEHICLE_CONTACT_CAMBER] = t72;
+        const gic_real t73 = GIC_ASIN(GIC_MAX(t72, R(-1.0)));
+        const gic_real t74 = R(1.0) - GIC_FABS(GIC_MIN(GIC_MAX(k[0] * t73, R(-0.26181)), R(0.26181))) * R(-0.25732);
+        const gic_real t75 = t63 * R(1.9673740901399588e-05);
+        const gic_real t76 = t74 * ((t75 + t75) / (R(1.0) + t75 * t75)) * R(0.32756062456248);
+        const gic_real t77 = t71 / GIC_MAX(t76, R(0.09398000000000001));
+        const gic_real t78 = R(0.01) * t50;
+        const gic_real t79 = -t66;
+        const gic_real t80 = fast[HMMWV_VEHICLE_FAST_SLIP_X] - t78 * t66;
+        const gic_real t81 = fast[HMMWV_VEHICLE_FAST_SLIP_Y] + t78 * t77;
+        const gic_real t82 = -t24;
+        const gic_real t83 = -t17;
+        const gic_real t84 = -t19;
+        const gic_real t85 = -t44;
+        const gic_real t86 = -t60;
+        const gic_real t87 = road14[0];
+        const gic_real t88 = (t52 > GIC_R(0) ? t61 * R(2.2629554197782305e-06) : t52);
+        const gic_real t89 = link[HMMWV_VEHICLE_LINK_C_Z] - t44;
+        rate[HMMWV_VEHICLE_FAST_SLIP_X] = t79;
+        rate[HMMWV_VEHICLE_FAST_SLIP_Y] = t77;
+        contact[HMMWV_VEHICLE_CONTACT_LOAD] = t62;
+        contact[HMMWV_VEHICLE_CONTACT_KAPPA] = t80;
+        contact[HMMWV_VEHICLE_CONTACT_TANGENT] = t81;
+        contact[HMMWV_VEHICLE_CONTACT_CAMBER] = t73;
         contact[HMMWV_VEHICLE_CONTACT_FRICTION] = t38;
         contact[HMMWV_VEHICLE_CONTACT_SPEED] = t47;
         contact[HMMWV_VEHICLE_CONTACT_DEFLECTION] = t52;
         contact[HMMWV_VEHICLE_CONTACT_RADIUS] = t33;
         contact[HMMWV_VEHICLE_CONTACT_X_X] = t27;
-        contact[HMMWV_VEHICLE_CONTACT_X_Y] = t81;
+        contact[HMMWV_VEHICLE_CONTACT_X_Y] = t82;
         contact[HMMWV_VEHICLE_CONTACT_X_Z] = t25;
-        contact[HMMWV_VEHICLE_CONTACT_Y_X] = t68;
-        contact[HMMWV_VEHICLE_CONTACT_Y_Y] = t67;
-        contact[HMMWV_VEHICLE_CONTACT_Y_Z] = t66;
-        contact[HMMWV_VEHICLE_CONTACT_N_X] = t82;
-        contact[HMMWV_VEHICLE_CONTACT_N_Y] = t83;
+        contact[HMMWV_VEHICLE_CONTACT_Y_X] = t69;
+        contact[HMMWV_VEHICLE_CONTACT_Y_Y] = t68;
+        contact[HMMWV_VEHICLE_CONTACT_Y_Z] = t67;
+        contact[HMMWV_VEHICLE_CONTACT_N_X] = t83;
+        contact[HMMWV_VEHICLE_CONTACT_N_Y] = t84;
         contact[HMMWV_VEHICLE_CONTACT_N_Z] = t16;
         contact[HMMWV_VEHICLE_CONTACT_ARM_X] = t34;
         contact[HMMWV_VEHICLE_CONTACT_ARM_Y] = t36;
-        contact[HMMWV_VEHICLE_CONTACT_ARM_Z] = t84;
-        grip[HMMWV_VEHICLE_GRIP_LOAD] = t61;
+        contact[HMMWV_VEHICLE_CONTACT_ARM_Z] = t85;
+        grip[HMMWV_VEHICLE_GRIP_LOAD] = t62;
         grip[HMMWV_VEHICLE_GRIP_DEFLECTION] = t52;
-        grip[HMMWV_VEHICLE_GRIP_DEFLECTION_RATE] = t85;
-        grip[HMMWV_VEHICLE_GRIP_HEIGHT] = t86;
+        grip[HMMWV_VEHICLE_GRIP_DEFLECTION_RATE] = t86;
+        grip[HMMWV_VEHICLE_GRIP_HEIGHT] = t87;
+        grip[HMMWV_VEHICLE_GRIP_PRESS] = t88;
         grip[HMMWV_VEHICLE_GRIP_POINT_X] = t35;
         grip[HMMWV_VEHICLE_GRIP_POINT_Y] = t37;
-        grip[HMMWV_VEHICLE_GRIP_POINT_Z] = t87;
+        grip[HMMWV_VEHICLE_GRIP_POINT_Z] = t89;
         grip[HMMWV_VEHICLE_GRIP_SPEED_X] = t47;
-        grip[HMMWV_VEHICLE_GRIP_SPEED_Y] = t69;
+        grip[HMMWV_VEHICLE_GRIP_SPEED_Y] = t70;
         grip[HMMWV_VEHICLE_GRIP_RADIUS] = t55;
     }
     /* the tire; a wheel in the air has none */
@@ -8943,6 +8947,98 @@ static int hmmwv_vehicle_any_shift(void *instance)
     return 1;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int hmmwv_vehicle_press(const hmmwv_vehicle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        /* force stop_f_l */
+        const gic_real t1 = x[HMMWV_VEHICLE_X_SPRING_F_L] - R(0.29);
+        const gic_real t2 = GIC_MAX(t1, R(0.0));
+        const gic_real t3 = GIC_MIN(t2 * R(100.0), R(1.0));
+        const gic_real t4 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * ((R(3.0) - (t3 + t3)) * (t3 * t3) * R(5000.0));
+        const gic_real t5 = R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_L];
+        const gic_real t6 = GIC_MAX(t5, R(0.0));
+        const gic_real t7 = GIC_MIN(R(100.0) * t6, R(1.0));
+        const gic_real t8 = xd[HMMWV_VEHICLE_X_SPRING_F_L] * (R(5000.0) * ((R(3.0) - (t7 + t7)) * (t7 * t7)));
+        /* force stop_f_r */
+        const gic_real t9 = x[HMMWV_VEHICLE_X_SPRING_F_R] - R(0.29);
+        const gic_real t10 = GIC_MAX(t9, R(0.0));
+        const gic_real t11 = GIC_MIN(R(100.0) * t10, R(1.0));
+        const gic_real t12 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t11 + t11)) * (t11 * t11)));
+        const gic_real t13 = R(0.19) - x[HMMWV_VEHICLE_X_SPRING_F_R];
+        const gic_real t14 = GIC_MAX(t13, R(0.0));
+        const gic_real t15 = GIC_MIN(R(100.0) * t14, R(1.0));
+        const gic_real t16 = xd[HMMWV_VEHICLE_X_SPRING_F_R] * (R(5000.0) * ((R(3.0) - (t15 + t15)) * (t15 * t15)));
+        /* force stop_r_l */
+        const gic_real t17 = x[HMMWV_VEHICLE_X_SPRING_R_L] - R(0.34);
+        const gic_real t18 = GIC_MAX(t17, R(0.0));
+        const gic_real t19 = GIC_MIN(R(100.0) * t18, R(1.0));
+        const gic_real t20 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t19 + t19)) * (t19 * t19)));
+        const gic_real t21 = R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_L];
+        const gic_real t22 = GIC_MAX(t21, R(0.0));
+        const gic_real t23 = GIC_MIN(R(100.0) * t22, R(1.0));
+        const gic_real t24 = xd[HMMWV_VEHICLE_X_SPRING_R_L] * (R(5000.0) * ((R(3.0) - (t23 + t23)) * (t23 * t23)));
+        /* force stop_r_r */
+        const gic_real t25 = x[HMMWV_VEHICLE_X_SPRING_R_R] - R(0.34);
+        const gic_real t26 = GIC_MAX(t25, R(0.0));
+        const gic_real t27 = GIC_MIN(R(100.0) * t26, R(1.0));
+        const gic_real t28 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t27 + t27)) * (t27 * t27)));
+        const gic_real t29 = R(0.25) - x[HMMWV_VEHICLE_X_SPRING_R_R];
+        const gic_real t30 = GIC_MAX(t29, R(0.0));
+        const gic_real t31 = GIC_MIN(R(100.0) * t30, R(1.0));
+        const gic_real t32 = xd[HMMWV_VEHICLE_X_SPRING_R_R] * (R(5000.0) * ((R(3.0) - (t31 + t31)) * (t31 * t31)));
+        /* wheel tire_f_l */
+        const gic_real t33 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_L + HMMWV_VEHICLE_GRIP_PRESS];
+        /* wheel tire_f_r */
+        const gic_real t34 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_F_R + HMMWV_VEHICLE_GRIP_PRESS];
+        /* wheel tire_r_l */
+        const gic_real t35 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_L + HMMWV_VEHICLE_GRIP_PRESS];
+        /* wheel tire_r_r */
+        const gic_real t36 = self->grip[HMMWV_VEHICLE_GRIP_OF_TIRE_R_R + HMMWV_VEHICLE_GRIP_PRESS];
+        const gic_real t37 = (t1 > GIC_R(0) ? t2 * R(400000.0) + t4 : t1);
+        const gic_real t38 = (t5 > GIC_R(0) ? R(400000.0) * t6 - t8 : t5);
+        const gic_real t39 = (t9 > GIC_R(0) ? R(400000.0) * t10 + t12 : t9);
+        const gic_real t40 = (t13 > GIC_R(0) ? R(400000.0) * t14 - t16 : t13);
+        const gic_real t41 = (t17 > GIC_R(0) ? R(400000.0) * t18 + t20 : t17);
+        const gic_real t42 = (t21 > GIC_R(0) ? R(400000.0) * t22 - t24 : t21);
+        const gic_real t43 = (t25 > GIC_R(0) ? R(400000.0) * t26 + t28 : t25);
+        const gic_real t44 = (t29 > GIC_R(0) ? R(400000.0) * t30 - t32 : t29);
+        press[0] = t33;
+        press[1] = t34;
+        press[2] = t35;
+        press[3] = t36;
+        press[4] = t37;
+        press[5] = t38;
+        press[6] = t39;
+        press[7] = t40;
+        press[8] = t41;
+        press[9] = t42;
+        press[10] = t43;
+        press[11] = t44;
+    }
+    return GIC_OK;
+}
+
+static int hmmwv_vehicle_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    hmmwv_vehicle *const self = (hmmwv_vehicle *)instance;
+    gic_real e[4], rate[HMMWV_VEHICLE_STATE_ROOM];
+    int status = hmmwv_vehicle_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = hmmwv_vehicle_turn_wheels(self, time, y, e, rate + HMMWV_VEHICLE_SLOW);
+    if (status == GIC_OK)
+        status = hmmwv_vehicle_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, HMMWV_VEHICLE_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int hmmwv_vehicle_any_setup(void *self)
@@ -9058,4 +9154,6 @@ const gic_model hmmwv_vehicle_model = {
     hmmwv_vehicle_any_roll,
     hmmwv_vehicle_any_shift,
     hmmwv_vehicle_any_check,
+    HMMWV_VEHICLE_CONTACTS,
+    hmmwv_vehicle_any_contacts,
 };

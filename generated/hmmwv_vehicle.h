@@ -75,19 +75,19 @@
  *   forces and equations of motion                           608       555       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         1       0      0         0
- *   wheel 'tire_f_l' (4 times)                               194       313      23     12        37
+ *   wheel 'tire_f_l' (4 times)                               194       314      23     12        37
  *   powertrain                                                50        71       6      0         4
- *   a fast step: all of these                                826      1324      98     48       152
- *   all together                                            2706      3654     117     58       152
+ *   a fast step: all of these                                826      1328      98     48       152
+ *   all together                                            2706      3658     117     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x4604e391
+#define HMMWV_VEHICLE_H 0x8f7dd953
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 7
-#error "hmmwv_vehicle.h was generated for version 7 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
+#error "hmmwv_vehicle.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -98,12 +98,13 @@ extern "C" {
 enum {
     HMMWV_VEHICLE_ROLLING = 4,
     HMMWV_VEHICLE_LINKS = 48,
-    HMMWV_VEHICLE_GRIP = 27,
+    HMMWV_VEHICLE_GRIP = 28,
     HMMWV_VEHICLE_FORWARD = 3,
     HMMWV_VEHICLE_REVERSE = 1,
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
-    HMMWV_VEHICLE_ABI = 7,
+    HMMWV_VEHICLE_CONTACTS = 12,
+    HMMWV_VEHICLE_ABI = 8,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,

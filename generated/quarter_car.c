@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x7e7be607
+#if QUARTER_CAR_H != 0x5a4dfdf1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -2402,6 +2402,58 @@ GIC_COLD int quarter_car_self_test(quarter_car *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int quarter_car_press(const quarter_car *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        /* wheel tire */
+        const gic_real t1 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_XX] * R(-0.004825999999999997));
+        const gic_real t2 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_ZX] * R(-0.004825999999999997));
+        const gic_real t3 = m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YZ] * R(0.09182100000000004) +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YY] * R(0.12319000000000002) +
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_A_YX] * R(-0.004825999999999997));
+        gic_real road4[3];
+        if (!quarter_car_road_height(self, time, R(-0.035559999999999994) + t1,
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Y] + t3, road4))
+            return GIC_ERROR_ROAD;
+        const gic_real t5 = (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Y] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t1 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t2)) * road4[2];
+        const gic_real t6 = t5 + (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t2 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Z] * t3) * road4[1];
+        const gic_real t7 = road4[0] + R(0.4699) - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_C_Z] + t2);
+        const gic_real t8 = GIC_MIN(GIC_MAX(t7 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t9 = (t6 - (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_VELOCITY_Z] +
+            (m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_X] * t3 -
+            m[QUARTER_CAR_MOTION_WHEEL + QUARTER_CAR_OMEGA_Y] * t1))) * ((R(3.0) - (t8 + t8)) * (t8 * t8) * R(500.0));
+        const gic_real t10 = t9 + t7 * R(283000.0);
+        press[0] = t10;
+    }
+    return GIC_OK;
+}
+
+static int quarter_car_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    quarter_car *const self = (quarter_car *)instance;
+    gic_real e[4], rate[QUARTER_CAR_STATE_ROOM];
+    int status = quarter_car_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = quarter_car_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, QUARTER_CAR_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int quarter_car_any_setup(void *self)
@@ -2517,4 +2569,6 @@ const gic_model quarter_car_model = {
     NULL,
     NULL,
     quarter_car_any_check,
+    QUARTER_CAR_CONTACTS,
+    quarter_car_any_contacts,
 };

@@ -67,7 +67,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x766a7f69
+#if SOLID_AXLE_H != 0x2db3eb51
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7279,6 +7279,199 @@ GIC_COLD int solid_axle_self_test(solid_axle *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int solid_axle_press(const solid_axle *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        const gic_real t1 = e[2] + e[2];
+        const gic_real t2 = e[3] * t1;
+        const gic_real t3 = e[1] + e[1];
+        const gic_real t4 = e[0] * t3;
+        const gic_real t5 = t2 - t4;
+        /* wheel tire_f_l */
+        const gic_real t6 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t7 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t8 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Y] + t6;
+        const gic_real t9 = R(1.653405) + t7;
+        const gic_real t10 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t6 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t7) + (y[SOLID_AXLE_STATE_OMEGA_X] * t8 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t9);
+        const gic_real t11 = e[1] * t3;
+        const gic_real t12 = e[3] + e[3];
+        const gic_real t13 = e[3] * t12;
+        const gic_real t14 = R(1.0) - (t11 + t13);
+        const gic_real t15 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZY] * R(0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t16 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_C_Z] + t15;
+        const gic_real t17 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t7 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_X] * t15) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t9 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t16);
+        const gic_real t18 = e[2] * t3;
+        const gic_real t19 = e[0] * t12;
+        const gic_real t20 = t18 + t19;
+        const gic_real t21 = m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Y] * t15 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_L + SOLID_AXLE_OMEGA_Z] * t6 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t16 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t8);
+        const gic_real t22 = y[SOLID_AXLE_STATE_V_Y] + (t5 * t10 + (t14 * t17 + t20 * t21));
+        const gic_real t23 = e[1] * t12;
+        const gic_real t24 = e[0] * t1;
+        const gic_real t25 = t23 + t24;
+        const gic_real t26 = t18 - t19;
+        const gic_real t27 = e[2] * t1;
+        const gic_real t28 = R(1.0) - (t27 + t13);
+        const gic_real t29 = y[SOLID_AXLE_STATE_R_X] + (t25 * t16 + (t26 * t8 + t28 * t9));
+        const gic_real t30 = y[SOLID_AXLE_STATE_R_Y] + (t5 * t16 + (t14 * t8 + t20 * t9));
+        gic_real road31[3];
+        if (!solid_axle_road_height(self, time, t29, t30, road31))
+            return GIC_ERROR_ROAD;
+        const gic_real t32 = y[SOLID_AXLE_STATE_V_X] + (t25 * t10 + (t26 * t17 + t28 * t21));
+        const gic_real t33 = R(1.0) - (t11 + t27);
+        const gic_real t34 = t2 + t4;
+        const gic_real t35 = t23 - t24;
+        const gic_real t36 = y[SOLID_AXLE_STATE_V_Z] + (t33 * t10 + (t34 * t17 + t35 * t21));
+        const gic_real t37 = t22 * road31[2] + t32 * road31[1] - t36;
+        const gic_real t38 = y[SOLID_AXLE_STATE_R_Z] + (t33 * t16 + (t34 * t8 + t35 * t9));
+        const gic_real t39 = road31[0] + R(0.4699) - t38;
+        const gic_real t40 = GIC_MIN(GIC_MAX(t39 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t41 = t37 * ((R(3.0) - (t40 + t40)) * (t40 * t40) * R(500.0));
+        /* wheel tire_f_r */
+        const gic_real t42 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_XX] * R(-0.004825999999999997));
+        const gic_real t44 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Y] + t42;
+        const gic_real t45 = R(1.653405) + t43;
+        const gic_real t46 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t42 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t43) + (y[SOLID_AXLE_STATE_OMEGA_X] * t44 -
+            y[SOLID_AXLE_STATE_OMEGA_Y] * t45);
+        const gic_real t47 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZZ] * R(0.09182100000000004) +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZY] * R(-0.12319000000000002) +
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_A_ZX] * R(-0.004825999999999997));
+        const gic_real t48 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_C_Z] + t47;
+        const gic_real t49 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t43 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_X] * t47) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t45 -
+            y[SOLID_AXLE_STATE_OMEGA_X] * t48);
+        const gic_real t50 = m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Y] * t47 -
+            m[SOLID_AXLE_MOTION_WHEEL_F_R + SOLID_AXLE_OMEGA_Z] * t42 + (y[SOLID_AXLE_STATE_OMEGA_Y] * t48 -
+            y[SOLID_AXLE_STATE_OMEGA_Z] * t44);
+        const gic_real t51 = y[SOLID_AXLE_STATE_V_Y] + (t5 * t46 + (t14 * t49 + t20 * t50));
+        const gic_real t52 = y[SOLID_AXLE_STATE_R_X] + (t25 * t48 + (t26 * t44 + t28 * t45));
+        const gic_real t53 = y[SOLID_AXLE_STATE_R_Y] + (t5 * t48 + (t14 * t44 + t20 * t45));
+        gic_real road54[3];
+        if (!solid_axle_road_height(self, time, t52, t53, road54))
+            return GIC_ERROR_ROAD;
+        const gic_real t55 = y[SOLID_AXLE_STATE_V_X] + (t25 * t46 + (t26 * t49 + t28 * t50));
+        const gic_real t56 = y[SOLID_AXLE_STATE_V_Z] + (t33 * t46 + (t34 * t49 + t35 * t50));
+        const gic_real t57 = t51 * road54[2] + t55 * road54[1] - t56;
+        const gic_real t58 = y[SOLID_AXLE_STATE_R_Z] + (t33 * t48 + (t34 * t44 + t35 * t45));
+        const gic_real t59 = R(0.4699) + road54[0] - t58;
+        const gic_real t60 = GIC_MIN(GIC_MAX(R(100.0) * t59, R(0.0)), R(1.0));
+        const gic_real t61 = t57 * (R(500.0) * ((R(3.0) - (t60 + t60)) * (t60 * t60)));
+        /* wheel tire_r_l */
+        const gic_real t62 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YZ] * R(-0.17228899999999997);
+        const gic_real t63 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YX] * R(-0.03340499999999991);
+        const gic_real t64 = t62 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(1.029701) + t63);
+        const gic_real t65 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XZ] * R(-0.17228899999999997);
+        const gic_real t66 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XX] * R(-0.03340499999999991);
+        const gic_real t67 = t65 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(1.029701) + t66);
+        const gic_real t68 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t64;
+        const gic_real t69 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t67;
+        const gic_real t70 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t64 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t67) + (y[SOLID_AXLE_STATE_OMEGA_X] * t68 - y[SOLID_AXLE_STATE_OMEGA_Y] * t69);
+        const gic_real t71 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZZ] * R(-0.17228899999999997);
+        const gic_real t72 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZX] * R(-0.03340499999999991);
+        const gic_real t73 = t71 + (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(1.029701) + t72);
+        const gic_real t74 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t73;
+        const gic_real t75 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t67 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t73) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t69 - y[SOLID_AXLE_STATE_OMEGA_X] * t74);
+        const gic_real t76 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t73 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t64) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t74 - y[SOLID_AXLE_STATE_OMEGA_Z] * t68);
+        const gic_real t77 = y[SOLID_AXLE_STATE_V_Y] + (t5 * t70 + (t14 * t75 + t20 * t76));
+        const gic_real t78 = y[SOLID_AXLE_STATE_R_X] + (t25 * t74 + (t26 * t68 + t28 * t69));
+        const gic_real t79 = y[SOLID_AXLE_STATE_R_Y] + (t5 * t74 + (t14 * t68 + t20 * t69));
+        gic_real road80[3];
+        if (!solid_axle_road_height(self, time, t78, t79, road80))
+            return GIC_ERROR_ROAD;
+        const gic_real t81 = y[SOLID_AXLE_STATE_V_X] + (t25 * t70 + (t26 * t75 + t28 * t76));
+        const gic_real t82 = y[SOLID_AXLE_STATE_V_Z] + (t33 * t70 + (t34 * t75 + t35 * t76));
+        const gic_real t83 = t77 * road80[2] + t81 * road80[1] - t82;
+        const gic_real t84 = y[SOLID_AXLE_STATE_R_Z] + (t33 * t74 + (t34 * t68 + t35 * t69));
+        const gic_real t85 = R(0.4699) + road80[0] - t84;
+        const gic_real t86 = GIC_MIN(GIC_MAX(R(100.0) * t85, R(0.0)), R(1.0));
+        const gic_real t87 = t83 * (R(500.0) * ((R(3.0) - (t86 + t86)) * (t86 * t86)));
+        /* wheel tire_r_r */
+        const gic_real t88 = t62 + (t63 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_YY] * R(-0.789701));
+        const gic_real t89 = t65 + (t66 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_XY] * R(-0.789701));
+        const gic_real t90 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Y] + t88;
+        const gic_real t91 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_X] + t89;
+        const gic_real t92 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Z] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] * t88 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] *
+            t89) + (y[SOLID_AXLE_STATE_OMEGA_X] * t90 - y[SOLID_AXLE_STATE_OMEGA_Y] * t91);
+        const gic_real t93 = t71 + (t72 + m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_A_ZY] * R(-0.789701));
+        const gic_real t94 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_C_Z] + t93;
+        const gic_real t95 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_Y] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] * t89 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_X] *
+            t93) + (y[SOLID_AXLE_STATE_OMEGA_Z] * t91 - y[SOLID_AXLE_STATE_OMEGA_X] * t94);
+        const gic_real t96 = m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_VELOCITY_X] +
+            (m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Y] * t93 - m[SOLID_AXLE_MOTION_AXLE + SOLID_AXLE_OMEGA_Z] *
+            t88) + (y[SOLID_AXLE_STATE_OMEGA_Y] * t94 - y[SOLID_AXLE_STATE_OMEGA_Z] * t90);
+        const gic_real t97 = y[SOLID_AXLE_STATE_V_Y] + (t5 * t92 + (t14 * t95 + t20 * t96));
+        const gic_real t98 = y[SOLID_AXLE_STATE_R_X] + (t25 * t94 + (t26 * t90 + t28 * t91));
+        const gic_real t99 = y[SOLID_AXLE_STATE_R_Y] + (t5 * t94 + (t14 * t90 + t20 * t91));
+        gic_real road100[3];
+        if (!solid_axle_road_height(self, time, t98, t99, road100))
+            return GIC_ERROR_ROAD;
+        const gic_real t101 = y[SOLID_AXLE_STATE_V_X] + (t25 * t92 + (t26 * t95 + t28 * t96));
+        const gic_real t102 = y[SOLID_AXLE_STATE_V_Z] + (t33 * t92 + (t34 * t95 + t35 * t96));
+        const gic_real t103 = t97 * road100[2] + t101 * road100[1] - t102;
+        const gic_real t104 = y[SOLID_AXLE_STATE_R_Z] + (t33 * t94 + (t34 * t90 + t35 * t91));
+        const gic_real t105 = R(0.4699) + road100[0] - t104;
+        const gic_real t106 = GIC_MIN(GIC_MAX(R(100.0) * t105, R(0.0)), R(1.0));
+        const gic_real t107 = t103 * (R(500.0) * ((R(3.0) - (t106 + t106)) * (t106 * t106)));
+        const gic_real t108 = t41 + t39 * R(283000.0);
+        const gic_real t109 = t61 + R(283000.0) * t59;
+        const gic_real t110 = t87 + R(283000.0) * t85;
+        const gic_real t111 = t107 + R(283000.0) * t105;
+        press[0] = t108;
+        press[1] = t109;
+        press[2] = t110;
+        press[3] = t111;
+    }
+    return GIC_OK;
+}
+
+static int solid_axle_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    solid_axle *const self = (solid_axle *)instance;
+    gic_real e[4], rate[SOLID_AXLE_STATE_ROOM];
+    int status = solid_axle_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = solid_axle_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, SOLID_AXLE_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int solid_axle_any_setup(void *self)
@@ -7394,4 +7587,6 @@ const gic_model solid_axle_model = {
     NULL,
     NULL,
     solid_axle_any_check,
+    SOLID_AXLE_CONTACTS,
+    solid_axle_any_contacts,
 };

@@ -70,7 +70,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xe32a35b9
+#if TRAILING_ARM_H != 0xe2c98691
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6651,6 +6651,185 @@ GIC_COLD int trailing_arm_self_test(trailing_arm *self, gic_self_test *result)
     return self->head.status = GIC_OK;
 }
 
+/* ---- contacts ---------------------------------------------------------------------------------------------------- */
+
+static int trailing_arm_press(const trailing_arm *self, gic_real time, const gic_real *y, const gic_real *e,
+    gic_real *press)
+{
+    const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = self->motion;
+    const gic_real *const p = self->parameter, *const port = self->port;
+    (void)time, (void)y, (void)e, (void)x, (void)xd, (void)u, (void)m, (void)p, (void)port;
+    {
+        const gic_real t1 = e[2] + e[2];
+        const gic_real t2 = e[3] * t1;
+        const gic_real t3 = e[1] + e[1];
+        const gic_real t4 = e[0] * t3;
+        const gic_real t5 = t2 - t4;
+        /* wheel tire_f_l */
+        const gic_real t6 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_YX] * R(-0.004825999999999997));
+        const gic_real t7 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_XX] * R(-0.004825999999999997));
+        const gic_real t8 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Y] + t6;
+        const gic_real t9 = R(1.653405) + t7;
+        const gic_real t10 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t6 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t7) + (y[TRAILING_ARM_STATE_OMEGA_X] * t8 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t9);
+        const gic_real t11 = e[1] * t3;
+        const gic_real t12 = e[3] + e[3];
+        const gic_real t13 = e[3] * t12;
+        const gic_real t14 = R(1.0) - (t11 + t13);
+        const gic_real t15 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZY] * R(0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_A_ZX] * R(-0.004825999999999997));
+        const gic_real t16 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_C_Z] + t15;
+        const gic_real t17 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t7 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_X] * t15) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t9 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t16);
+        const gic_real t18 = e[2] * t3;
+        const gic_real t19 = e[0] * t12;
+        const gic_real t20 = t18 + t19;
+        const gic_real t21 = m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Y] * t15 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_L + TRAILING_ARM_OMEGA_Z] * t6 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t16 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t8);
+        const gic_real t22 = y[TRAILING_ARM_STATE_V_Y] + (t5 * t10 + (t14 * t17 + t20 * t21));
+        const gic_real t23 = e[1] * t12;
+        const gic_real t24 = e[0] * t1;
+        const gic_real t25 = t23 + t24;
+        const gic_real t26 = t18 - t19;
+        const gic_real t27 = e[2] * t1;
+        const gic_real t28 = R(1.0) - (t27 + t13);
+        const gic_real t29 = y[TRAILING_ARM_STATE_R_X] + (t25 * t16 + (t26 * t8 + t28 * t9));
+        const gic_real t30 = y[TRAILING_ARM_STATE_R_Y] + (t5 * t16 + (t14 * t8 + t20 * t9));
+        gic_real road31[3];
+        if (!trailing_arm_road_height(self, time, t29, t30, road31))
+            return GIC_ERROR_ROAD;
+        const gic_real t32 = y[TRAILING_ARM_STATE_V_X] + (t25 * t10 + (t26 * t17 + t28 * t21));
+        const gic_real t33 = R(1.0) - (t11 + t27);
+        const gic_real t34 = t2 + t4;
+        const gic_real t35 = t23 - t24;
+        const gic_real t36 = y[TRAILING_ARM_STATE_V_Z] + (t33 * t10 + (t34 * t17 + t35 * t21));
+        const gic_real t37 = t22 * road31[2] + t32 * road31[1] - t36;
+        const gic_real t38 = y[TRAILING_ARM_STATE_R_Z] + (t33 * t16 + (t34 * t8 + t35 * t9));
+        const gic_real t39 = road31[0] + R(0.4699) - t38;
+        const gic_real t40 = GIC_MIN(GIC_MAX(t39 * R(100.0), R(0.0)), R(1.0));
+        const gic_real t41 = t37 * ((R(3.0) - (t40 + t40)) * (t40 * t40) * R(500.0));
+        /* wheel tire_f_r */
+        const gic_real t42 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_YX] * R(-0.004825999999999997));
+        const gic_real t43 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_XX] * R(-0.004825999999999997));
+        const gic_real t44 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Y] + t42;
+        const gic_real t45 = R(1.653405) + t43;
+        const gic_real t46 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Z] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t42 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t43) + (y[TRAILING_ARM_STATE_OMEGA_X] * t44 -
+            y[TRAILING_ARM_STATE_OMEGA_Y] * t45);
+        const gic_real t47 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZZ] * R(0.09182100000000004) +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZY] * R(-0.12319000000000002) +
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_A_ZX] * R(-0.004825999999999997));
+        const gic_real t48 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_C_Z] + t47;
+        const gic_real t49 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_VELOCITY_Y] +
+            (m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t43 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_X] * t47) + (y[TRAILING_ARM_STATE_OMEGA_Z] * t45 -
+            y[TRAILING_ARM_STATE_OMEGA_X] * t48);
+        const gic_real t50 = m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Y] * t47 -
+            m[TRAILING_ARM_MOTION_WHEEL_F_R + TRAILING_ARM_OMEGA_Z] * t42 + (y[TRAILING_ARM_STATE_OMEGA_Y] * t48 -
+            y[TRAILING_ARM_STATE_OMEGA_Z] * t44);
+        const gic_real t51 = y[TRAILING_ARM_STATE_V_Y] + (t5 * t46 + (t14 * t49 + t20 * t50));
+        const gic_real t52 = y[TRAILING_ARM_STATE_R_X] + (t25 * t48 + (t26 * t44 + t28 * t45));
+        const gic_real t53 = y[TRAILING_ARM_STATE_R_Y] + (t5 * t48 + (t14 * t44 + t20 * t45));
+        gic_real road54[3];
+        if (!trailing_arm_road_height(self, time, t52, t53, road54))
+            return GIC_ERROR_ROAD;
+        const gic_real t55 = y[TRAILING_ARM_STATE_V_X] + (t25 * t46 + (t26 * t49 + t28 * t50));
+        const gic_real t56 = y[TRAILING_ARM_STATE_V_Z] + (t33 * t46 + (t34 * t49 + t35 * t50));
+        const gic_real t57 = t51 * road54[2] + t55 * road54[1] - t56;
+        const gic_real t58 = y[TRAILING_ARM_STATE_R_Z] + (t33 * t48 + (t34 * t44 + t35 * t45));
+        const gic_real t59 = R(0.4699) + road54[0] - t58;
+        const gic_real t60 = GIC_MIN(GIC_MAX(R(100.0) * t59, R(0.0)), R(1.0));
+        const gic_real t61 = t57 * (R(500.0) * ((R(3.0) - (t60 + t60)) * (t60 * t60)));
+        /* wheel tire_r_l */
+        const gic_real t62 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
+        const gic_real t63 = R(-1.15) + t62;
+        const gic_real t64 = y[TRAILING_ARM_STATE_OMEGA_X] * R(0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t63 -
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t62;
+        const gic_real t65 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
+        const gic_real t66 = R(0.026000000000000023) + t65;
+        const gic_real t67 = y[TRAILING_ARM_STATE_OMEGA_Z] * t63 - y[TRAILING_ARM_STATE_OMEGA_X] * t66;
+        const gic_real t68 = m[TRAILING_ARM_MOTION_ARM_R_L + TRAILING_ARM_OMEGA_Y] * t65 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t66 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(0.909701));
+        const gic_real t69 = y[TRAILING_ARM_STATE_V_Y] + (t5 * t64 + (t14 * t67 + t20 * t68));
+        const gic_real t70 = y[TRAILING_ARM_STATE_R_X] + (t25 * t66 + (t26 * R(0.909701) + t28 * t63));
+        const gic_real t71 = y[TRAILING_ARM_STATE_R_Y] + (t5 * t66 + (t14 * R(0.909701) + t20 * t63));
+        gic_real road72[3];
+        if (!trailing_arm_road_height(self, time, t70, t71, road72))
+            return GIC_ERROR_ROAD;
+        const gic_real t73 = y[TRAILING_ARM_STATE_V_X] + (t25 * t64 + (t26 * t67 + t28 * t68));
+        const gic_real t74 = y[TRAILING_ARM_STATE_V_Z] + (t33 * t64 + (t34 * t67 + t35 * t68));
+        const gic_real t75 = t69 * road72[2] + t73 * road72[1] - t74;
+        const gic_real t76 = y[TRAILING_ARM_STATE_R_Z] + (t33 * t66 + (t34 * R(0.909701) + t35 * t63));
+        const gic_real t77 = R(0.4699) + road72[0] - t76;
+        const gic_real t78 = GIC_MIN(GIC_MAX(R(100.0) * t77, R(0.0)), R(1.0));
+        const gic_real t79 = t75 * (R(500.0) * ((R(3.0) - (t78 + t78)) * (t78 * t78)));
+        /* wheel tire_r_r */
+        const gic_real t80 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_XX] * R(-0.5034050000000001);
+        const gic_real t81 = R(-1.15) + t80;
+        const gic_real t82 = y[TRAILING_ARM_STATE_OMEGA_X] * R(-0.909701) - y[TRAILING_ARM_STATE_OMEGA_Y] * t81 -
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t80;
+        const gic_real t83 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZZ] * R(-0.052288999999999974) +
+            m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_A_ZX] * R(-0.5034050000000001);
+        const gic_real t84 = R(0.026000000000000023) + t83;
+        const gic_real t85 = y[TRAILING_ARM_STATE_OMEGA_Z] * t81 - y[TRAILING_ARM_STATE_OMEGA_X] * t84;
+        const gic_real t86 = m[TRAILING_ARM_MOTION_ARM_R_R + TRAILING_ARM_OMEGA_Y] * t83 +
+            (y[TRAILING_ARM_STATE_OMEGA_Y] * t84 - y[TRAILING_ARM_STATE_OMEGA_Z] * R(-0.909701));
+        const gic_real t87 = y[TRAILING_ARM_STATE_V_Y] + (t5 * t82 + (t14 * t85 + t20 * t86));
+        const gic_real t88 = y[TRAILING_ARM_STATE_R_X] + (t25 * t84 + (t26 * R(-0.909701) + t28 * t81));
+        const gic_real t89 = y[TRAILING_ARM_STATE_R_Y] + (t5 * t84 + (t14 * R(-0.909701) + t20 * t81));
+        gic_real road90[3];
+        if (!trailing_arm_road_height(self, time, t88, t89, road90))
+            return GIC_ERROR_ROAD;
+        const gic_real t91 = y[TRAILING_ARM_STATE_V_X] + (t25 * t82 + (t26 * t85 + t28 * t86));
+        const gic_real t92 = y[TRAILING_ARM_STATE_V_Z] + (t33 * t82 + (t34 * t85 + t35 * t86));
+        const gic_real t93 = t87 * road90[2] + t91 * road90[1] - t92;
+        const gic_real t94 = y[TRAILING_ARM_STATE_R_Z] + (t33 * t84 + (t34 * R(-0.909701) + t35 * t81));
+        const gic_real t95 = R(0.4699) + road90[0] - t94;
+        const gic_real t96 = GIC_MIN(GIC_MAX(R(100.0) * t95, R(0.0)), R(1.0));
+        const gic_real t97 = t93 * (R(500.0) * ((R(3.0) - (t96 + t96)) * (t96 * t96)));
+        const gic_real t98 = t41 + t39 * R(283000.0);
+        const gic_real t99 = t61 + R(283000.0) * t59;
+        const gic_real t100 = t79 + R(283000.0) * t77;
+        const gic_real t101 = t97 + R(283000.0) * t95;
+        press[0] = t98;
+        press[1] = t99;
+        press[2] = t100;
+        press[3] = t101;
+    }
+    return GIC_OK;
+}
+
+static int trailing_arm_any_contacts(void *instance, gic_real time, const gic_real *y, gic_real *press)
+{
+    trailing_arm *const self = (trailing_arm *)instance;
+    gic_real e[4], rate[TRAILING_ARM_STATE_ROOM];
+    int status = trailing_arm_locate(self, time, y, e);
+    (void)rate;
+    if (status == GIC_OK)
+        status = trailing_arm_press(self, time, y, e, press);
+    if (status == GIC_OK && !GIC_FINITE(press, TRAILING_ARM_CONTACTS))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int trailing_arm_any_setup(void *self)
@@ -6766,4 +6945,6 @@ const gic_model trailing_arm_model = {
     NULL,
     NULL,
     trailing_arm_any_check,
+    TRAILING_ARM_CONTACTS,
+    trailing_arm_any_contacts,
 };

@@ -339,11 +339,11 @@ static int locate_change(const gic_model *model, void *self, const Rest *rest, g
     return found == 1 ? GIC_OK : found == 0 ? GIC_ERROR_EVENTS : found;
 }
 
-/* The rest of a step by RK4, in as many parts as the step has fast ones. The rate at its start goes to `first`; work: 4
- * rows of a state. */
-static int finish_step(const gic_model *model, void *self, const Rest *rest, gic_real *first, gic_real *work)
+/* The rest of a step by RK4, in `parts` parts. The rate at its start goes to `first`; work: 4 rows of a state. */
+static int finish_step(const gic_model *model, void *self, const Rest *rest, int32_t parts, gic_real *first,
+                       gic_real *work)
 {
-    const int32_t n = model->slow_count + model->fast_count, parts = ((const gic_head *)self)->ratio;
+    const int32_t n = model->slow_count + model->fast_count;
     const gic_real part = rest->length / (gic_real)parts, *newest;
     gic_real *state = array_at(self, model->state_offset);
     int status = GIC_OK;
@@ -382,7 +382,7 @@ static int change_gears(const gic_model *model, void *self)
         if (status == GIC_OK && share < GIC_R(1.0)) {
             rest.length *= GIC_R(1.0) - share;
             copy(scratch + 2 * n, state, n);
-            status = finish_step(model, self, &rest, scratch, to);
+            status = finish_step(model, self, &rest, head->ratio, scratch, to);
             rest.from = scratch + 2 * n;
             rest.rate = scratch;
         }
@@ -392,6 +392,164 @@ static int change_gears(const gic_model *model, void *self)
         set_inputs(model, self, rest.end);
     }
     return GIC_OK;
+}
+
+/* ---- contacts: the same for what head.locate asks for. Rows of the scratch array: 0 the rate where a piece begins, 2
+ * the state there, 3 and 4 state and rate at the step's end, 3 to 6 work. */
+
+/* How near to them contacts are; above: those with a load, a bit each. */
+typedef struct Touch {
+    gic_real press[GIC_CONTACTS];
+    uint64_t above;
+} Touch;
+
+static int touch_at(const gic_model *model, void *self, gic_real time, const gic_real *state, Touch *touch)
+{
+    set_inputs(model, self, time);
+    const int status = model->contacts(self, time, state, touch->press);
+    touch->above = 0;
+    for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i)
+        touch->above |= (uint64_t)(touch->press[i] > GIC_R(0.0)) << i;
+    return status;
+}
+
+/* The same at a share of the rest; the instance's state is there afterwards. */
+static int touch_between(const gic_model *model, void *self, const Rest *rest, gic_real share, Touch *touch)
+{
+    gic_head *head = (gic_head *)self;
+    gic_real *state = array_at(self, model->state_offset);
+    const int64_t switches = head->switch_count;
+    between(model->slow_count + model->fast_count, share, rest->length, rest->from, rest->rate, rest->to,
+            rest->rate_there, state);
+    const int status = settle(model, self, state);
+    head->switch_count = switches;
+    return status == GIC_OK ? touch_at(model, self, rest->end - (GIC_R(1.0) - share) * rest->length, state, touch)
+                            : status;
+}
+
+/* Shares of a step that are the same time: what a force that begins or ends loses in it is 1e-12 of a step's error. */
+#define SAME_TIME GIC_R(1e-6)
+
+/* The share of the rest at which contact i changes, which has other signs at its ends a and b. *slope: of its number
+ * over the share there. Every third look halves what is left. */
+static int locate_contact(const gic_model *model, void *self, const Rest *rest, int32_t i, const Touch *a,
+                          const Touch *b, gic_real *share, gic_real *slope)
+{
+    const uint64_t bit = (uint64_t)1 << i, after = b->above & bit;
+    gic_real low = GIC_R(0.0), high = GIC_R(1.0), at_low = a->press[i], at_high = b->press[i];
+    int status = GIC_OK;
+    for (int k = 0; k < 60 && high - low > GIC_R(0.1) * SAME_TIME && status == GIC_OK; ++k) {
+        Touch now;
+        const gic_real way = at_low - at_high, part = at_low / way;
+        /* rounding may have put the start on the other side: then there is nothing to interpolate */
+        const int useful = k % 3 < 2 && gic_finite(&part, 1) && part > GIC_R(0.01) && part < GIC_R(0.99);
+        const gic_real middle = low + (useful ? part : GIC_R(0.5)) * (high - low);
+        status = touch_between(model, self, rest, middle, &now);
+        if (status == GIC_OK && (now.above & bit) == after) {
+            high = middle;
+            at_high = now.press[i];
+        } else if (status == GIC_OK) {
+            low = middle;
+            at_low = now.press[i];
+        }
+    }
+    *share = high;
+    *slope = (at_high - at_low) / (high - low);
+    return status;
+}
+
+/* Move the instance to the first change of a contact in the rest, at whose ends are *touch and b: to *share of it,
+ * where *touch has what is above, the contacts that change included. */
+static int go_to_contact(const gic_model *model, void *self, const Rest *rest, const Touch *b, gic_real *share,
+                         Touch *touch)
+{
+    gic_head *head = (gic_head *)self;
+    gic_real at[GIC_CONTACTS], slope[GIC_CONTACTS];
+    gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
+    const int32_t n = model->slow_count + model->fast_count;
+    int32_t soonest = -1;
+    int status = GIC_OK;
+    for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i) {
+        at[i] = GIC_R(2.0);
+        if ((touch->above ^ b->above) >> i & 1) {
+            status = locate_contact(model, self, rest, i, touch, b, &at[i], &slope[i]);
+            if (soonest < 0 || at[i] < at[soonest])
+                soonest = i;
+        }
+    }
+    if (status != GIC_OK)
+        return status;
+    *share = at[soonest];
+    /* the step did not know of the contact: its interpolant shows about when it is, and a step to there shows when */
+    for (int tries = 0;; ++tries) {
+        Rest piece = *rest;
+        piece.length = *share * rest->length;
+        piece.end = rest->end - (rest->length - piece.length);
+        const gic_real whole = (gic_real)head->ratio * piece.length / head->step;
+        copy(state, rest->from, n);
+        status = finish_step(model, self, &piece, 1 + (int32_t)(GIC_R(0.999) * whole), scratch, scratch + 3 * n);
+        if (status == GIC_OK)
+            status = touch_at(model, self, piece.end, state, touch);
+        if (status != GIC_OK)
+            return status;
+        const gic_real off = -touch->press[soonest] / slope[soonest], next = *share + off;
+        if (tries == 4 || !gic_finite(&off, 1) || absolute(off) < SAME_TIME || !(next > SAME_TIME) ||
+            !(next < GIC_R(1.0)))
+            break;
+        *share = next;
+    }
+    for (int32_t i = 0; i < model->contact_count; ++i)
+        if (at[i] <= at[soonest] + SAME_TIME) {
+            const uint64_t bit = (uint64_t)1 << i;
+            touch->above = (touch->above & ~bit) | (b->above & bit);
+            ++head->contact_count;
+        }
+    return status;
+}
+
+/* Contacts at the end of a step whose state at the start is in row 1 of the scratch array. Where they have changed the
+ * step is made again in parts that end at the changes. */
+static int cross_contacts(const gic_model *model, void *self)
+{
+    const int32_t n = model->slow_count + model->fast_count;
+    gic_head *head = (gic_head *)self;
+    gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
+    gic_real *from = scratch + 2 * n, *to = scratch + 3 * n, *rate_there = scratch + 4 * n, share = GIC_R(0.0);
+    Rest rest = {gic_time(self), head->step, from, array_at(self, model->rate_offset), to, rate_there, {0}};
+    Touch a, b;
+    int status = touch_at(model, self, rest.end, state, &b);
+    if (status != GIC_OK || b.above == head->touching)
+        return status;
+    copy(from, scratch + n, n);
+    status = touch_at(model, self, rest.end - rest.length, from, &a);
+    for (int32_t changes = 0; status == GIC_OK && a.above != b.above && share < GIC_R(1.0); ++changes) {
+        if (changes == GIC_CHANGES)
+            return GIC_ERROR_EVENTS;
+        head->history = 0;
+        copy(to, state, n);
+        status = evaluate(model, self, rest.end, to, rate_there);
+        if (status == GIC_OK)
+            status = go_to_contact(model, self, &rest, &b, &share, &a);
+        b = a;
+        if (status == GIC_OK && share < GIC_R(1.0)) {
+            rest.length *= GIC_R(1.0) - share;
+            copy(from, state, n);
+            const gic_real whole = (gic_real)head->ratio * rest.length / head->step;
+            status = finish_step(model, self, &rest, 1 + (int32_t)(GIC_R(0.999) * whole), scratch, to);
+            rest.rate = scratch;
+            if (status == GIC_OK)
+                status = touch_at(model, self, rest.end, state, &b);
+        }
+    }
+    head->touching = b.above;
+    set_inputs(model, self, rest.end);
+    return status;
+}
+
+/* Are there changes to look for within steps? */
+static int looks_within(const gic_model *model, const gic_head *head)
+{
+    return model->shift || (model->contacts && head->locate);
 }
 
 /* What a step changes of an instance before its gears are known: rows 7 and 8 of the scratch array have the rate at the
@@ -410,7 +568,7 @@ static gic_real *kept_rows(const gic_model *model, void *self)
 static Kept keep(const gic_model *model, void *self)
 {
     const gic_head *head = (const gic_head *)self;
-    if (model->shift)
+    if (looks_within(model, head))
         copy(kept_rows(model, self), array_at(self, model->rate_offset), model->slow_count + model->fast_count);
     /* no compound literal: this file compiles as C++, too */
     const Kept kept = {head->start_time, head->step, head->steps, head->method, head->ratio, head->history};
@@ -437,7 +595,7 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
     int32_t discrete[MOST_DISCRETE];
     ++head->steps;
     set_inputs(model, self, gic_time(self));
-    if (model->shift) {
+    if (looks_within(model, head)) {
         const gic_real start_time = head->start_time;
         const int64_t steps = head->steps;
         const int32_t n = model->slow_count + model->fast_count;
@@ -445,7 +603,11 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
         if (from != start)
             copy(start, from, n);
         copy_discrete(model, discrete, discrete_of(model, self));
-        const int status = model->discrete_count <= MOST_DISCRETE ? change_gears(model, self) : GIC_ERROR_ABI;
+        int status = model->discrete_count <= MOST_DISCRETE ? GIC_OK : GIC_ERROR_ABI;
+        if (status == GIC_OK && model->contacts && head->locate)
+            status = cross_contacts(model, self);
+        if (status == GIC_OK && model->shift)
+            status = change_gears(model, self);
         head->start_time = start_time;
         head->steps = steps;
         if (status != GIC_OK) {
@@ -512,7 +674,7 @@ static int march(const gic_model *model, void *self, gic_real step)
     gic_real *from = array_at(self, model->scratch_offset) + n, *history = array_at(self, model->history_offset);
     gic_real *older = kept_rows(model, self) + n;
     const Kept kept = keep(model, self);
-    if (model->shift) {
+    if (looks_within(model, head)) {
         copy(from, array_at(self, model->state_offset), n);
         copy(older, history + n, n);
     }

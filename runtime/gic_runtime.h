@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 7
+#define GIC_ABI_VERSION 8
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -63,7 +63,7 @@ typedef double gic_real;
     X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long") \
     X(GIC_ERROR_RESIDUAL, -15, \
       "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error") \
-    X(GIC_ERROR_EVENTS, -16, "gears change more often within a step than a step can follow")
+    X(GIC_ERROR_EVENTS, -16, "gears or contacts change more often within a step than a step can follow")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
@@ -119,6 +119,8 @@ typedef struct gic_head {
     int32_t condition;   /* the condition that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; see condition_text
                           */
     int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
+    int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them */
+    uint64_t touching;   /* contacts under load at the end of the last step, a bit each; only a hint */
     int32_t unchecked;   /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
     int64_t rhs_count;   /* right-hand sides evaluated */
     int64_t fast_count;  /* evaluations of the fast states' rates only, by gic_step_dual */
@@ -130,6 +132,7 @@ typedef struct gic_head {
     int64_t kept_count;    /* solutions of subsets reused since their inputs had not changed */
     int64_t air_count;     /* tires not evaluated since their wheels had no contact */
     int64_t steady_count;  /* fast rates not evaluated since fast states changed steadily, gic_step_steady */
+    int64_t contact_count; /* contacts made or lost that `locate` found within steps */
     int64_t sleep_count;   /* steps in which a sleeping vehicle kept its state; counted by hosts */
     gic_real largest_step; /* largest final Newton correction, relative to the subset's size */
     gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */
@@ -209,6 +212,10 @@ typedef struct gic_model {
      * and equations of motion: GIC_OK or GIC_ERROR_RESIDUAL. Evaluations do so from time to time; code for many
      * vehicles calls it for one vehicle at a time. NULL: an engine of a host. */
     int (*check)(void *self, gic_real time, const gic_real *state, const gic_real *rate);
+    /* Contacts: of all wheels, then of ends of stops, the first GIC_CONTACTS. press[] at a state is above 0 where the
+     * contact has a load, else not, and continuous. 0 and NULL: there are none, or an engine of a host. */
+    int32_t contact_count;
+    int (*contacts)(void *self, gic_real time, const gic_real *state, gic_real *press);
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
@@ -220,12 +227,16 @@ typedef struct gic_model {
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
 
-/* The most changes of gear in one step; more give GIC_ERROR_EVENTS. */
+/* The most changes of gear in one step, and of contacts; more give GIC_ERROR_EVENTS. */
 #define GIC_CHANGES 32
 
-/* One step of `step` seconds with AB3 or RK4. AB3 starts with two steps of RK4, which keeps its order. On GIC_OK state,
- * time and, where there is an input function, input[] have moved by one step; otherwise they are untouched. A new step
- * size or method restarts the history. */
+/* The most contacts that head.locate looks at. */
+#define GIC_CONTACTS 64
+
+/* One step of `step` seconds with AB3 or RK4. AB3 starts with two steps of RK4, which keeps its order. With head.locate
+ * a step in which contacts change is made again in parts, and AB3 starts again after it. On GIC_OK state, time and,
+ * where there is an input function, input[] have moved by one step; otherwise they are untouched. A new step size or
+ * method restarts the history. */
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 

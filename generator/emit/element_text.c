@@ -28,9 +28,10 @@ static const char *const coordinate_name[7] = {"FORCE_X",  "FORCE_Y",  "FORCE_Z"
 static const char *const link_name[] = {"C_X", "C_Y", "C_Z", "V_X",     "V_Y",     "V_Z",
                                         "S_X", "S_Y", "S_Z", "OMEGA_X", "OMEGA_Y", "OMEGA_Z"};
 static const char *const grip_name[] = {
-    "FORCE_X",    "FORCE_Y",         "FORCE_Z", "TORQUE_X", "TORQUE_Y", "TORQUE_Z", "DRIVE",   "BRAKE",  "LOAD",
-    "DEFLECTION", "DEFLECTION_RATE", "HEIGHT",  "FX",       "FY",       "MX",       "MY",      "MZ",     "KAPPA",
-    "TANGENT",    "CAMBER",          "POINT_X", "POINT_Y",  "POINT_Z",  "SPEED_X",  "SPEED_Y", "RADIUS", "POWER"};
+    "FORCE_X", "FORCE_Y", "FORCE_Z",    "TORQUE_X",        "TORQUE_Y", "TORQUE_Z", "DRIVE",
+    "BRAKE",   "LOAD",    "DEFLECTION", "DEFLECTION_RATE", "HEIGHT",   "FX",       "FY",
+    "MX",      "MY",      "MZ",         "KAPPA",           "TANGENT",  "CAMBER",   "POINT_X",
+    "POINT_Y", "POINT_Z", "SPEED_X",    "SPEED_Y",         "RADIUS",   "POWER",    "PRESS"};
 static const char *const contact_name[] = {"LOAD",   "KAPPA", "TANGENT", "CAMBER", "FRICTION", "SPEED", "DEFLECTION",
                                            "RADIUS", "X_X",   "X_Y",     "X_Z",    "Y_X",      "Y_Y",   "Y_Z",
                                            "N_X",    "N_Y",   "N_Z",     "ARM_X",  "ARM_Y",    "ARM_Z"};

@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 7 };
+enum { ABI_VERSION = 8 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -178,6 +178,8 @@ static void write_sizes(void *context, Text *out, int indent)
                 {"DEPENDENCE_ROOM", room(g->formulation->dependence_most)}};
     size_t count = sizeof size / sizeof *size;
     write_wheel_sizes(g, out, indent);
+    if (g->formulation->contacts)
+        line(out, indent, "%s_CONTACTS = %d,", g->upper, g->formulation->contacts->stores);
     for (size_t i = 0; i < count; ++i)
         line(out, indent, "%s_%s = %d%s", g->upper, size[i].name, size[i].value, i + 1 < count ? "," : "");
 }
@@ -591,6 +593,28 @@ static void write_turn_wheels(void *context, Text *out, int indent)
          g->formulation->wheels->count > 0 ? "wheels" : "states", g->upper);
 }
 
+static void write_press(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_plain_block(g, g->formulation->contacts, out, indent);
+}
+
+static void write_contact_function(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->formulation->contacts)
+        template_expand(g->pool, out, g->templates, "contacts.c.in", g->model->name, NULL, &code_points, g);
+}
+
+static void write_contacts(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const char *name = g->model->name;
+    line(out, indent, "%s,", g->formulation->contacts ? pool_print(g->pool, "%s_CONTACTS", g->upper) : "0");
+    line(out, indent, "%s,", g->formulation->contacts ? pool_print(g->pool, "%s_any_contacts", name) : "NULL");
+}
+
 static void write_identity(void *context, Text *out, int indent)
 {
     const Generation *g = context;
@@ -649,11 +673,15 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {"wheel functions", write_wheel_functions},
                                        {"identity", write_identity},
                                        {"dual rate", write_dual_rate},
+                                       {"press", write_press},
+                                       {"contact function", write_contact_function},
+                                       {"contacts", write_contacts},
                                        {NULL, NULL}};
 
 const Insertions code_points = {(const char *const[]){"model.c.in", "independent.c.in", "reactions.c.in", "bounds.c.in",
-                                                      "base_free.c.in", "base_fixed.c.in", "self_test.c.in",
-                                                      "self_test_constraints.c.in", "about.c.in", NULL},
+                                                      "base_free.c.in", "base_fixed.c.in", "contacts.c.in",
+                                                      "self_test.c.in", "self_test_constraints.c.in", "about.c.in",
+                                                      NULL},
                                 code_point, NULL};
 
 /* ---- both files -------------------------------------------------------------------------------------------------- */

@@ -41,10 +41,11 @@ void write_wheel_comment(const Generation *g, Text *out, const WheelClass *class
         if (wheel->tire != first)
             text_print(out, " ('%s')", model->tire[wheel->tire].name);
     }
-    text_print(out,
-               ".\n * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the "
-               "carrier,\n * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz "
-               "12, slips and camber 17\n * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26. */\n");
+    text_print(
+        out,
+        ".\n * torque: of drive and brake. rate: of spin, slips, brake. grip: force 0 and torque 3 on the "
+        "carrier,\n * drive and brake 6 7, load, deflection, its rate, road height 8 to 11, Fx Fy Mx My Mz "
+        "12, slips and camber 17\n * to 19, contact point 20, V_x V_y 23, rolling radius 25, power 26, press 27. */\n");
 }
 
 void write_contact_array(Text *out, int indent, const char *real)

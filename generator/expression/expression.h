@@ -35,6 +35,7 @@ typedef struct Table Table; /* base/table.h */
     X(tau, "tau", "residuals of the equations of motion") \
     X(size, "size", "what the residuals are compared with") \
     X(energy, "energy", "energy balance") \
+    X(press, "press", "how near contacts are") \
     X(lambda, "lambda", "multipliers") \
     X(link, "link", "how the multibody system moves a wheel") \
     X(fast, "fast", "fast states") \

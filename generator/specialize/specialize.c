@@ -483,6 +483,7 @@ static void narrow_rest(Narrower *n)
     const Formulation *f = n->general;
     n->out->dynamics = narrow_block(n, n->whole, n->mirror ? narrow_dynamics(n) : f->dynamics);
     n->out->outputs = narrow_block(n, n->whole, f->outputs);
+    n->out->contacts = narrow_block(n, n->whole, f->contacts);
     n->out->poses = narrow_block(n, n->whole, f->poses);
     n->out->inverse = narrow_block(n, n->whole, f->inverse);
     n->out->energy = narrow_block(n, n->whole, f->energy);
@@ -515,7 +516,8 @@ static void drop_inertia(Narrower *n)
 {
     const Formulation *f = n->out;
     const Sequence *sequence = n->plan->sequence;
-    const Block *const block[] = {f->dynamics, f->outputs, f->poses, f->inverse, f->energy, f->check, f->wrenches};
+    const Block *const block[] = {f->dynamics, f->outputs, f->poses,    f->inverse,
+                                  f->energy,   f->check,   f->wrenches, f->contacts};
     bool *read = pool_alloc(n->pool, (size_t)n->plan->inertia_size + 1);
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i)
         if (block[i])
@@ -539,8 +541,9 @@ static void drop_inertia(Narrower *n)
 static void find_uses(Pool *pool, const Formulation *f, Narrowing *narrowing)
 {
     const Wheels none = {0}, *wheels = f->wheels ? f->wheels : &none;
-    const Block *const block[] = {f->dynamics, f->outputs,    f->poses,        f->inverse,     f->energy,     f->check,
-                                  f->wrenches, &wheels->link, &wheels->torque, &wheels->drive, &wheels->shift};
+    const Block *const block[] = {f->dynamics,     f->outputs,     f->poses,       f->inverse,
+                                  f->energy,       f->check,       f->wrenches,    &wheels->link,
+                                  &wheels->torque, &wheels->drive, &wheels->shift, f->contacts};
     for (size_t i = 0; i < sizeof block / sizeof *block; ++i) {
         if (!block[i] || !block[i]->dag)
             continue;

@@ -29,6 +29,7 @@ typedef double Values[STATES];
     X(pose) \
     X(tau) \
     X(energy) \
+    X(press) \
     X(lambda) \
     X(link) \
     X(fast) \

@@ -166,7 +166,8 @@ static Ex contact(Whole *whole, Loads *loads, const Force *force, Ex beyond, Ex 
     Ex depth = ex_op(dag, OP_MAX, beyond, 0, 0), fade = whole_law(whole, force->fade, NULL);
     Ex elastic = elastic_force(whole, loads, force, depth, rate);
     Ex damping = ex_mul(dag, whole_law(whole, force->damping, NULL), fade_in(dag, ex_div(dag, depth, fade)));
-    Ex push = ex_op(dag, OP_MAX, ex_add(dag, elastic, ex_mul(dag, damping, rate)), 0, 0);
+    Ex free = ex_add(dag, elastic, ex_mul(dag, damping, rate)), push = ex_op(dag, OP_MAX, free, 0, 0);
+    loads->press[loads->presses++] = ex_op(dag, OP_POSITIVE, beyond, free, beyond);
     loads->power = ex_sub(dag, loads->power, ex_mul(dag, ex_sub(dag, push, elastic), rate));
     return push;
 }
@@ -365,6 +366,7 @@ static void add_rolling_wheel(Whole *whole, Loads *loads, int index)
     add_load(whole, loads, wheel->body, BODY_GROUND, wheel->center, grip + GRIP_FORCE, grip + GRIP_TORQUE);
     loads->power = ex_add(dag, loads->power, grip[GRIP_POWER]);
     memcpy(loads->wheel[index], grip + GRIP_LOAD, sizeof *loads->wheel);
+    loads->press[index] = grip[GRIP_PRESS];
     if (!wheel_is_driven(whole->model, index))
         return;
     /* reaction of the drive */
@@ -402,8 +404,9 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
         set_terms(whole, loads, ex_mul(dag, whole_number(whole, &wheel->stiffness), most), viscous);
     }
     /* without contact the deflection is negative and the damping has faded to 0, so limiting at 0 suffices */
-    Ex fz =
-        ex_op(dag, OP_MAX, ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous), 0, 0);
+    Ex free = ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous);
+    Ex fz = ex_op(dag, OP_MAX, free, 0, 0);
+    loads->press[index] = free;
     ex_scale3(dag, fz, whole->R + 6, F);
     push(whole, loads, wheel->body, &center, F);
     loads->power = ex_add(dag, loads->power, ex_mul(dag, fz, v[2]));
@@ -469,6 +472,8 @@ Loads *loads_make(Whole *whole)
     loads->own_size = pool_alloc(pool, (size_t)(model->coordinates + 1) * sizeof *loads->own_size);
     loads->made = pool_alloc(pool, (size_t)(model->forces + 1) * sizeof *loads->made);
     loads->pressed = pool_alloc(pool, (size_t)(model->wheels + 1) * sizeof *loads->pressed);
+    loads->press = pool_alloc(pool, (size_t)(model->wheels + 2 * model->forces + 1) * sizeof *loads->press);
+    loads->presses = model->wheels;
     whole->loads = loads;
     for (int i = 0; i < model->forces; ++i)
         make_force(whole, i);

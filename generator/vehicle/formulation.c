@@ -50,6 +50,7 @@ void formulation_blocks(Pool *pool, Formulation *f)
         [SOLVE_REDUCED] = dynamics_block, [SOLVE_ARTICULATED] = articulated_block, [SOLVE_AUGMENTED] = augmented_block};
     f->dynamics = dynamics[plan->solve](whole_open(pool, plan, plan->pack));
     f->outputs = outputs_block(whole_new(pool, plan));
+    f->contacts = contacts_block(whole_new(pool, plan));
     f->poses = poses_block(whole_new(pool, plan));
     f->inverse = inverse_block(whole_new(pool, plan));
     f->energy = energy_block(whole_new(pool, plan));

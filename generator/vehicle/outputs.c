@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Outputs by name (FORMAT.md section 9) and the poses of all bodies. */
 #include "expression/expression.h"
+#include "gic_runtime.h"
 #include "model/model.h"
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"
@@ -221,6 +222,17 @@ Block *outputs_block(Whole *whole)
     }
     whole->accelerated = NULL;
     return block;
+}
+
+Block *contacts_block(Whole *whole)
+{
+    Dag *dag = whole->dag;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
+    const Loads *loads = loads_make(whole);
+    for (int i = 0; i < loads->presses && i < GIC_CONTACTS; ++i)
+        block_store(block, loads->press[i], element_at(ARRAY_press, i));
+    return block->stores ? block : NULL;
 }
 
 Block *poses_block(Whole *whole)

@@ -152,9 +152,11 @@ typedef struct Loads {
     Ex (*wrench)[6]; /* [bodies] moment about the reference point, force; base frame */
     Ex *own;         /* [coordinates] of elements along a coordinate, which are not among the wrenches */
     Ex moment[3], force[3];
-    Ex *along;                           /* [coordinates] of all elements */
-    Ex *element;                         /* [forces] Q or T of FORMAT.md section 7 */
-    Ex (*wheel)[4];                      /* [wheels] fz, deflection, deflection rate, road height */
+    Ex *along;      /* [coordinates] of all elements */
+    Ex *element;    /* [forces] Q or T of FORMAT.md section 7 */
+    Ex (*wheel)[4]; /* [wheels] fz, deflection, deflection rate, road height */
+    Ex *press;      /* [contacts] of all wheels, then of ends of stops: GRIP_PRESS */
+    int presses;
     Ex potential, potential_rate, power; /* of springs; of dampers and tires, W */
     Ex terms;      /* sum of the magnitudes of the terms of the latest element; only if sizes are asked for */
     Ex (*size)[2]; /* [bodies] sums of magnitudes of moments about the reference point, and of forces */
@@ -191,6 +193,7 @@ enum {
     GRIP_SPEED_Y,
     GRIP_RADIUS, /* R_e */
     GRIP_POWER,  /* power of all that changes the energy of spin, W */
+    GRIP_PRESS,  /* positive where there is a load, else negative or 0; continuous */
     GRIP_NUMBERS
 };
 
@@ -249,6 +252,8 @@ typedef struct Accelerated {
 
 /* out[] of all outputs from a Whole and rate[]. */
 Block *outputs_block(Whole *whole);
+/* press[] of all contacts, at most GIC_CONTACTS; NULL: there are none. */
+Block *contacts_block(Whole *whole);
 /* outputs.c: the value of a signal, without the sign that a formula has for it. */
 Ex whole_signal(Whole *whole, int signal);
 /* pose[7 i]: world poses of all body frames. */
@@ -311,6 +316,7 @@ typedef struct Formulation {
     const Plan *plan;
     const char *hash; /* of the dumped model, hexadecimal */
     const Block *dynamics, *outputs, *poses, *inverse, *energy, *check;
+    const Block *contacts;             /* press[] of all wheels, then of both ends of stops; NULL: there are none */
     const Block *wrenches;             /* of the reduced form; NULL: no output needs them */
     const Wheels *wheels;              /* NULL: no wheel has a tire */
     int known_most, dependence_most;   /* largest numbers of knowns and of deps of a subset */

@@ -103,7 +103,7 @@ static void store3(Block *block, const Ex x[3], Array array, int offset)
 /* The contact of the wheel with the road. */
 typedef struct Contact {
     Ex x[3], y[3], n[3], arm[3];
-    Ex camber, radius, deflection, rate, fade, load, height, v[3] /* v_P */;
+    Ex camber, radius, deflection, rate, fade, load, press, height, v[3] /* v_P */;
 } Contact;
 
 static Contact contact_with_road(const Build *b)
@@ -144,7 +144,9 @@ static Contact contact_with_road(const Build *b)
     at.fade = smooth_step(dag, ex_div(dag, at.deflection, member_number(b, "fade", &b->first->fade)));
     Ex viscous = ex_mul(dag, ex_mul(dag, ex_literal(dag, tire->damping), at.fade), at.rate);
     /* without contact the deflection is negative and the damping has faded to 0, so limiting at 0 suffices */
-    at.load = positive_part(dag, ex_add(dag, elastic, viscous));
+    Ex free = ex_add(dag, elastic, viscous), per = ex_literal(dag, 1 / tire->stiffness);
+    at.load = positive_part(dag, free);
+    at.press = ex_op(dag, OP_POSITIVE, at.deflection, ex_mul(dag, per, free), at.deflection);
     return at;
 }
 
@@ -205,6 +207,7 @@ static void build_contact(Build *b)
     block_store(block, at.deflection, element_at(ARRAY_grip, GRIP_DEFLECTION));
     block_store(block, at.rate, element_at(ARRAY_grip, GRIP_DEFLECTION_RATE));
     block_store(block, at.height, element_at(ARRAY_grip, GRIP_HEIGHT));
+    block_store(block, at.press, element_at(ARRAY_grip, GRIP_PRESS));
     store3(block, P, ARRAY_grip, GRIP_POINT);
     block_store(block, vx, element_at(ARRAY_grip, GRIP_SPEED_X));
     block_store(block, vy, element_at(ARRAY_grip, GRIP_SPEED_Y));

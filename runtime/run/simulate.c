@@ -239,6 +239,7 @@ static void summary_of_skips(const gic_head *head)
         {head->kept_count, "recoveries reused", "subset solutions whose inputs had not changed"},
         {head->air_count, "tires skipped", "evaluations of wheels in the air"},
         {head->steady_count, "fast rates skipped", "evaluations while fast states changed steadily"},
+        {head->contact_count, "contacts located", "made or lost within steps"},
         {head->sleep_count, "steps asleep", "steps while the vehicle was at rest"},
     };
     for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)
@@ -335,7 +336,9 @@ static const char *remedy_of(int status)
         return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
                "itself is unstable: gicrun --modes shows its eigenvalues";
     case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
-    case GIC_ERROR_EVENTS: return "try a shorter step, or a longer `duration` of the transmission's shifts";
+    case GIC_ERROR_EVENTS:
+        return "try a shorter step, or a longer `duration` of the transmission's shifts; `locate: false` goes over "
+               "contacts";
     case GIC_ERROR_RESIDUAL:
         return "results so far are suspect too; --engine gic shares no formulas with this code: please report model "
                "and scene";
@@ -365,6 +368,7 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     if (status != GIC_OK)
         return status;
     self->road = scene->road;
+    self->locate = scene->locate;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     if (scene->driver)

@@ -470,6 +470,11 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
         if (scene->ratio == 1 && !replaced)
             diag_fail(steady->at, "add `ratio: 6`", "steady is about fast steps, of which there are none");
     }
+    const Item *locate = doc_find(root, "locate");
+    scene->locate = locate && doc_bool(locate, "locate") && scene->method < METHOD_ADAMS;
+    if (locate && scene->method >= METHOD_ADAMS && !replaced)
+        diag_fail(locate->at, "write `integrator: ab3` and a step",
+                  "only constant steps are made in parts at contacts");
     if (sleep && scene->method >= METHOD_ADAMS && !replaced)
         diag_fail(sleep->at, "write `integrator: ab3` and a step", "only constant steps can be slept through");
     if (sleep && scene->method < METHOD_ADAMS)
@@ -487,7 +492,7 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "massless", "base", "driven", "output_step", "initial", "road", "inputs",
+               "steady", "sleep", "locate", "massless", "base", "driven", "output_step", "initial", "road", "inputs",
                "input_file", "driver", "course", "parameters", "outputs", "plot", "until", "when");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");

@@ -125,6 +125,8 @@ static const char *against_lanes(const Scene *scene, const Model *model)
         return "a driver drives one vehicle";
     if (scene->ratio > 1 && model->fast_states)
         return "they know no fast steps yet";
+    if (scene->locate)
+        return "they go over contacts";
     return NULL;
 }
 

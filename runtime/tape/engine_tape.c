@@ -76,6 +76,7 @@ void tape_arrays(Instance *self, const double *time, const double *y, const doub
         [WHOLE_tau] = out,
         [WHOLE_size] = engine->size,
         [WHOLE_energy] = out,
+        [WHOLE_press] = out,
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_GRIP] = tape_array(self, engine->grip_offset),
         [WHOLE_gear] = tape_array(self, engine->gear_offset),
@@ -254,6 +255,21 @@ static int poses(void *instance, double *pose)
     return status;
 }
 
+static int contacts(void *instance, double time, const double *y, double *press)
+{
+    Instance *self = instance;
+    const TapeEngine *engine = tape_of(self);
+    double e[4];
+    int status = tape_locate(self, time, y, e);
+    if (status == GIC_OK && engine->wheel)
+        status = tape_turn_wheels(self, time, y, e, engine->result);
+    if (status == GIC_OK)
+        status = tape_whole(self, engine->contacts, time, y, e, NULL, NULL, press);
+    if (status == GIC_OK && !gic_finite(press, engine->code.contact_count))
+        status = GIC_ERROR_RESULT;
+    return self->head.status = status;
+}
+
 static int setup_with(void *instance, const double *wanted)
 {
     Instance *self = instance;
@@ -311,6 +327,10 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
     tape->code.settle = settle;
     tape->code.outputs = outputs;
     tape->code.poses = poses;
+    if (tape->contacts) {
+        tape->code.contact_count = tape->formulation->contacts->stores;
+        tape->code.contacts = contacts;
+    }
     tape->code.self_test = tape_self_test;
     if (tape->wheel) {
         tape->code.link_count = tape->formulation->wheels->links;

@@ -43,6 +43,7 @@ typedef struct TapeEngine {
     bool *keeps;  /* [subsets] plan_keeps() */
     bool follows; /* are there subsets whose poses Newton's iteration finds? */
     const Tape *dynamics, *outputs, *poses, *inverse, *energy, *check;
+    const Tape *contacts;               /* NULL: there are none */
     const Tape *wrenches;               /* NULL: no reactions to find after the accelerations */
     const Tape *derive, *draw, *design; /* NULL: no parameter is geometric */
     int first_piece;                    /* of set-up with those */
@@ -90,7 +91,7 @@ static inline double *tape_start(Instance *self)
     X(q) X(x) X(rate) X(change) X(turn) X(ahead) X(s) X(f) X(start) X(motion) X(inertia) X(reach) X(step) X(worst) X(w) \
     X(d)
 #define WHOLE_ARRAYS(X) \
-    X(time) X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(size) X(energy) \
+    X(time) X(y) X(e) X(x) X(xd) X(u) X(m) X(n) X(p) X(port) X(rate) X(acc) X(out) X(pose) X(tau) X(size) X(energy) X(press) \
     X(lambda) X(link) X(fast) X(torque) X(contact) X(force) X(grip) X(gear) X(watch) X(choice)
 /* clang-format on */
 #define CLASS_ENUM(name) CLASS_##name,

@@ -65,6 +65,7 @@ static void record_whole(Pool *pool, TapeEngine *engine)
     const Formulation *f = engine->formulation;
     engine->dynamics = tape_record(pool, f->dynamics, array, WHOLE_COUNT);
     engine->outputs = tape_record(pool, f->outputs, array, WHOLE_COUNT);
+    engine->contacts = f->contacts ? tape_record(pool, f->contacts, array, WHOLE_COUNT) : NULL;
     engine->poses = tape_record(pool, f->poses, array, WHOLE_COUNT);
     engine->inverse = tape_record(pool, f->inverse, array, WHOLE_COUNT);
     engine->energy = tape_record(pool, f->energy, array, WHOLE_COUNT);
@@ -101,7 +102,8 @@ static void make_scratch(Pool *pool, TapeEngine *engine)
     const Formulation *f = engine->formulation;
     const Tape *const whole[] = {engine->dynamics, engine->outputs, engine->poses,
                                  engine->inverse,  engine->energy,  engine->check};
-    int slots = engine->wrenches ? engine->wrenches->slots : 0, bodies = 0, unknowns = f->plan->unknowns;
+    int slots = GIC_MAX(engine->wrenches ? engine->wrenches->slots : 0, engine->contacts ? engine->contacts->slots : 0),
+        bodies = 0, unknowns = f->plan->unknowns;
     if (engine->derive)
         slots = GIC_MAX(slots, GIC_MAX(engine->derive->slots, GIC_MAX(engine->draw->slots, engine->design->slots)));
     for (size_t i = 0; i < sizeof whole / sizeof *whole; ++i)

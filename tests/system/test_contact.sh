@@ -1,0 +1,193 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_contact.sh GICGEN GICRUN: contacts within steps (`locate: true`) against closed solutions, to 1e-10; a run again and
+# one from a snapshot to the last bit.
+#
+# A wheel of 40 kg hops on a spring, its tire, of 16 kN/m; without dampers it leaves as fast as it lands. A load of 2 kg
+# slides at 0.8 m/s from one stop to the other; each turns it round in half a period of 20 rad/s.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$root/tests/lib/checking.sh"
+cd "$work" || exit 1
+
+cat >hop.veh <<'END'
+gicgen: 1
+model: hop
+base: ground
+gravity: [0, 0, -10]
+bodies:
+  hopper: {mass: 40, com: [0, 0, 0.3], inertia: [1, 1, 1]}
+  load: {mass: 2, com: [0, 0, 1], inertia: [1, 1, 1]}
+joints:
+  mast: {type: prismatic, bodies: [ground, hopper], axis: [0, 0, 1]}
+  track: {type: prismatic, bodies: [ground, load], axis: [1, 0, 0]}
+coordinates:
+  z: {type: translation, bodies: [ground, hopper], axis: [0, 0, 1], range: [-0.3, 0.5]}
+  s: {type: translation, bodies: [ground, load], axis: [1, 0, 0], range: [-1, 1]}
+wheels:
+  hopper: {body: hopper, center: [0, 0, 0.3], radius: 0.3, stiffness: 16000, damping: 0}
+forces:
+  stops: {type: stop, coordinate: s, low: -0.1, high: 0.15, stiffness: 800}
+outputs:
+  z: {type: coordinate, coordinate: z}
+  s: {type: coordinate, coordinate: s}
+END
+# scene STEP WAY...
+scene() {
+    printf 'gicscene: 1\nduration: 2\nstep: %s\noutput_step: 0.01\noutputs: [z.value, z.rate, s.value, s.rate]\n' "$1"
+    echo 'initial: {coordinates: {z: 0.05}, rates: {s: 0.8}}'
+    shift
+    printf '%s\n' "$@"
+}
+
+# follows FILE LIMIT: the largest distance of positions, m, and speeds, m/s, from what is due
+follows() {
+    awk -F, -v limit="$2" '
+        function off(x, exact) {
+            x -= exact
+            if (x < 0)
+                x = -x
+            if (x > most)
+                most = x
+        }
+        BEGIN {w = 20; g = 10; pi = atan2(0, -1); v = sqrt(2 * g * 0.05)}
+        NR > 1 {
+            # the first landing, then contacts and flights of always the same length
+            t = $1 - v / g
+            contact = 2 * (pi - atan2(v * w, g)) / w
+            if (t > 0)
+                t -= int(t / (contact + 2 * v / g)) * (contact + 2 * v / g)
+            if (t <= 0) {
+                z = 0.05 - g * $1 * $1 / 2
+                r = -g * $1
+            } else if (t < contact) {
+                z = -g / w^2 * (1 - cos(w * t)) - v / w * sin(w * t)
+                r = -g / w * sin(w * t) - v * cos(w * t)
+            } else {
+                t -= contact
+                z = v * t - g * t * t / 2
+                r = v - g * t
+            }
+            off($2, z)
+            off($3, r)
+            # from 0 to the upper stop, then stop, way, stop, way
+            u = 0.8
+            way = 0.25 / u
+            t = $1 - 0.15 / u
+            if (t > 0)
+                t -= int(t / (2 * (pi / w + way))) * 2 * (pi / w + way)
+            if (t <= 0) {
+                s = u * $1
+                r = u
+            } else if (t < pi / w) {
+                s = 0.15 + u / w * sin(w * t)
+                r = u * cos(w * t)
+            } else if (t < pi / w + way) {
+                s = 0.15 - u * (t - pi / w)
+                r = -u
+            } else if (t < 2 * pi / w + way) {
+                s = -0.1 - u / w * sin(w * (t - way - pi / w))
+                r = -u * cos(w * (t - way - pi / w))
+            } else {
+                s = -0.1 + u * (t - 2 * pi / w - way)
+                r = u
+            }
+            off($4, s)
+            off($5, r)
+        }
+        END {printf "%.3g\n", most >"said"; exit !(NR == 202 && most < limit)}' "$1"
+}
+
+for way in 'rk4 0.0002' 'ab3 0.000005'; do
+    step=${way#* } way=${way% *}
+    scene "$step" "integrator: $way" 'locate: true' >now.scene
+    for engine in tcc tape; do
+        : >results
+        "$gicrun" -q --engine $engine hop.veh now.scene -o results 2>err
+        check "$way, $engine" follows results 1e-10
+        mv results "$way.$engine"
+    done
+    check "$way: the same digits" cmp "$way.tcc" "$way.tape"
+    "$gicrun" -q --engine tcc hop.veh now.scene -o results 2>err
+    check "$way: the same again" cmp "$way.tcc" results
+done
+
+# The same on a tire that does not turn, at one rate and at two
+sed 's/^wheels:/tires:\
+  easy: {type: tmeasy, radius: 0.3, stiffness: 16000, damping: 0, load: 400, dfx0: [10000, 16000], fxm: [400, 700],\
+         fxs: [300, 550], dfy0: [8000, 12000], fym: [380, 650], fys: [310, 520], sxm: [0.12, 0.14], sxs: [0.4, 0.4],\
+         sym: [0.18, 0.22], sys: [0.5, 0.55], trail: [0.15, 0.14], sq0: [0.2, 0.24], sqe: [0.4, 0.5]}\
+wheels:/; s/radius: 0.3, stiffness: 16000, damping: 0}$/tire: easy, spin_inertia: 0.5}/' hop.veh >tire.veh
+for way in 'rk4 0.0002 1' 'ab3 0.000005 1' 'ab3 0.000005 4'; do
+    # shellcheck disable=SC2086  # words
+    set -- $way
+    scene "$2" "integrator: $1" 'locate: true' >now.scene
+    [ "$3" = 1 ] || echo "ratio: $3" >>now.scene
+    : >results
+    "$gicrun" -q --engine tcc tire.veh now.scene -o results 2>err
+    check "a tire, $way" follows results 1e-10
+done
+
+# Order, at steps in which contacts are anywhere: at least 2.8 from a step to its quarter; RK4 is much better than without.
+for way in ab3 rk4; do
+    for located in true false; do
+        for step in 0.002 0.0005; do
+            scene $step "integrator: $way" "locate: $located" >now.scene
+            "$gicrun" -q --engine tcc hop.veh now.scene -o results 2>err
+            follows results 1 && cat said
+        done >$located
+    done
+    cat true false >said
+    check "order of $way" awk 'NR == 1 {first = $1} NR == 2 {exit !(first > 2^5.6 * $1)}' true
+done
+check "RK4 without it" awk 'FNR == 2 {if (NR == 2) fine = $1; else exit !($1 > 1000 * fine)}' true false
+
+scene 0.001 'integrator: adams' 'locate: true' >now.scene
+"$gicrun" -q hop.veh now.scene -o results >out 2>err
+check "not for variable steps" grep -q 'now.scene:8:.*only constant steps are made in parts at contacts' err
+
+# Snapshots before, in and after contacts: a copy of the instance goes on to the same last bit, in either precision.
+cp "$root"/runtime/gic_runtime.[ch] .
+cat >snapshot.c <<'END'
+#include "hop.h"
+#include <stdio.h>
+#include <string.h>
+
+static hop first, copy;
+
+int main(void)
+{
+    int bad = 0;
+    for (int method = 0; method < 2; ++method)
+        for (int taken = 0; taken < 400; taken += 7) {
+            memset(&first, 0, sizeof first);
+            bad += hop_setup(&first) != GIC_OK;
+            first.head.locate = 1;
+            first.state[HOP_STATE_Z] = GIC_R(0.05);
+            first.state[HOP_STATE_S_RATE] = GIC_R(0.8);
+            for (int k = 0; k < 420; ++k) {
+                if (k == taken)
+                    memcpy(&copy, &first, sizeof first);
+                bad += gic_step(&hop_model, &first, GIC_R(0.005), method) != GIC_OK;
+                if (k >= taken) {
+                    bad += gic_step(&hop_model, &copy, GIC_R(0.005), method) != GIC_OK;
+                    bad += memcmp(&first, &copy, sizeof first) != 0;
+                }
+            }
+            bad += first.head.contact_count < 10;
+        }
+    printf("%d bad, %ld contacts\n", bad, (long)first.head.contact_count);
+    return bad != 0;
+}
+END
+"$gicgen" hop.veh -o hop.c >out 2>err
+for real in '' -DGIC_FLOAT; do
+    # shellcheck disable=SC2086  # nothing or one word
+    cc -std=c99 -Wall -Wextra -Werror -O1 $real snapshot.c hop.c gic_runtime.c -lm -o snapshot >out 2>err && ./snapshot >said
+    verdict $? "snapshots $real"
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
