@@ -14,16 +14,18 @@
 
 /* The options of the command line. */
 typedef struct Request {
-    const char *model, *scene; /* paths; scene may be NULL with `states` */
-    const char *states;        /* --eval, or NULL */
-    bool rests, modes, linear; /* --equilibrium, --modes, --linearize */
-    double at;                 /* --at, s; NAN: not given */
-    const char *results;       /* "-": standard output; NULL: none */
-    const char *picture;       /* --plot, or NULL */
-    const char *page;          /* --animate, or NULL */
-    const char *driven;        /* --drive, or NULL */
-    const char *recording;     /* --replay, or NULL */
-    const char *engine;        /* one of engine_name */
+    const char *model, *scene;    /* paths; scene may be NULL with `states` */
+    const char *states;           /* --eval, or NULL */
+    bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
+    double at;                    /* --at, s; NAN: not given */
+    const char *results;          /* "-": standard output; NULL: none */
+    const char *picture;          /* --plot, or NULL */
+    const char *with;             /* --with, or NULL */
+    const struct CsvTable *other; /* what is in it */
+    const char *page;             /* --animate, or NULL */
+    const char *driven;           /* --drive, or NULL */
+    const char *recording;        /* --replay, or NULL */
+    const char *engine;           /* one of engine_name */
     Solve solve;
     Recovery recovery;
     int lanes;              /* as in EngineOptions */
