@@ -192,8 +192,8 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
-    if (request.with && !request.picture)
-        usage_fail("gicrun", "--with goes with --plot, which draws the other run beside this one", NULL);
+    if (request.with && !request.picture && !request.page)
+        usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
         usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.page && !path_ends(request.page, ".html"))
@@ -257,6 +257,13 @@ static void check_outputs(const Request *request, const Model *model, const Scen
     }
 }
 
+/* Of a path, or NULL, without its folders. */
+static const char *name_of(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path;
+}
+
 int main(int count, char **word)
 {
     Request request = read_command_line(count, word);
@@ -305,7 +312,8 @@ int main(int count, char **word)
         analyse(pool, model, scene, engine, &request);
     else
         simulate(pool, engine, model, scene_narrow(pool, scene, model, engine),
-                 request.page ? animation_new(pool, model, scene, request.scene) : NULL,
+                 request.page ? animation_new(pool, model, scene, request.scene, request.other, name_of(request.with))
+                              : NULL,
                  step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
     engine_close(engine);
     pool_free(pool);
