@@ -118,7 +118,12 @@ typedef struct Plot {
     int curves, panels, rows;
     const gic_signal *signal; /* [curves + 2 panels] the signals of a row, after the time */
     double *sample;
+    const CsvTable *other; /* results of another run, drawn in dots beside these where it has the signal; NULL: none */
+    const char *other_name;
 } Plot;
+
+/* The column of a table of results that has a signal, -1: none. Fails if it states another unit. */
+int plot_column(Pool *pool, const CsvTable *table, const gic_signal *signal);
 
 /* Picture by gnuplot, SVG or PNG by the ending of `path`; curves of the same unit share a panel. */
 void plot_write(Pool *pool, const Plot *plot, const char *path);

@@ -60,6 +60,46 @@ static bool opens_panel(const Plot *plot, int i)
     return true;
 }
 
+int plot_column(Pool *pool, const CsvTable *table, const gic_signal *signal)
+{
+    for (int i = 1; i < table->columns; ++i)
+        if (!strcmp(table->name[i], signal->name)) {
+            csv_check_unit(pool, table, i, signal->unit);
+            return i;
+        }
+    return -1;
+}
+
+/* Does the other run have a signal of the plot? */
+static bool is_in_other(Pool *pool, const Plot *plot, int signal)
+{
+    return plot->other && plot_column(pool, plot->other, &plot->signal[signal]) > 0;
+}
+
+static const char *name_in_other(Pool *pool, const Plot *plot, int signal)
+{
+    return pool_print(pool, "%s (%s)", plot->signal[signal].name, plot->other_name);
+}
+
+/* The other run's rows, with the columns of the first block; a number that it lacks is NaN. */
+static void other_block(Text *script, const Plot *plot)
+{
+    const CsvTable *table = plot->other;
+    const int signals = plot->curves + 2 * plot->panels;
+    int *column = pool_alloc(script->pool, sizeof *column * ((size_t)signals + 1));
+    for (int k = 0; k < signals; ++k)
+        column[k] = plot_column(script->pool, table, &plot->signal[k]);
+    text_print(script, "$other << END\n");
+    for (int row = 0; row < table->rows; ++row) {
+        const double *value = table->value + row * table->columns;
+        text_print(script, "%.9g", value[0]);
+        for (int k = 0; k < signals; ++k)
+            text_print(script, column[k] > 0 ? " %.9g" : " NaN", column[k] > 0 ? value[column[k]] : 0);
+        text_print(script, "\n");
+    }
+    text_print(script, "END\n");
+}
+
 static void data_block(Text *script, const Plot *plot)
 {
     const int signals = plot->curves + 2 * plot->panels;
@@ -95,7 +135,7 @@ static int legend_columns(size_t longest)
     return columns > 1 ? columns : 1;
 }
 
-static int legend_rows(const Plot *plot, int first, int *columns)
+static int legend_rows(Pool *pool, const Plot *plot, int first, int *columns)
 {
     size_t longest = 0;
     int names = 0;
@@ -104,6 +144,11 @@ static int legend_rows(const Plot *plot, int first, int *columns)
             const size_t length = strlen(plot->signal[i].name);
             longest = length > longest ? length : longest;
             ++names;
+            if (is_in_other(pool, plot, i)) {
+                const size_t longer = strlen(name_in_other(pool, plot, i));
+                longest = longer > longest ? longer : longest;
+                ++names;
+            }
         }
     *columns = legend_columns(longest);
     return (names + *columns - 1) / *columns;
@@ -114,7 +159,7 @@ static int legend_rows(const Plot *plot, int first, int *columns)
 static void panel(Text *script, const Plot *plot, int first, bool last)
 {
     int columns;
-    legend_rows(plot, first, &columns);
+    legend_rows(script->pool, plot, first, &columns);
     text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
     plot_text(script, quantity_text(script->pool, plot->signal[first].unit));
     text_print(script, "\nset key maxcols %d\nplot ", columns);
@@ -124,6 +169,11 @@ static void panel(Text *script, const Plot *plot, int first, bool last)
         text_print(script, "%s$data using 1:%d with lines linewidth 1.5 linecolor rgb '%s' dashtype %d title ",
                    drawn ? ", " : "", i + 2, ink[drawn % INKS], drawn / INKS % 5 + 1);
         plot_text(script, plot->signal[i].name);
+        if (is_in_other(script->pool, plot, i)) {
+            text_print(script, ", $other using 1:%d with lines linewidth 2 linecolor rgb '%s' dashtype 3 title ", i + 2,
+                       ink[drawn % INKS]);
+            plot_text(script, name_in_other(script->pool, plot, i));
+        }
         ++drawn;
     }
     text_print(script, "\n");
@@ -137,7 +187,7 @@ static void axis_label(Text *script, char axis, const gic_signal *signal)
 }
 
 /* The least and the largest value of a signal. */
-static void limits(const Plot *plot, int signal, double *low, double *high)
+static void limits(Pool *pool, const Plot *plot, int signal, double *low, double *high)
 {
     const int row = plot->curves + 2 * plot->panels + 1;
     *low = INFINITY;
@@ -145,6 +195,11 @@ static void limits(const Plot *plot, int signal, double *low, double *high)
     for (int i = 0; i < plot->rows; ++i) {
         *low = fmin(*low, plot->sample[i * row + signal + 1]);
         *high = fmax(*high, plot->sample[i * row + signal + 1]);
+    }
+    const int column = plot->other ? plot_column(pool, plot->other, &plot->signal[signal]) : -1;
+    for (int i = 0; column > 0 && i < plot->other->rows; ++i) {
+        *low = fmin(*low, plot->other->value[i * plot->other->columns + column]);
+        *high = fmax(*high, plot->other->value[i * plot->other->columns + column]);
     }
 }
 
@@ -157,13 +212,13 @@ static double round_up(double x)
 
 /* If both axes are lengths and neither extent is too small, the plane has the shape of the curve, with equal scales and
  * ticks. */
-static Frame frame_over(const Plot *plot, int panel, int top)
+static Frame frame_over(Pool *pool, const Plot *plot, int panel, int top)
 {
     const int x = plot->curves + 2 * panel, y = x + 1, wide = WIDTH - LEFT - RIGHT;
     const double most = 10, narrowest = 70; /* pixels between ticks: room for numbers side by side */
     Frame frame = {.left = LEFT, .right = WIDTH - RIGHT, .top = top + HEAD, .bottom = top + HEAD + TALL};
-    limits(plot, x, &frame.low[0], &frame.high[0]);
-    limits(plot, y, &frame.low[1], &frame.high[1]);
+    limits(pool, plot, x, &frame.low[0], &frame.high[0]);
+    limits(pool, plot, y, &frame.low[1], &frame.high[1]);
     const double across = frame.high[0] - frame.low[0], up = frame.high[1] - frame.low[1];
     if (strcmp(plot->signal[x].unit, plot->signal[y].unit) || !(across <= most * up && up <= most * across))
         return frame;
@@ -192,25 +247,30 @@ static void panel_over(Text *script, const Plot *plot, int panel, const Frame *f
     text_print(script, "set key maxcols 1\nplot $data using %d:%d with lines linewidth 1.5 linecolor rgb '%s' title ",
                x + 2, y + 2, ink[0]);
     plot_text(script, pool_print(script->pool, "%s over %s", plot->signal[y].name, plot->signal[x].name));
+    if (is_in_other(script->pool, plot, x) && is_in_other(script->pool, plot, y)) {
+        text_print(script, ", $other using %d:%d with lines linewidth 2 linecolor rgb '%s' dashtype 3 title ", x + 2,
+                   y + 2, ink[0]);
+        plot_text(script, plot->other_name);
+    }
     text_print(script, "\n");
 }
 
 /* ---- the picture --------------------------------------------------------------------------------------------- */
 
 /* Place the panels, those over time first; returns the picture's height. */
-static int arrange(const Plot *plot, Frame *frame)
+static int arrange(Pool *pool, const Plot *plot, Frame *frame)
 {
     int top = TITLE, panels = 0;
     for (int i = 0; i < plot->curves; ++i) {
         if (!opens_panel(plot, i))
             continue;
         int columns;
-        const int plane = top + HEAD + ROW * (legend_rows(plot, i, &columns) - 1);
+        const int plane = top + HEAD + ROW * (legend_rows(pool, plot, i, &columns) - 1);
         frame[panels++] = (Frame){.left = LEFT, .right = WIDTH - RIGHT, .top = plane, .bottom = plane + TALL};
         top = plane + TALL + FOOT;
     }
     for (int i = 0; i < plot->panels; ++i) {
-        frame[panels] = frame_over(plot, i, top);
+        frame[panels] = frame_over(pool, plot, i, top);
         top = frame[panels++].bottom + FOOT;
     }
     return top;
@@ -239,8 +299,10 @@ static const char *plot_script(Pool *pool, const Plot *plot, const char *path)
     int over_time = 0, done = 0;
     for (int i = 0; i < plot->curves; ++i)
         over_time += opens_panel(plot, i);
-    const int height = arrange(plot, frame);
+    const int height = arrange(pool, plot, frame);
     data_block(&script, plot);
+    if (plot->other)
+        other_block(&script, plot);
     style(&script, plot, path, height);
     for (int i = 0; i < plot->curves; ++i)
         if (opens_panel(plot, i)) {

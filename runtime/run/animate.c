@@ -2,6 +2,7 @@
  * The page of --animate: poses of all bodies, wheels and curves at the frames, as JSON in a page without other
  * files. The scripts that show them are templates/animate*.in. */
 #include "base/file.h"
+#include "base/message.h"
 #include "base/vec3.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
@@ -38,13 +39,56 @@ struct Animation {
     Shapes shapes;
     int64_t times, every; /* output times so far; one in `every` is a frame */
     int frames, channels;
-    int wheels, curves; /* index of their first channels, after those of the bodies */
+    int wheels, curves;    /* index of their first channels, after those of the bodies */
+    const CsvTable *other; /* results of another run; NULL: none */
+    const char *other_name;
+    int others;         /* curves that it has, their channels after those of the curves */
+    int *column, *mine; /* [others] column of it; index among the scene's curves */
     WheelOutputs *told; /* [wheels] */
     double *spin;       /* [wheels] spins of wheels with tires at the frame before, rad/s */
     double *value;      /* [frames][channels] */
 };
 
-Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path)
+/* The curves that another run has too. */
+static void add_others(Animation *a, const CsvTable *other, const char *other_name)
+{
+    const size_t room = sizeof(int) * ((size_t)a->scene->curves + 1);
+    a->column = pool_alloc(a->pool, room);
+    a->mine = pool_alloc(a->pool, room);
+    a->other = other;
+    a->other_name = other_name;
+    for (int i = 0; i < a->scene->curves; ++i) {
+        const int column = plot_column(a->pool, other, &a->scene->signal[a->scene->curve[i]]);
+        if (column < 0)
+            continue;
+        a->column[a->others] = column;
+        a->mine[a->others++] = i;
+    }
+    a->channels += a->others;
+    if (!a->others || !other->rows)
+        diag_fail((Place){other->source, 1, 1}, "give it results of a run with the outputs of the scene's `plot`",
+                  "the table has none of the curves of the page");
+}
+
+/* The value of a curve of the other run at a time, straight between its rows. */
+static double other_value(const Animation *a, int i, double time)
+{
+    const CsvTable *t = a->other;
+    int low = 0, high = t->rows - 1;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (t->value[middle * t->columns] <= time)
+            low = middle;
+        else
+            high = middle;
+    }
+    const double *p = t->value + low * t->columns, *q = t->value + high * t->columns;
+    const double share = high > low ? fmin(fmax((time - p[0]) / (q[0] - p[0]), 0), 1) : 0;
+    return share < 1 ? p[a->column[i]] + share * (q[a->column[i]] - p[a->column[i]]) : q[a->column[i]];
+}
+
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path,
+                         const CsvTable *other, const char *other_name)
 {
     Animation *a = pool_alloc(pool, sizeof *a);
     const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
@@ -55,6 +99,8 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
     a->wheels = POSE * model->bodies;
     a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
     a->channels = a->curves + scene->curves;
+    if (other)
+        add_others(a, other, other_name);
     a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
     for (int w = 0; w < model->wheels; ++w)
         a->told[w] = (WheelOutputs){animate_output(model, OUTPUT_WHEEL, w), animate_output(model, OUTPUT_TIRE, w),
@@ -180,6 +226,8 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
         set_wheel(a, w, output, a->model->wheel[w].tire >= 0 ? fast[a->model->wheel[w].fast] : 0, frame, before);
     for (int i = 0; i < a->scene->curves; ++i)
         frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
+    for (int i = 0; i < a->others; ++i)
+        frame[a->curves + a->scene->curves + i] = other_value(a, i, gic_time(self));
     ++a->frames;
     return GIC_OK;
 }
@@ -250,6 +298,15 @@ static void json_curves(const Animation *a, Text *out)
         json_key(out, "unit", signal->unit);
         json_key(out, "quantity", unit_quantity(signal->unit));
         text_print(out, "\"values\":%d}", a->curves + k);
+    }
+    for (int k = 0; k < a->others; ++k) {
+        const gic_signal *signal = &a->scene->signal[a->scene->curve[a->mine[k]]];
+        text_print(out, ",\n{");
+        json_key(out, "name", pool_print(out->pool, "%s (%s)", signal->name, a->other_name));
+        json_key(out, "unit", signal->unit);
+        json_key(out, "quantity", unit_quantity(signal->unit));
+        text_print(out, "\"values\":%d,\"beside\":%d,\"until\":%.9g}", a->curves + a->scene->curves + k, a->mine[k],
+                   a->other->value[(a->other->rows - 1) * a->other->columns]);
     }
     text_print(out, "],\n");
 }

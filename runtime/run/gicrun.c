@@ -22,7 +22,7 @@
 
 static const char help[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
-    "              [--animate page.html] [--replay recording.csv]\n"
+    "              [--with other.csv] [--animate page.html] [--replay recording.csv]\n"
     "       gicrun --drive page.html MODEL.veh SCENE\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
@@ -35,10 +35,10 @@ static const char help[] =
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
     "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
+    "      --with FILE    draw other results too, in dots\n"
     "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
     "                     moves along its road\n"
-    "      --drive FILE   write a page for a browser in which one drives the model by keys, pads or\n"
-    "                     gamepad; needs clang and lld for WebAssembly\n"
+    "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
     "      --replay FILE  repeat what such a page recorded, CSV\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
@@ -146,6 +146,7 @@ static Request read_command_line(int count, char **word)
     const Option option[] = {
         {"output", 'o', .text = &request.results},
         {"plot", .text = &request.picture},
+        {"with", .text = &request.with},
         {"animate", .text = &request.page},
         {"drive", .text = &request.driven},
         {"replay", .text = &request.recording},
@@ -191,6 +192,8 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
+    if (request.with && !request.picture && !request.page)
+        usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
         usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
     if (request.page && !path_ends(request.page, ".html"))
@@ -247,20 +250,31 @@ static void check_outputs(const Request *request, const Model *model, const Scen
         file_check(output[i]);
         source_keep(model->source, output[i]);
         source_keep(&states, output[i]);
+        if (request->other)
+            source_keep(request->other->source, output[i]);
         if (scene)
             source_keep(scene->source, output[i]);
     }
 }
 
+/* Of a path, or NULL, without its folders. */
+static const char *name_of(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path;
+}
+
 int main(int count, char **word)
 {
-    const Request request = read_command_line(count, word);
+    Request request = read_command_line(count, word);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, request.model);
     if (request.page || request.driven) /* the page shows forces of all wheels as arrows */
         model = model_watch_wheels(pool, model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, request.integrator, request.tolerance) : NULL;
+    if (request.with)
+        request.other = csv_read(pool, request.with, "time [s],chassis.z [m]", NULL);
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);
@@ -298,7 +312,8 @@ int main(int count, char **word)
         analyse(pool, model, scene, engine, &request);
     else
         simulate(pool, engine, model, scene_narrow(pool, scene, model, engine),
-                 request.page ? animation_new(pool, model, scene, request.scene) : NULL,
+                 request.page ? animation_new(pool, model, scene, request.scene, request.other, name_of(request.with))
+                              : NULL,
                  step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
     engine_close(engine);
     pool_free(pool);

@@ -14,16 +14,18 @@
 
 /* The options of the command line. */
 typedef struct Request {
-    const char *model, *scene; /* paths; scene may be NULL with `states` */
-    const char *states;        /* --eval, or NULL */
-    bool rests, modes, linear; /* --equilibrium, --modes, --linearize */
-    double at;                 /* --at, s; NAN: not given */
-    const char *results;       /* "-": standard output; NULL: none */
-    const char *picture;       /* --plot, or NULL */
-    const char *page;          /* --animate, or NULL */
-    const char *driven;        /* --drive, or NULL */
-    const char *recording;     /* --replay, or NULL */
-    const char *engine;        /* one of engine_name */
+    const char *model, *scene;    /* paths; scene may be NULL with `states` */
+    const char *states;           /* --eval, or NULL */
+    bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
+    double at;                    /* --at, s; NAN: not given */
+    const char *results;          /* "-": standard output; NULL: none */
+    const char *picture;          /* --plot, or NULL */
+    const char *with;             /* --with, or NULL */
+    const struct CsvTable *other; /* what is in it */
+    const char *page;             /* --animate, or NULL */
+    const char *driven;           /* --drive, or NULL */
+    const char *recording;        /* --replay, or NULL */
+    const char *engine;           /* one of engine_name */
     Solve solve;
     Recovery recovery;
     int lanes;              /* as in EngineOptions */
@@ -39,8 +41,10 @@ typedef struct Request {
 
 typedef struct Animation Animation;
 
-/* Before a run of a scene, whose name the page shows. */
-Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path);
+/* Before a run of a scene, whose name the page shows; other: results of another run, whose curves it shows too, and
+ * their name; NULL: none. */
+Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path,
+                         const struct CsvTable *other, const char *other_name);
 /* At each output time, after outputs are computed: record a frame if one is due. Returns a status. */
 int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
 /* The page; exits with a message when it can't be written. */

@@ -138,19 +138,41 @@ static const int *drawn_signals(Pool *pool, const Scene *scene)
     return drawn;
 }
 
+/* Of a path, without its folders. */
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The other run must have something that is drawn. */
+static void check_other(const Run *run)
+{
+    const Plot *plot = &run->plot;
+    for (int i = 0; i < plot->curves + 2 * plot->panels; ++i)
+        if (plot_column(run->pool, plot->other, &plot->signal[i]) > 0)
+            return;
+    diag_fail((Place){plot->other->source, 1, 1},
+              "give it results of a run with the same `plot`, or with these among its `outputs`",
+              "the table has none of the columns that are drawn, such as '%s'", plot->signal[0].name);
+}
+
 static void prepare_plot(Run *run)
 {
     const Scene *scene = run->scene;
-    const char *slash = strrchr(run->request->scene, '/');
-    run->plot.title = pool_print(run->pool, "%s: %s", run->model->name, slash ? slash + 1 : run->request->scene);
+    run->plot.title = pool_print(run->pool, "%s: %s", run->model->name, name_of(run->request->scene));
     run->plot.curves = scene->curves;
     run->plot.panels = scene->panels;
     run->drawn = drawn_signals(run->pool, scene);
+    run->plot.other = run->request->other;
+    run->plot.other_name = run->plot.other ? name_of(run->request->with) : NULL;
     const int drawn = scene->curves + 2 * scene->panels;
     gic_signal *signal = pool_alloc(run->pool, sizeof *signal * (size_t)(drawn + 1));
     for (int i = 0; i < drawn; ++i)
         signal[i] = scene->signal[run->drawn[i]];
     run->plot.signal = signal;
+    if (run->plot.other)
+        check_other(run);
     run->every = (scene->outputs + MOST_POINTS) / MOST_POINTS;
     int64_t rows = scene->outputs / run->every + 1;
     run->plot.sample = pool_alloc(run->pool, sizeof(double) * (size_t)rows * (size_t)(drawn + 1));

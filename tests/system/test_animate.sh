@@ -25,6 +25,16 @@ run "$model" "$scene" --animate "$work/run.html"
 check 'without -o only the page' [ ! -s "$work/out" ]
 check 'the same page again, byte for byte' cmp "$work/run.html" "$work/first.html"
 
+# another run: every third row of this one, twice the numbers, up to 3 s
+awk -F, -v OFS=, 'NR == 1 || ($1 <= 3 && NR % 3 == 2) { for (i = 2; NR > 1 && i <= NF; ++i) $i *= 2; print }' "$work/run.csv" \
+    >"$work/twice.csv"
+run "$model" "$scene" --animate "$work/beside.html" --with "$work/twice.csv"
+check 'curves of another run are beside' page other "$work/beside.html" "$work/twice.csv"
+printf 'time [s],nothing\n0,1\n1,2\n' >"$work/nothing.csv"
+run "$model" "$scene" --animate "$work/none.html" --with "$work/nothing.csv"
+check 'another run without them' exits 1
+check 'another run without them: why' says 'none of the curves of the page'
+
 # to rounding, twice a unit, for the last digit may fall either way; partitioned coordinates are integrated themselves,
 # with errors of their own: more
 for engine in cc tape gic gcp1 gcp2; do
@@ -153,7 +163,7 @@ check 'edges of a lane that turns' page bend "$work/bend.html"
 
 run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
 timeout 600 /usr/bin/python3 -B "$root/tests/data/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
-    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" >"$work/notes" 2>"$work/err"
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" "$work/beside.html" >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]

@@ -96,6 +96,29 @@ check 'panels over one another have a title' grep -q '>drive.value over x.value<
 check 'ticks of both axes are equally far apart, and numbers do not meet' \
     /usr/bin/python3 -B "$(dirname "$0")/../tools/gicrun_ticks.py" "$work/equal.svg"
 check 'inputs are curves' grep -q 'input.drive' "$work/over.svg"
+# another run beside it: the same run lies on it, point by point; one that has not all of it; one that has nothing of it
+sed '$a plot: [drive.value, drive.rate, {x: x.value, y: drive.value}]' "$work/swing.scene" >"$work/twice.scene"
+run "$work/carts.veh" "$work/twice.scene" -o "$work/once.csv" --plot "$work/once.svg"
+run "$work/carts.veh" "$work/twice.scene" --plot "$work/twice.svg" --with "$work/once.csv"
+check 'the same run beside a run lies on it' \
+    /usr/bin/python3 -B "$(dirname "$0")/../tools/gicrun_overlay.py" "$work/once.svg" "$work/twice.svg" 3
+check 'it has its name' grep -q '>drive.value (once.csv)<' "$work/twice.svg"
+cut -d, -f1 "$work/once.csv" >"$work/time.csv"
+paste -d, "$work/time.csv" "$work/time.csv" | sed '1s/.*/time [s],drive.rate [m\/s]/' >"$work/rate.csv"
+run "$work/carts.veh" "$work/twice.scene" --plot "$work/rate.svg" --with "$work/rate.csv"
+check 'of a run with less there is less' \
+    /usr/bin/python3 -B "$(dirname "$0")/../tools/gicrun_overlay.py" "$work/once.svg" "$work/rate.svg" 0 1
+sed '1s/drive.rate .*/other/' "$work/rate.csv" >"$work/nothing.csv"
+run "$work/carts.veh" "$work/twice.scene" --plot "$work/none.svg" --with "$work/nothing.csv"
+check 'of a run with nothing there is a message' says "none of the columns that are drawn, such as 'drive.value'"
+check 'and no picture' [ ! -e "$work/none.svg" ]
+sed '1s/m\/s/m/' "$work/rate.csv" >"$work/unit.csv"
+run "$work/carts.veh" "$work/twice.scene" --plot "$work/none.svg" --with "$work/unit.csv"
+check 'another unit is a mistake' exits 1
+run "$work/carts.veh" "$work/twice.scene" -o "$work/rate.csv" --plot "$work/none.svg" --with "$work/rate.csv"
+check 'the other run is not overwritten' exits 1
+run "$work/carts.veh" "$work/twice.scene" --with "$work/rate.csv"
+check 'another run without a picture: usage error' exits 2
 mkdir "$work/bin"
 for tool in cc gcc as ld; do
     ln -s "$(command -v "$tool")" "$work/bin/$tool"

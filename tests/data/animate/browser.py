@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html: opens pages of `gicrun --animate` in chromium, uses
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html: opens pages of `gicrun --animate` in chromium, uses
 # them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
@@ -228,7 +228,7 @@ def save(browser, path, profile):
 
 
 def main():
-    profile, run, results, spin, spin_results, odd, lanes = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd, lanes, beside = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
     compare(browser, spin, spin_results)
@@ -236,6 +236,10 @@ def main():
     narrow(browser, lanes)
     course(browser, lanes)
     save(browser, lanes, profile)
+    browser.open(beside, 't=2')
+    pairs = browser.ask('panels.flatMap((p) => p.curves.filter((c) => c.until).map((c) => '
+                        'p.curves.some((d) => !d.until && d.ink === c.ink && c.name.startsWith(d.name))))')
+    note('curves of another run have the colour of their own', len(pairs) > 2 and all(pairs), str(pairs))
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
     browser.close()
 

@@ -295,10 +295,32 @@ def check_lines(page, *expected):
             close('end of ' + name, math.dist(line[name][place], map(float, at.split(','))), 0, 1e-9)
 
 
+def check_other(page, other):
+    """Curves of another run: straight between its rows, up to its end."""
+    run, rows = read_run(page), read_csv(other)
+    beside = [curve for curve in run['curves'] if 'beside' in curve]
+    if not beside:
+        sys.exit('there is no curve of another run')
+    for curve in beside:
+        name = run['curves'][curve['beside']]['name']
+        if curve['name'] != '%s (%s)' % (name, other.split('/')[-1]):
+            sys.exit('a curve is called ' + curve['name'])
+        close('the end of ' + name, curve['until'], rows['time'][-1], 1e-9)
+        for i in range(run['frames']):
+            time = min(i * run['frame_step'], rows['time'][-1])
+            k = max([0] + [k for k, t in enumerate(rows['time'][:-1]) if t <= time + 1e-12])
+            share = (time - rows['time'][k]) / (rows['time'][k + 1] - rows['time'][k])
+            close(curve['name'], run['channel'][curve['values']][i],
+                  rows[name][k] + share * (rows[name][k + 1] - rows[name][k]),
+                  0.51 * run['channels'][curve['values']]['unit'])
+
+
 def main():
     check, *words = sys.argv[1:]
     if check == 'motion':
         check_motion(*words)
+    elif check == 'other':
+        check_other(*words)
     elif check == 'tires':
         check_tires(words[0], words[1], *map(float, words[2:]))
     elif check == 'friction':
