@@ -190,7 +190,10 @@ static void check_commas(const Item *map)
         if (is_group(after) && length <= 3 && digits[0] != '0') {
             for (int k = i; k < map->count && is_group(map->key[k]->text) && n < (int)sizeof whole; ++k)
                 n += snprintf(whole + n, sizeof whole - (size_t)n, "%s", map->key[k]->text);
-            snprintf(remedy, sizeof remedy, "write %s, without a separator of thousands", whole);
+            const bool alone = strlen(after) == 3 && !(i + 1 < map->count && is_group(map->key[i + 1]->text));
+            n = snprintf(remedy, sizeof remedy, "write %s, without a separator of thousands", whole);
+            if (alone)
+                snprintf(remedy + n, sizeof remedy - (size_t)n, ", or %s.%s with a decimal point", number->text, after);
         } else if (is_fraction(after)) {
             snprintf(remedy, sizeof remedy, "write %s.%.60s, with a decimal point", whole, after);
         } else {

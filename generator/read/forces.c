@@ -268,7 +268,7 @@ static void read_acted(Reader *reader, const Entry *entry, const Value *value, F
 {
     force->body[0] = value[ELEMENT_BODY].index[0];
     if (!reader->model->free_base && force->body[0] == BODY_BASE)
-        diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a load on ground moves nothing",
+        diag_fail(value[ELEMENT_BODY].item->at, "name a body that can move", "%s: a force on ground moves nothing",
                   entry->what);
     if (value[ELEMENT_POINT].item)
         body_point(reader, force->body[0], value[ELEMENT_POINT].number, value[ELEMENT_POINT].tuned,

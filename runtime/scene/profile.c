@@ -72,6 +72,50 @@ double profile_next_kink(const Profile *profile, double time)
     return profile->begin + next;
 }
 
+/* True if a piece of `width` s, in which the profile moves or rests, is long enough for steps. Of one that moves within
+ * a step or two the jump of its jerk says nothing; one that rests has to be wider than differences at its ends. */
+static bool is_resolved(double width, bool moves, double step)
+{
+    return width >= (moves ? 2 : 0.25) * step;
+}
+
+/* The same of the piece between points k and k + 1; beyond the points it rests. */
+static bool piece_is_resolved(const Profile *p, int k, double step)
+{
+    if (k < 0 || k + 1 >= p->count)
+        return true;
+    const bool rests =
+        p->value[k] == p->value[k + 1] && (p->form == PROFILE_KNOTS || (p->rate[k] == 0 && p->rate[k + 1] == 0));
+    return is_resolved(p->time[k + 1] - p->time[k], !rests, step);
+}
+
+/* True if value, rate and acceleration of a curve are continuous at its point k: it has accelerations, and at an end
+ * it comes to rest. */
+static bool is_continuous(const Profile *p, int k)
+{
+    const bool end = k == 0 || k == p->count - 1;
+    return p->form == PROFILE_KNOTS || (p->acceleration && (!end || (p->rate[k] == 0 && p->acceleration[k] == 0)));
+}
+
+double profile_next_knot(const Profile *profile, double time, double step)
+{
+    const bool wave = is_wave(profile);
+    if (profile_is_constant(profile) || profile->form == PROFILE_FORMULA)
+        return INFINITY;
+    if (wave && !(is_resolved(1 / profile->frequency, true, step) &&
+                  (profile->form == PROFILE_SINE || is_resolved(1 / profile->last, true, step))))
+        return INFINITY;
+    for (double next = profile_next_kink(profile, time); next < INFINITY; next = profile_next_kink(profile, next)) {
+        if (wave)
+            return next;
+        int k = profile_interval(profile, next - profile->begin); /* the time is a point's but for rounding */
+        k += next - profile->begin - profile->time[k] > profile->time[k + 1] - (next - profile->begin);
+        if (is_continuous(profile, k) && piece_is_resolved(profile, k - 1, step) && piece_is_resolved(profile, k, step))
+            return next;
+    }
+    return INFINITY;
+}
+
 double profile_longest_step(const Profile *profile, double time)
 {
     time -= profile->begin;

@@ -15,6 +15,9 @@
 bool profile_is_constant(const Profile *profile);
 /* The first time after `time` at which it is less smooth; INFINITY: none. */
 double profile_next_kink(const Profile *profile, double time);
+/* The first time after `time` at which only its jerk jumps, between pieces that constant steps of `step` s resolve, so
+ * that knot_cross() knows what they miss there; INFINITY: none. */
+double profile_next_knot(const Profile *profile, double time, double step);
 /* The longest step from `time` (s) that skips no feature of it, or INFINITY. */
 double profile_longest_step(const Profile *profile, double time);
 /* The time up to which it is constant; `time` itself if that is unknown. */

@@ -5,32 +5,34 @@
 #include "scene/scene.h"
 #include "scene/sleep.h"
 
-static bool law_reads_time(const Law *law)
+static bool law_reads_time(const Model *model, const Law *law)
 {
     if (!law || law->op == LAW_TIME)
         return law;
+    if (law->op == LAW_SIGNAL)
+        return law_reads_time(model, model->signal[law->index].law); /* NULL: an output, of something looked at here */
     for (int i = 0; i < 3 && law->arg[i]; ++i)
-        if (law_reads_time(law->arg[i]))
+        if (law_reads_time(model, law->arg[i]))
             return true;
     return false;
 }
 
-static bool any_reads_time(const Law *const *law, int count)
+static bool any_reads_time(const Model *model, const Law *const *law, int count)
 {
     for (int i = 0; i < count; ++i)
-        if (law_reads_time(law[i]))
+        if (law_reads_time(model, law[i]))
             return true;
     return false;
 }
 
-static bool powertrain_reads_time(const Powertrain *powertrain)
+static bool powertrain_reads_time(const Model *model, const Powertrain *powertrain)
 {
     const Law *const law[] = {powertrain->throttle, powertrain->torque, powertrain->selector};
-    if (any_reads_time(law, 3) || any_reads_time(powertrain->up, powertrain->forward - 1) ||
-        any_reads_time(powertrain->down, powertrain->forward - 1))
+    if (any_reads_time(model, law, 3) || any_reads_time(model, powertrain->up, powertrain->forward - 1) ||
+        any_reads_time(model, powertrain->down, powertrain->forward - 1))
         return true;
     for (int i = 0; i < powertrain->differentials; ++i)
-        if (law_reads_time(powertrain->differential[i].lock))
+        if (law_reads_time(model, powertrain->differential[i].lock))
             return true;
     return false;
 }
@@ -39,12 +41,15 @@ static bool powertrain_reads_time(const Powertrain *powertrain)
 static const char *restless(const Model *model)
 {
     for (int i = 0; i < model->forces; ++i)
-        if (any_reads_time(model->force[i].law, (int)(sizeof model->force[i].law / sizeof *model->force[i].law)))
+        if (any_reads_time(model, model->force[i].law, sizeof model->force[i].law / sizeof *model->force[i].law))
             return model->force[i].name;
+    for (int i = 0; i < model->states; ++i)
+        if (law_reads_time(model, model->state[i].rate))
+            return model->state[i].name;
     for (int i = 0; i < model->wheels; ++i)
-        if (law_reads_time(model->wheel[i].drive) || law_reads_time(model->wheel[i].brake))
+        if (law_reads_time(model, model->wheel[i].drive) || law_reads_time(model, model->wheel[i].brake))
             return model->wheel[i].name;
-    return model->powertrain && powertrain_reads_time(model->powertrain) ? "powertrain" : NULL;
+    return model->powertrain && powertrain_reads_time(model, model->powertrain) ? "powertrain" : NULL;
 }
 
 Sleep *sleep_read(Pool *pool, const Item *item, const Model *model)

@@ -439,7 +439,7 @@ double scene_next_knot(const Scene *scene, double time)
     double next = INFINITY;
     for (int i = 0; i < scene->profiles; ++i)
         if (scene->profile[i].driven)
-            next = fmin(next, profile_next_kink(&scene->profile[i], time));
+            next = fmin(next, profile_next_knot(&scene->profile[i], time, scene->step));
     return next;
 }
 

@@ -267,7 +267,7 @@ static void aero(const World *world, const Force *force, double load[6])
     const double pressure = 0.5 * world_law(world, force->law[AERO_DENSITY], NULL) * dot3(u, u);
     const double scale = pressure * world_law(world, force->area, NULL);
     for (int i = 0; i < 3; ++i) {
-        load[i] = scale * (C[i] - (local[AERO_SPEED] > 0 ? C[AERO_DRAG] * u[i] / local[AERO_SPEED] : 0));
+        load[i] = scale * (C[i] - C[AERO_DRAG] * (local[AERO_SPEED] > 0 ? u[i] / local[AERO_SPEED] : 0));
         load[3 + i] = force->length ? scale * world_law(world, force->length, NULL) * C[3 + i] : 0;
     }
 }

@@ -206,6 +206,14 @@ sed '/^inputs/d; s/rates: {.*}}/position: [0, 0, 1]}/' wings.scene >half.scene
     off=$(apart half.csv whole.csv)
 check "a mirror image against both sides written out: ${off:-no run}" within "${off:-1}" 1e-11
 
+# a coefficient without a value at rest is no error of the generator: the run says that a result is not finite
+printf 'gicgen: 1\nmodel: m\nbase: car\nbodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}\n%s\n' \
+    'forces: {air: {type: aero, body: car, area: 1, drag: 1 / airspeed}}' >still.veh
+printf 'gicscene: 1\nduration: 0.1\nstep: 0.01\n' >still.scene
+"$gicrun" -q still.veh still.scene -o still.csv 2>said
+[ $? -eq 1 ] && grep -q 'not a finite number' said
+verdict $? "a coefficient that has no value at rest"
+
 # ---- mistakes
 # refused PLACE MESSAGE REMEDY ELEMENT [MORE]: one message and no output
 refused() {

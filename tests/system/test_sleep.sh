@@ -201,6 +201,10 @@ outputs:
   x: {type: coordinate, coordinate: x}
 XXX
 refused "$work/timed.veh" "'shake' of 'cart' changes with time" 'remove'
+sed "s/\"sin(3 \* time)\"/wave/; s/^forces:/signals: {phase: 3 * time, wave: sin(phase)}\n&/" "$work/timed.veh" >"$work/signal.veh"
+refused "$work/signal.veh" "'shake' of 'cart' changes with time" 'remove'
+sed "s/\"sin(3 \* time)\"/slow/; s/^forces:/states: {slow: {rate: sin(3 * time)}}\n&/" "$work/timed.veh" >"$work/state.veh"
+refused "$work/state.veh" "'slow' of 'cart' changes with time" 'remove'
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
