@@ -68,6 +68,9 @@ page "$vehicle" "$root/models/scenes/lane_change.scene" 1e-9
 page "$vehicle" "$root/models/scenes/field_track.scene" 1e-9
 page "$root/models/hmmwv_tires.veh" "$work/roads.scene" 1e-8
 page "$root/models/hmmwv_tires.veh" "$work/chirp.scene" 1e-8
+sed 's/^duration:.*/duration: 1.5/' "$root/models/scenes/tires_jump.scene" >"$work/jump.scene"
+echo 'locate: true' >>"$work/jump.scene"
+page "$root/models/hmmwv_tires.veh" "$work/jump.scene" 1e-6
 page "$root/models/hmmwv.veh" "$root/models/scenes/suspension_rig.scene" 1e-11
 page "$root/models/pendulum.veh" "$root/models/scenes/pendulum.scene" 1e-12
 
