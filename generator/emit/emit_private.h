@@ -132,6 +132,21 @@ void write_packed(Generation *g, Text *out);
 const char *alone_text(const Generation *g, const char *room, const char *array, const char *offset, int stride,
                        int count);
 
+/* tangent.c: insertion points of its templates; functions for derivatives and what the header says about them, with
+ * Style.derivatives. */
+extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
+void write_tangent_code(void *context, Text *out, int indent);
+/* The blocks of tangents: of a class of subsets; of any other block. */
+const Block *class_tangent(const Generation *g, int class, bool still);
+const Block *whole_tangent(const Generation *g, const Block *block);
+/* jacobian.c: the number of columns; sizes, a picture and tables of what may be other than 0. */
+int jacobian_columns(const Generation *g);
+void write_jacobian_sizes(void *context, Text *out, int indent);
+void write_jacobian_picture(void *context, Text *out, int indent);
+void write_jacobian_rows(void *context, Text *out, int indent);
+void write_jacobian_starts(void *context, Text *out, int indent);
+void write_tangent_header(void *context, Text *out, int indent);
+
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);
 
@@ -155,6 +170,8 @@ extern const Insertions powertrain_points;
 
 /* wheels.c: these write nothing if no wheel has a tire, except the end of the descriptor. */
 void write_wheels(void *context, Text *out, int indent); /* functions of the wheels, before the equations of motion */
+/* True for a model that has wheels with tires; else, if it has fast states, the model's own are all of them. */
+bool wheels_roll(const Generation *g);
 void write_wheel_functions(void *context, Text *out, int indent); /* functions for the descriptor */
 void write_dual_rate(void *context, Text *out, int indent);
 void write_wheel_sizes(Generation *g, Text *out, int indent);

@@ -209,8 +209,7 @@ static const Insertion states_point[] = {{"link", write_link}, {"torque", write_
 
 const Insertions states_points = {(const char *const[]){"states.c.in", NULL}, states_point, NULL};
 
-/* Wheels with tires; else, if it has fast states, the model's own are all of them. */
-static bool rolls(const Generation *g)
+bool wheels_roll(const Generation *g)
 {
     return g->formulation->wheels && g->formulation->wheels->count > 0;
 }
@@ -219,7 +218,7 @@ void write_wheels(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (rolls(g))
+    if (wheels_roll(g))
         template_expand(g->pool, out, g->templates, "wheels.c.in", g->model->name, NULL, &wheels_points, g);
     else if (g->formulation->wheels)
         template_expand(g->pool, out, g->templates, "states.c.in", g->model->name, NULL, &states_points, g);
@@ -256,7 +255,7 @@ void write_wheel_functions(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (rolls(g))
+    if (wheels_roll(g))
         template_expand(g->pool, out, g->templates, "dual_rate.c.in", g->model->name, NULL, &dual_rate_points, g);
     else if (g->formulation->wheels)
         template_expand(g->pool, out, g->templates, "states_rate.c.in", g->model->name, NULL, &states_rate_points, g);
@@ -272,7 +271,7 @@ void write_dual_rate(void *context, Text *out, int indent)
         line(out, indent, "offsetof(%s, link),", name);
         line(out, indent, "%s_any_link,", name);
         line(out, indent, "%s_any_fast,", name);
-        line(out, indent, rolls(g) ? "%s_any_roll," : "NULL, /* %s has no wheels with tires */", name);
+        line(out, indent, wheels_roll(g) ? "%s_any_roll," : "NULL, /* %s has no wheels with tires */", name);
         line(out, indent, "%s", g->model->powertrain ? pool_print(g->pool, "%s_any_shift,", name) : "NULL,");
         return;
     }
@@ -289,7 +288,7 @@ void write_wheel_members(void *context, Text *out, int indent)
         return;
     line(out, indent, "gic_real link[5 * %s_LINKS]; /* how the multibody system moves the wheels, at slow steps */",
          g->upper);
-    if (!rolls(g))
+    if (!wheels_roll(g))
         return;
     line(out, indent, "gic_real grip[%s_GRIP * %s_ROLLING]; /* what the wheels do, %s_GRIP numbers each */", g->upper,
          g->upper, g->upper);
@@ -301,7 +300,7 @@ void write_wheel_sizes(Generation *g, Text *out, int indent)
     const Wheels *wheels = g->formulation->wheels;
     if (!wheels)
         return;
-    if (!rolls(g)) {
+    if (!wheels_roll(g)) {
         line(out, indent, "%s_LINKS = %d,", g->upper, wheels->links);
         return;
     }
@@ -316,7 +315,7 @@ void wheel_counts(Generation *g, Text *out, const Figures *figures)
     const Wheels *wheels = g->formulation->wheels;
     if (!wheels)
         return;
-    if (!rolls(g)) {
+    if (!wheels_roll(g)) {
         count_line(out, "what rates of own states read", figures->link);
         count_line(out, "rates of own states", figures->torque);
         return;
