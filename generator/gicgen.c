@@ -43,6 +43,7 @@ static const char usage[] =
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
     "  --lanes W        alike parts of the vehicle side by side in vectors of up to W numbers, a power of 2 up to 16;\n"
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
+    "  --derivatives    code with functions for derivatives of rates and outputs too\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -72,6 +73,7 @@ typedef struct Options {
     int fmi;                                               /* version of an FMU */
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
+    bool derivatives;
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -151,6 +153,7 @@ static Options read_options(int count, char **word)
         {"solve", .read = read_solve},
         {"recovery", .read = read_recovery},
         {"scene", .text = &options.scene},
+        {"derivatives", .on = &options.derivatives},
         {"templates", .text = &options.templates},
         {"main", .on = &main_program},
         {"sequence", .on = &sequence},
@@ -196,6 +199,9 @@ static Options read_options(int count, char **word)
         usage_error("--lanes is for code", NULL);
     if (options.batch.lanes && options.scene)
         usage_error("--lanes and --scene are not for the same code: leave one out", NULL);
+    if (options.derivatives && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
+        usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
+                    NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
@@ -223,6 +229,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
                        const Setting *setting)
 {
     Text c = {.pool = pool}, h = {.pool = pool};
+    Style style = style_readable;
+    style.derivatives = options->derivatives;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))
@@ -244,7 +252,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
         generate_batch(pool, formulation, &options->batch, options->templates, pool_print(pool, "%s.h", model->name),
                        name, &c, &h);
     else
-        generate(pool, formulation, &style_readable, options->templates, name, &c, &h);
+        generate(pool, formulation, &style, options->templates, name, &c, &h);
     if (!strcmp(path, "-")) {
         text_add(&h, c.s, c.size);
         file_write(path, h.s, h.size);

@@ -134,7 +134,7 @@ static void size_texts(Emitter *m)
             sum += own ? own : 1;
         }
         bool again = m->uses[e] > 1 && node->op != OP_ROAD_PART;
-        m->leaves[e] = again || sum > m->style->leaves || node->op == OP_ROAD ? 0 : sum;
+        m->leaves[e] = again || sum > m->style->leaves || node->op == OP_ROAD || node->op == OP_ROAD_CHANGE ? 0 : sum;
     }
 }
 
@@ -255,6 +255,24 @@ static void write_vector(const Emitter *m, Text *line, const Element *lane, int 
     text_print(line, ")");
 }
 
+/* Arguments of a function, led by commas. */
+static void write_arguments(Emitter *m, Text *line, const Ex *e, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        text_print(line, ", ");
+        write_text(m, line, e[i], 0);
+    }
+}
+
+/* How friction changes on the way of the point under which it is looked up. */
+static void write_friction_change(Emitter *m, Text *line, const Node *node)
+{
+    text_print(line, "%sfriction_change(self, time", own_prefix(m));
+    write_arguments(m, line, m->dag->node[node->arg[0]].arg, 2);
+    write_arguments(m, line, node->arg + 1, 2);
+    text_print(line, ")");
+}
+
 /* Text of a node within an expression that binds with `strength`. Recursion is as deep as one line's text. */
 static void write_text(Emitter *m, Text *line, Ex e, int strength)
 {
@@ -301,11 +319,17 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         text_print(line, "road%d[%d]", m->temporary[node->arg[0]], (int)node->arg[1]);
         return;
     }
-    if (node->op == OP_TABLE) {
+    if (node->op == OP_FRICTION_CHANGE) {
+        write_friction_change(m, line, node);
+        return;
+    }
+    if (node->op == OP_TABLE || node->op == OP_TABLE_SLOPE) {
         if (is_vector(m, e))
             text_print(line, "%s_TABLE(", function_name(width_of(m, e)));
-        else
+        else if (node->op == OP_TABLE)
             text_print(line, "gic_table_value(");
+        else
+            text_print(line, "%stable_slope(", own_prefix(m));
         text_print(line, "&%stable[%d], ", own_prefix(m), (int)node->arg[1]);
         write_whole(m, line, node->arg[0], is_vector(m, e), width_of(m, e));
         text_print(line, ")");
@@ -358,6 +382,12 @@ static void write_statement(Emitter *m, Ex e)
                        m->block->across ? ")\n%*sreturn GIC_FINITE(road%d, 3) ? GIC_ERROR_ASSUMPTION : GIC_ERROR_ROAD;"
                                         : ")\n%*sreturn GIC_ERROR_ROAD;",
                        m->indent + 4, "", number);
+    } else if (node->op == OP_ROAD_CHANGE) {
+        const Ex road = node->arg[0];
+        text_print(&line, "%s road%d[3];\n%*sif (!%sroad_change(self, time", real, number, m->indent, "", own_prefix(m));
+        write_arguments(m, &line, m->dag->node[road].arg, 2);
+        write_arguments(m, &line, node->arg + 1, 2);
+        text_print(&line, ", road%d, road%d))\n%*sreturn GIC_ERROR_ROAD;", m->temporary[road], number, m->indent + 4, "");
     } else {
         text_print(&line, "const %s %s = ", real, m->name[e] ? m->name[e] : pool_print(m->dag->pool, "t%d", number));
         write_text(m, &line, e, 0);
@@ -511,7 +541,8 @@ static bool is_free(const Emitter *m, const char *name)
 
 static void give_name(Emitter *m, Ex e, const char *name)
 {
-    if (name && m->planned[e] && !m->name[e] && m->dag->node[e].op != OP_ROAD && is_free(m, name))
+    const Op op = (Op)m->dag->node[e].op;
+    if (name && m->planned[e] && !m->name[e] && op != OP_ROAD && op != OP_ROAD_CHANGE && is_free(m, name))
         m->name[e] = name;
 }
 

@@ -439,11 +439,16 @@ static const char *index_text(Pool *pool, const Naming *naming, Element e)
     }
 }
 
-/* Its array's name, with the number of one of several. */
+/* Its array's name, with the number of one of several; of derivatives: dm, along->grip. */
 static const char *array_name(Pool *pool, Element e)
 {
+    static const char own[] = "self->";
     const bool several = e.array == ARRAY_known || e.array == ARRAY_onto;
-    return several ? pool_print(pool, "%s%d", array_text[e.array], e.which) : array_text[e.array];
+    const char *name = several ? pool_print(pool, "%s%d", array_text[e.array], e.which) : array_text[e.array];
+    if (!e.slope)
+        return name;
+    return strncmp(name, own, sizeof own - 1) ? pool_print(pool, "d%s", name)
+                                              : pool_print(pool, "along->%s", name + sizeof own - 1);
 }
 
 const char *element_text(Pool *pool, const Naming *naming, Element e)
@@ -509,6 +514,8 @@ static const char *inertia_variable(Pool *pool, const Naming *naming, int i)
 
 const char *element_variable(Pool *pool, const Naming *naming, Element e)
 {
+    if (e.slope)
+        return NULL;
     const char *index = index_text(pool, naming, e);
     const size_t upper = strlen(naming->upper) + 1;
     switch (e.array) {

@@ -132,6 +132,12 @@ void write_packed(Generation *g, Text *out);
 const char *alone_text(const Generation *g, const char *room, const char *array, const char *offset, int stride,
                        int count);
 
+/* tangent.c: insertion points of its templates; functions for derivatives and what the header says about them, with
+ * Style.derivatives. */
+extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
+void write_tangent_code(void *context, Text *out, int indent);
+void write_tangent_header(void *context, Text *out, int indent);
+
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);
 

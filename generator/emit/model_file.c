@@ -311,9 +311,15 @@ static void write_derived(void *context, Text *out, int indent)
              g->upper);
 }
 
-static const Insertion header_point[] = {
-    {"banner", write_banner},        {"guard", write_guard},     {"abi", write_abi},       {"sizes", write_sizes},
-    {"wheels", write_wheel_members}, {"derived", write_derived}, {"places", write_places}, {NULL, NULL}};
+static const Insertion header_point[] = {{"banner", write_banner},
+                                         {"guard", write_guard},
+                                         {"abi", write_abi},
+                                         {"sizes", write_sizes},
+                                         {"wheels", write_wheel_members},
+                                         {"derived", write_derived},
+                                         {"places", write_places},
+                                         {"tangent", write_tangent_header},
+                                         {NULL, NULL}};
 
 static const Insertions header_points = {(const char *const[]){"model.h.in", NULL}, header_point, NULL};
 
@@ -676,6 +682,7 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {"press", write_press},
                                        {"contact function", write_contact_function},
                                        {"contacts", write_contacts},
+                                       {"tangent", write_tangent_code},
                                        {NULL, NULL}};
 
 const Insertions code_points = {(const char *const[]){"model.c.in", "independent.c.in", "reactions.c.in", "bounds.c.in",
@@ -689,12 +696,13 @@ const Insertions code_points = {(const char *const[]){"model.c.in", "independent
 /* All templates of the code are checked, those too that this model does not need. */
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {&code_points,         &header_points,      &derive_points,
-                                        &subset_points,       &lane_class_points,  &lane_width_points,
-                                        &lane_fold_points,    &assumption_points,  &road_points,
-                                        &wheels_points,       &wheel_points,       &wheel_lanes_points,
-                                        &wheel_vector_points, &dual_rate_points,   &powertrain_points,
-                                        &states_points,       &states_rate_points, NULL};
+    const Insertions *const points[] = {&code_points,          &header_points,         &derive_points,
+                                        &subset_points,        &lane_class_points,     &lane_width_points,
+                                        &lane_fold_points,     &assumption_points,     &road_points,
+                                        &wheels_points,        &wheel_points,          &wheel_lanes_points,
+                                        &wheel_vector_points,  &dual_rate_points,      &powertrain_points,
+                                        &states_points,        &states_rate_points,    &tangent_points,
+                                        &tangent_class_points, &tangent_header_points, NULL};
     templates_check(pool, templates, points);
 }
 

@@ -115,18 +115,26 @@ void block_inputs(const Block *block, void (*visit)(void *context, Element eleme
 typedef struct Reader {
     Array array;
     int which;
-    bool reads;
+    bool slope, reads;
 } Reader;
 
 static void look(void *context, Element element)
 {
     Reader *reader = context;
-    reader->reads = reader->reads || (element.array == reader->array && element.which == reader->which);
+    reader->reads = reader->reads || (element.array == reader->array && element.which == reader->which &&
+                                      element.slope == reader->slope);
 }
 
 bool block_reads(const Block *block, Array array, int which)
 {
-    Reader reader = {array, which, false};
+    Reader reader = {.array = array, .which = which};
+    block_inputs(block, look, &reader);
+    return reader.reads;
+}
+
+bool block_reads_slope(const Block *block, Array array, int which)
+{
+    Reader reader = {.array = array, .which = which, .slope = true};
     block_inputs(block, look, &reader);
     return reader.reads;
 }

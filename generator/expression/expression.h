@@ -79,11 +79,12 @@ typedef enum Array {
         ARRAY_COUNT
 } Array;
 
-/* One number of an array. */
+/* One number of an array, or its derivative along a direction. */
 typedef struct Element {
     Array array;
-    int which; /* of several arrays of one kind: ARRAY_known, ARRAY_onto */
-    int index; /* 0: of a number that stands alone */
+    int which;  /* of several arrays of one kind: ARRAY_known, ARRAY_onto */
+    int index;  /* 0: of a number that stands alone */
+    bool slope; /* the derivative */
     double number;
 } Element;
 
@@ -104,10 +105,10 @@ static inline bool element_same(Element a, Element b)
     return element_compare(a, b) == 0;
 }
 
-/* Its index where it is of that array, else -1. */
+/* Its index where it is a number of that array, else -1. */
 static inline int element_index(Element e, Array array)
 {
-    return e.array == array ? e.index : -1;
+    return e.array == array && !e.slope ? e.index : -1;
 }
 
 uint64_t element_hash(Element e);
@@ -147,7 +148,10 @@ typedef uint32_t Ex;
     X(OP_FRICTION, 2, "road_friction(self, time, %0, %1)", "function") \
     X(OP_LANE, 1, "", "") \
     X(OP_LANE_SUM, 1, "LANE_SUM(%0)", "") \
-    X(OP_FOLD, 2, "FOLD(%0, %1)", "add")
+    X(OP_FOLD, 2, "FOLD(%0, %1)", "add") \
+    X(OP_TABLE_SLOPE, 1, "", "function") \
+    X(OP_ROAD_CHANGE, 3, "", "function") \
+    X(OP_FRICTION_CHANGE, 3, "", "function")
 
 typedef enum Op {
 #define OP_ENUM(name, arity, text, counted) name,
@@ -164,8 +168,9 @@ typedef struct Node {
     uint8_t wide;      /* lanes of a vector; 0: one number */
     uint8_t undefined; /* constants made a part of it that is no finite number: it is not folded, nor into anything, so
                           that it is computed at run time and ends in a status */
-    Ex arg[3];         /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE: arg[1] is the table's index;
-                          OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step */
+    Ex arg[3];         /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE, OP_TABLE_SLOPE: arg[1] is the
+                          table's index; OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step; OP_ROAD_CHANGE,
+                          OP_FRICTION_CHANGE: arg[0] is the OP_ROAD or OP_FRICTION, then the changes of x and y */
     const Element *element; /* OP_INPUT: what it reads; of a vector that of each lane */
 } Node;
 
@@ -372,8 +377,27 @@ Count block_count_wide(const Block *block);
 Count block_count_above_loads(const Block *block);
 /* All elements that it reads. */
 void block_inputs(const Block *block, void (*visit)(void *context, Element element), void *context);
-/* Does it read an element of that array, of several the one with that number? */
+/* Does it read an element of that array, of several the one with that number? slope: the derivative of one. */
 bool block_reads(const Block *block, Array array, int which);
+bool block_reads_slope(const Block *block, Array array, int which);
+
+/* ---- tangent.c: forward differentiation along one direction */
+
+/* Where derivatives begin. */
+typedef struct Seeds {
+    bool (*moves)(const void *context, Element element); /* has an input a derivative? That is its `slope` */
+    const void *context;
+    int givens; /* nodes whose derivatives are given, [givens] */
+    const Ex *given, *slope;
+} Seeds;
+
+/* The derivative of each node [nodes] that the roots need; of others 0. block: its checks hold; NULL: none do. At a kink
+ * it is that of the branch taken; of |x| at x = 0 the mean of both, 0; of a root at 0 that stays there, and of
+ * atan2(0, 0), 0. Without lanes. */
+const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds);
+/* The block that stores derivatives of what `block` stores; both: and what it stores itself, with its checks. wanted:
+ * which stores; NULL: all. */
+Block *block_tangent(const Block *block, const Seeds *seeds, bool both, bool (*wanted)(const void *context, Element target));
 
 /* schedule.c: a statement that computes a node, or a check of one. */
 typedef struct Step {

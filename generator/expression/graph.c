@@ -78,6 +78,8 @@ int element_compare(Element a, Element b)
         return a.which < b.which ? -1 : 1;
     if (a.index != b.index)
         return a.index < b.index ? -1 : 1;
+    if (a.slope != b.slope)
+        return a.slope ? 1 : -1;
     return memcmp(&a.number, &b.number, sizeof a.number);
 }
 
@@ -91,7 +93,7 @@ uint64_t element_hash(Element e)
 {
     uint64_t bits;
     memcpy(&bits, &e.number, sizeof bits);
-    return mix(mix(mix(mix(17, (uint64_t)e.array), (uint64_t)e.which), (uint64_t)e.index), bits);
+    return mix(mix(mix(mix(17, (uint64_t)e.array), (uint64_t)e.which), (uint64_t)e.index), bits) ^ (uint64_t)e.slope;
 }
 
 /* Literals and constants are what their samples are, inputs what they read, the rest what their arguments are. */
@@ -371,6 +373,12 @@ static bool are_finite(const double *x, int count)
     return true;
 }
 
+/* Derivatives have no samples. */
+static bool is_change(Op op)
+{
+    return op == OP_TABLE_SLOPE || op == OP_ROAD_CHANGE || op == OP_FRICTION_CHANGE;
+}
+
 Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
 {
     Node node = {.op = (uint8_t)op, .arg = {a, b, c}};
@@ -382,10 +390,10 @@ Ex ex_op(Dag *dag, Op op, Ex a, Ex b, Ex c)
             node.wide = (uint8_t)dag->lanes;
         node.undefined |= dag->node[node.arg[i]].undefined;
     }
-    if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE)
+    if (op == OP_ROAD || op == OP_ROAD_PART || op == OP_FRICTION || op == OP_TABLE || is_change(op))
         node.level = LEVEL_VARIABLE;
     double sample[dag->samples];
-    if (op == OP_ROAD_PART || (op == OP_TABLE && !dag->tables)) {
+    if (op == OP_ROAD_PART || is_change(op) || (op == OP_TABLE && !dag->tables)) {
         memset(sample, 0, sizeof sample);
         return intern(dag, &node, sample);
     }
@@ -582,7 +590,7 @@ void dag_evaluate(Dag *dag, int first, int count)
 {
     for (Ex e = 0; e < (Ex)dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART &&
+        if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART && !is_change(node->op) &&
             (node->op != OP_TABLE || dag->tables))
             node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
     }

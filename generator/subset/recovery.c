@@ -578,6 +578,17 @@ static Work held(Work *w)
     return found;
 }
 
+/* What is needed to differentiate the poses that Newton's iteration finds. */
+static const Implicit *implicit_new(const Work *w, const Factors *factors, const Ex *found)
+{
+    Implicit *implicit = pool_alloc(w->pool, sizeof *implicit);
+    Ex *value = pool_alloc(w->pool, (size_t)w->n * sizeof *value);
+    for (int r = 0; r < w->n; ++r)
+        value[r] = w->row[r].value;
+    *implicit = (Implicit){.n = w->n, .value = value, .factors = factors, .found = found};
+    return implicit;
+}
+
 static Formula *formulate_newton(Work *w, Solve solve)
 {
     int bodies = w->first->bodies;
@@ -591,6 +602,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
     Ex determinant = determinant_check(&found, formula, factors, false);
     dag_section(w->dag, "pose: the last correction");
     make_step(&found, factors, &formula->solve, q);
+    formula->implicit = implicit_new(&found, factors, q);
     Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
     make_motion(&found, factors, motion);
     determinant_check_ahead(&found, formula, determinant, motion);

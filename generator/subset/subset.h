@@ -149,6 +149,15 @@ enum { INERTIA_FIRST = 0, INERTIA_SECOND = 3, INERTIA_FORCE = 9, INERTIA_MOMENT 
 
 int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 
+/* Newton's iteration at its end: equations of which `value` vanish, the factors of their derivative by the twists of
+ * the bodies, and the poses q that it found. */
+typedef struct Implicit {
+    int n;                  /* 6 a body */
+    const Ex *value;        /* [n] */
+    const Factors *factors; /* at the inputs q */
+    const Ex *found;        /* [7 bodies] */
+} Implicit;
+
 /* The formulas of a class. C names: k constants of the member; d constants that tunable parameters change; m0, m1, ...
  * motions of the knowns; x, rate, change: value, rate and change since the start of the deps; turn: angular velocity of
  * the base; ahead: time for which coordinates must stay independent at the present velocities; q: pose; s and f: S and
@@ -171,6 +180,7 @@ typedef struct Formula {
                          * their derivatives' residuals, relative to the magnitudes of their terms */
     Block react;        /* multipliers from the wrenches w that the bodies need, both in w; f: stored factors. The load
                          * on knowns is subtracted from their wrenches w0, w1, .... Only what outputs need */
+    const Implicit *implicit; /* NULL: closed */
     int derived;        /* numbers d[] that follow tunable parameters */
     Ex *derived_of;     /* [derived][members] their formulas */
 } Formula;
@@ -189,6 +199,10 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 /* [subsets] true if some `reaction` output needs the multipliers: of its joint's subset and of later subsets that load
  * it. */
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
+
+/* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
+ * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change. */
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned);
 
 /* ---- assemble.c: the design configuration that fits the given lengths */
 

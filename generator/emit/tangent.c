@@ -1,0 +1,492 @@
+/* SPDX-License-Identifier: MIT
+ * Functions for derivatives along a direction: each block of the vehicle differentiated forwards, called as the blocks
+ * themselves are. */
+#include "base/text.h"
+#include "emit/emit.h"
+#include "emit/emit_private.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "model/powertrain_numbers.h"
+#include "sequence/sequence.h"
+#include "subset/subset.h"
+#include "vehicle/vehicle.h"
+#include "vehicle/wheel.h"
+
+/* A template that is being expanded, with the constants that its blocks need. */
+typedef struct Expansion {
+    Generation *g;
+    const WheelClass *wheel; /* NULL: g->class is a class of subsets */
+    Constants constants;
+} Expansion;
+
+/* ---- blocks --------------------------------------------------------------------------------------------------------- */
+
+/* What moves along a direction in blocks about the whole vehicle and its wheels; context: the Generation. */
+static bool moves(const void *context, Element element)
+{
+    const Generation *g = context;
+    switch (element.array) {
+    case ARRAY_time:
+    case ARRAY_gear:
+    case ARRAY_rest: return false;
+    case ARRAY_self_derived: return g->model->tuning;
+    case ARRAY_e: return g->model->free_base;
+    default: return true;
+    }
+}
+
+/* In blocks with the arguments of a class: the same, for a wheel's `rate` are those of its fast states. */
+static void write_tangent(Generation *g, Text *out, const Block *block, bool both, NamingScope scope,
+                          Constants *constants, int indent)
+{
+    const Seeds seeds = {.moves = moves, .context = g};
+    write_fast_block(g, out, block_tangent(block, &seeds, both, NULL), scope, constants, indent);
+}
+
+/* A block about the whole vehicle, which has no constants of members. */
+static void write_whole(Generation *g, Text *out, const Block *block, bool both, NamingScope scope, int indent)
+{
+    Constants none = {0};
+    write_tangent(g, out, block, both, scope, &none, indent);
+}
+
+static void write_dynamics(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, g->formulation->dynamics, true, SCOPE_WHOLE, indent);
+}
+
+static void write_outputs(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, g->formulation->outputs, true, SCOPE_WHOLE, indent);
+}
+
+static void write_wrenches(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, g->formulation->wrenches, true, SCOPE_WHOLE, indent);
+}
+
+static void write_derived(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, derive_block(g->pool, g->plan), false, SCOPE_WHOLE, indent);
+}
+
+/* ---- classes of subsets ------------------------------------------------------------------------------------------------ */
+
+/* Pointers to the numbers of known bodies and to what follows geometric parameters, and to their derivatives. */
+static void write_knowns(const Generation *g, Text *out, int indent, bool wrenches)
+{
+    const Class *class = &g->sequence->class[g->class];
+    const Subset *first = &g->sequence->subset[class->member[0]];
+    for (int i = 0; i < first->knowns; ++i) {
+        line(out, indent, "const gic_real *const m%d = links->known[%d], *const dm%d = dlinks->known[%d]; /* %s */", i, i,
+             i, i, g->model->body[first->known[i]].name);
+        line(out, indent, "(void)m%d, (void)dm%d;", i, i);
+    }
+    for (int i = 0; wrenches && i < first->knowns; ++i) {
+        line(out, indent, "gic_real *const w%d = onto[%d], *const dw%d = donto[%d];", i, i, i, i);
+        line(out, indent, "(void)w%d, (void)dw%d;", i, i);
+    }
+    if (!g->plan->formula[g->class]->derived)
+        return;
+    line(out, indent, "const gic_real *const d = links->derived, *const dd = dlinks->derived;");
+    line(out, indent, "(void)d, (void)dd;");
+}
+
+static void write_solve_knowns(void *context, Text *out, int indent)
+{
+    const Expansion *x = context;
+    write_knowns(x->g, out, indent, false);
+}
+
+static void write_react_knowns(void *context, Text *out, int indent)
+{
+    const Expansion *x = context;
+    write_knowns(x->g, out, indent, true);
+}
+
+static void write_class_block(Expansion *x, const Block *block, Text *out, int indent)
+{
+    Style style = *x->g->style;
+    Naming naming;
+    if (style.naming) {
+        naming = *style.naming;
+        naming.class = x->g->plan->formula[x->g->class];
+        naming.scope = SCOPE_CLASS;
+        style.naming = &naming;
+    }
+    block_emit(out, block, &style, &x->constants, indent);
+}
+
+static void write_solve(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    const Formula *formula = x->g->plan->formula[x->g->class];
+    write_class_block(x, subset_tangent(formula, !x->g->model->free_base, x->g->model->tuning), out, indent);
+}
+
+static void write_react(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    const Seeds seeds = {.moves = moves, .context = x->g};
+    const Block *react = &x->g->plan->formula[x->g->class]->react;
+    write_class_block(x, block_tangent(react, &seeds, true, NULL), out, indent);
+}
+
+/* The functions of all classes of subsets. */
+static void write_class_tangents(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
+        const Class *class = &g->sequence->class[g->class];
+        Expansion x = {.g = g};
+        Text body = {.pool = g->pool};
+        const char *member[class->members];
+        for (int i = 0; i < class->members; ++i)
+            member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
+        template_expand(g->pool, &body, g->templates, "tangent_class.c.in", g->model->name, class->name,
+                        &tangent_class_points, &x);
+        if (g->plan->formula[g->class]->react.stores)
+            template_expand(g->pool, &body, g->templates, "tangent_react.c.in", g->model->name, class->name,
+                            &tangent_class_points, &x);
+        write_constants(g, out, pool_print(g->pool, "k_tangent_%s", class->name), g->plan->formula[g->class]->dag,
+                        &x.constants, member);
+        text_add(out, body.s, body.size);
+    }
+    g->class = 0;
+}
+
+/* What a subset's functions read: motions of the bodies solved before, coordinates, derived numbers. */
+static void write_links(Generation *g, Text *out, int indent, int s)
+{
+    const Subset *subset = &g->sequence->subset[s];
+    for (int i = 0; i < subset->knowns; ++i) {
+        const char *place = body_motion_text(g, subset->known[i]);
+        line(out, indent, "links.known[%d] = self->motion + %s;", i, place);
+        line(out, indent, "dlinks.known[%d] = along->motion + %s;", i, place);
+    }
+    for (int j = 0; j < subset->deps; ++j) {
+        const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
+        line(out, indent, "links.x[%d] = self->x[%s], dlinks.x[%d] = along->x[%s];", j, index, j, index);
+        line(out, indent, "links.rate[%d] = self->xd[%s], dlinks.rate[%d] = along->xd[%s];", j, index, j, index);
+    }
+    if (!g->plan->formula[subset->class]->derived)
+        return;
+    line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
+    line(out, indent, "dlinks.derived = along->derived + %d;", g->plan->derived_offset[s]);
+}
+
+static void write_calls(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    for (int s = 0; s < g->sequence->subsets; ++s) {
+        const Subset *subset = &g->sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        const Class *class = &g->sequence->class[subset->class];
+        const int offset = g->plan->start_offset[s];
+        line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
+        write_links(g, out, indent, s);
+        line(out, indent,
+             "%s_tangent_solve_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, along->motion + "
+             "%s, along->inertia + %s);",
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
+             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s));
+    }
+}
+
+/* In reverse computational sequence, as the multipliers themselves. */
+static void write_react_calls_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const Plan *plan = g->plan;
+    const bool *needed = reactions_needed(g->pool, g->model, g->sequence);
+    for (int s = g->sequence->subsets - 1; s >= 0; --s) {
+        const Subset *subset = &g->sequence->subset[s];
+        if (subset->class < 0 || !needed[s])
+            continue;
+        const Class *class = &g->sequence->class[subset->class];
+        const int factors = plan->start_offset[s] + plan->formula[subset->class]->layout.start_factors;
+        const char *motion = body_motion_text(g, subset->body[0]);
+        const int own = plan->multiplier_offset[subset->body[0]];
+        line(out, indent, "/* %s */", subset_title(g->pool, g->model, subset));
+        write_links(g, out, indent, s);
+        for (int i = 0; i < subset->knowns; ++i) {
+            const int place = plan->multiplier_offset[subset->known[i]];
+            if (needed[g->sequence->body_subset[subset->known[i]]])
+                line(out, indent, "onto[%d] = lambda + %d, donto[%d] = dlambda + %d;", i, place, i, place);
+            else
+                line(out, indent, "onto[%d] = spare, donto[%d] = dspare;", i, i);
+        }
+        line(out, indent,
+             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, self->motion + %s, "
+             "along->motion + %s, lambda + %d, dlambda + %d, onto, donto);",
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), factors, factors, motion,
+             motion, own, own);
+    }
+}
+
+/* ---- wheels with tires -------------------------------------------------------------------------------------------------- */
+
+static void write_arrays(void *context, Text *out, int indent)
+{
+    (void)context;
+    line(out, indent, "gic_real contact[%d], dcontact[%d];", CONTACT_NUMBERS, CONTACT_NUMBERS);
+    line(out, indent, "gic_real force[%d] = {R(0.0)}, dforce[%d] = {R(0.0)};", TIRE_FORCES, TIRE_FORCES);
+}
+
+static void write_contact(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_tangent(x->g, out, &x->wheel->contact, true, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static void write_tire(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_tangent(x->g, out, &x->wheel->tire, true, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static void write_balance(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_tangent(x->g, out, &x->wheel->balance, true, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static void write_wheel_classes(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const Wheels *wheels = g->formulation->wheels;
+    (void)indent;
+    for (int c = 0; c < wheels->classes; ++c) {
+        const WheelClass *class = &wheels->class[c];
+        Expansion x = {.g = g, .wheel = class};
+        Text body = {.pool = g->pool};
+        const char *member[class->members];
+        for (int i = 0; i < class->members; ++i)
+            member[i] = g->model->wheel[class->member[i]].name;
+        template_expand(g->pool, &body, g->templates, "tangent_wheel.c.in", g->model->name, class->name,
+                        &tangent_class_points, &x);
+        write_constants(g, out, pool_print(g->pool, "k_tangent_wheel_%s", class->name), class->contact.dag, &x.constants,
+                        member);
+        text_add(out, body.s, body.size);
+    }
+}
+
+static void write_wheel_calls(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const Wheels *wheels = g->formulation->wheels;
+    const char *name = g->model->name;
+    line(out, indent, "rate += %s_SLOW;", g->upper);
+    for (int c = 0; c < wheels->classes; ++c)
+        for (int i = 0; i < wheels->class[c].members; ++i) {
+            const int wheel = wheels->class[c].member[i], place = wheel_rolling(g->model, wheel);
+            const char *fast = wheel_place_text(g, "FAST", wheel, g->model->wheel[wheel].fast);
+            const char *link = wheel_place_text(g, "LINK", wheel, LINK_NUMBERS * place);
+            const char *torque = wheel_place_text(g, "TORQUE", wheel, 2 * place);
+            const char *grip = wheel_place_text(g, "GRIP", wheel, GRIP_NUMBERS * place);
+            line(out, indent, "if (status == GIC_OK) /* %s */", g->model->wheel[wheel].name);
+            line(out, indent + 4, "status = %s_tangent_wheel_%s(self, along, %s_k_tangent_wheel_%s[%d], time,", name,
+                 wheels->class[c].name, name, wheels->class[c].name, i);
+            line(out, indent + 8, "link + %s, dlink + %s, fast + %s, dfast + %s, torque + %s, dtorque + %s,", link, link,
+                 fast, fast, torque, torque);
+            line(out, indent + 8, "rate + %s, drate + %s, grip + %s, dgrip + %s);", fast, fast, grip, grip);
+        }
+}
+
+static void write_link(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, &g->formulation->wheels->link, true, SCOPE_FAST, indent);
+}
+
+static void write_torque(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, &g->formulation->wheels->torque, true, SCOPE_FAST, indent);
+}
+
+static void write_drive_block(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, &g->formulation->wheels->drive, true, SCOPE_FAST, indent);
+}
+
+/* ---- templates ---------------------------------------------------------------------------------------------------------- */
+
+static void expand(Generation *g, Text *out, const char *template)
+{
+    template_expand(g->pool, out, g->templates, template, g->model->name, NULL, &tangent_points, g);
+}
+
+static void write_drive_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->powertrain)
+        expand(g, out, "tangent_drive.c.in");
+}
+
+static void write_wheel_tangents(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->formulation->wheels)
+        expand(g, out, "tangent_wheels.c.in");
+}
+
+static void write_table_slope(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->tables)
+        expand(g, out, "tangent_table.c.in");
+}
+
+static void write_road_change(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->wheels)
+        expand(g, out, "tangent_road.c.in");
+}
+
+static void write_friction_change(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->formulation->wheels)
+        expand(g, out, "tangent_friction.c.in");
+}
+
+static void write_derived_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->tuning)
+        expand(g, out, "tangent_derive.c.in");
+}
+
+static void write_reactions_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (formulation_reacts(g->formulation))
+        expand(g, out, "tangent_reactions.c.in");
+}
+
+static void write_orient_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    expand(g, out, g->model->free_base ? "tangent_free.c.in" : "tangent_fixed.c.in");
+}
+
+/* ---- calls where a model has these parts ------------------------------------------------------------------------------- */
+
+static void write_call_derive(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->model->tuning)
+        line(out, indent, "%s_tangent_derive(self, along);", g->model->name);
+}
+
+static void write_call_wheels(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->formulation->wheels)
+        line(out, indent, "status = %s_tangent_turn_wheels(self, time, y, e, de, rate, along);", g->model->name);
+}
+
+static void write_call_react(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (!formulation_reacts(g->formulation))
+        return;
+    line(out, indent, "if (status == GIC_OK)");
+    line(out, indent + 4, "status = %s_tangent_reactions(self, time, self->state, e, de, self->rate, along);",
+         g->model->name);
+}
+
+static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns},
+                                        {"tangent solve", write_solve},
+                                        {"react knowns", write_react_knowns},
+                                        {"tangent react block", write_react},
+                                        {"tangent arrays", write_arrays},
+                                        {"tangent contact", write_contact},
+                                        {"tangent tire", write_tire},
+                                        {"tangent balance", write_balance},
+                                        {NULL, NULL}};
+
+const Insertions tangent_class_points = {
+    (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
+
+static const Insertion tangent_point[] = {{"table slope", write_table_slope},
+                                          {"road change", write_road_change},
+                                          {"friction change", write_friction_change},
+                                          {"class tangents", write_class_tangents},
+                                          {"wheel tangents", write_wheel_tangents},
+                                          {"derived tangent", write_derived_along},
+                                          {"gather", write_gathered},
+                                          {"tangent calls", write_calls},
+                                          {"tangent dynamics", write_dynamics},
+                                          {"tangent reactions", write_reactions_along},
+                                          {"tangent outputs", write_outputs},
+                                          {"tangent orient", write_orient_along},
+                                          {"tangent derive", write_call_derive},
+                                          {"tangent wheels", write_call_wheels},
+                                          {"tangent react", write_call_react},
+                                          {"tangent derived", write_derived},
+                                          {"tangent wrenches", write_wrenches},
+                                          {"tangent react calls", write_react_calls_along},
+                                          {"wheel class tangents", write_wheel_classes},
+                                          {"tangent link", write_link},
+                                          {"tangent torque", write_torque},
+                                          {"tangent wheel calls", write_wheel_calls},
+                                          {"tangent drive", write_drive_along},
+                                          {"tangent drive block", write_drive_block},
+                                          {NULL, NULL}};
+
+const Insertions tangent_points = {
+    (const char *const[]){"tangent.c.in", "tangent_table.c.in", "tangent_road.c.in", "tangent_friction.c.in",
+                          "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in", "tangent_fixed.c.in",
+                          "tangent_wheels.c.in", "tangent_drive.c.in", NULL},
+    tangent_point, NULL};
+
+void write_tangent_code(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->style->derivatives)
+        expand(g, out, "tangent.c.in");
+}
+
+/* ---- header --------------------------------------------------------------------------------------------------------------- */
+
+static void write_direction_members(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->model->tuning)
+        line(out, indent, "gic_real derived[%s_DERIVED];", g->upper);
+    if (g->formulation->wheels)
+        line(out, indent, "gic_real grip[%s_GRIP * %s_ROLLING];", g->upper, g->upper);
+    if (g->model->powertrain)
+        line(out, indent, "gic_real watch[%d];", WATCH_NUMBERS);
+}
+
+static const Insertion tangent_header_point[] = {{"direction", write_direction_members}, {NULL, NULL}};
+
+const Insertions tangent_header_points = {(const char *const[]){"tangent.h.in", NULL}, tangent_header_point, NULL};
+
+void write_tangent_header(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->style->derivatives)
+        template_expand(g->pool, out, g->templates, "tangent.h.in", g->model->name, NULL, &tangent_header_points, g);
+}

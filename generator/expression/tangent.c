@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT
+ * Forward differentiation: the derivative of every node along one direction, as nodes of the same graph. */
+#include "expression/expression.h"
+
+/* `then` where x is positive, else 0. */
+static Ex where_positive(Dag *dag, Ex x, Ex then)
+{
+    return ex_op(dag, OP_POSITIVE, x, then, ex_literal(dag, 0));
+}
+
+/* `then` where there is a change, else 0: `then` may be no number there. */
+static Ex where_moves(Dag *dag, Ex change, Ex then)
+{
+    return where_positive(dag, ex_op(dag, OP_ABS, change, 0, 0), then);
+}
+
+/* factor times change; 0 where the change is 0, whatever the factor. */
+static Ex chain(Dag *dag, Ex factor, Ex change)
+{
+    return ex_is(dag, change, 0) ? ex_literal(dag, 0) : where_moves(dag, change, ex_mul(dag, factor, change));
+}
+
+static Ex sqrt_slope(Dag *dag, Ex root, Ex da, bool positive)
+{
+    const Ex slope = ex_mul(dag, ex_literal(dag, 0.5), ex_div(dag, da, root));
+    return positive ? slope : where_moves(dag, da, slope);
+}
+
+/* 1 / sqrt(1 - a^2) */
+static Ex arc_factor(Dag *dag, Ex a)
+{
+    const Ex one = ex_literal(dag, 1);
+    return ex_div(dag, one, ex_sqrt(dag, ex_sub(dag, one, ex_mul(dag, a, a))));
+}
+
+static Ex pow_slope(Dag *dag, Ex e, Ex a, Ex b, Ex da, Ex db)
+{
+    const Ex base = chain(dag, ex_mul(dag, b, ex_pow(dag, a, ex_sub(dag, b, ex_literal(dag, 1)))), da);
+    if (ex_is(dag, db, 0))
+        return base;
+    return ex_add(dag, base, where_positive(dag, a, ex_mul(dag, ex_mul(dag, e, ex_op(dag, OP_LOG, a, 0, 0)), db)));
+}
+
+static Ex div_slope(Dag *dag, Ex e, Ex a, Ex b, Ex da, Ex db)
+{
+    if (ex_is(dag, a, 1)) /* no second division */
+        return ex_neg(dag, ex_mul(dag, ex_mul(dag, e, e), db));
+    return ex_div(dag, ex_sub(dag, da, ex_mul(dag, e, db)), b);
+}
+
+static Ex atan2_slope(Dag *dag, Ex a, Ex b, Ex da, Ex db)
+{
+    const Ex square = ex_add(dag, ex_mul(dag, a, a), ex_mul(dag, b, b));
+    return where_positive(dag, square, ex_div(dag, ex_sub(dag, ex_mul(dag, b, da), ex_mul(dag, a, db)), square));
+}
+
+/* Height and slopes of a road move with the point under which they are looked up. */
+static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope)
+{
+    const Ex road = part->arg[0], *at = dag->node[road].arg;
+    const Ex dx = slope[at[0]], dy = slope[at[1]], zero = ex_literal(dag, 0);
+    if (ex_is(dag, dx, 0) && ex_is(dag, dy, 0))
+        return zero;
+    return ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, dx, dy), part->arg[1], 0);
+}
+
+/* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0. */
+static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive)
+{
+    const Node node = dag->node[e]; /* a copy: nodes move when there are more */
+    const int arity = ex_arity((Op)node.op);
+    const Ex a = node.arg[0], b = node.arg[1], c = node.arg[2], one = ex_literal(dag, 1), zero = ex_literal(dag, 0);
+    const Ex da = arity > 0 ? slope[a] : zero, db = arity > 1 ? slope[b] : zero, dc = arity > 2 ? slope[c] : zero;
+    if (node.op == OP_ROAD_PART)
+        return road_part_slope(dag, &node, slope);
+    if (ex_is(dag, da, 0) && ex_is(dag, db, 0) && ex_is(dag, dc, 0))
+        return zero;
+    switch ((Op)node.op) {
+    case OP_NEG: return ex_neg(dag, da);
+    case OP_ADD: return ex_add(dag, da, db);
+    case OP_SUB: return ex_sub(dag, da, db);
+    case OP_MUL:
+        if (a == b)
+            return ex_mul(dag, ex_add(dag, a, a), da);
+        return ex_add(dag, ex_mul(dag, a, db), ex_mul(dag, da, b));
+    case OP_DIV: return div_slope(dag, e, a, b, da, db);
+    case OP_SQRT: return sqrt_slope(dag, e, da, positive[a]);
+    case OP_ABS: return ex_op(dag, OP_POSITIVE, a, da, where_positive(dag, ex_neg(dag, a), ex_neg(dag, da)));
+    case OP_SIN: return ex_mul(dag, ex_op(dag, OP_COS, a, 0, 0), da);
+    case OP_COS: return ex_neg(dag, ex_mul(dag, ex_op(dag, OP_SIN, a, 0, 0), da));
+    case OP_TAN: return ex_mul(dag, ex_add(dag, one, ex_mul(dag, e, e)), da);
+    case OP_ASIN: return chain(dag, arc_factor(dag, a), da);
+    case OP_ACOS: return ex_neg(dag, chain(dag, arc_factor(dag, a), da));
+    case OP_ATAN: return ex_div(dag, da, ex_add(dag, one, ex_mul(dag, a, a)));
+    case OP_EXP: return ex_mul(dag, e, da);
+    case OP_LOG: return ex_div(dag, da, a);
+    case OP_TANH: return ex_mul(dag, ex_sub(dag, one, ex_mul(dag, e, e)), da);
+    case OP_POW: return pow_slope(dag, e, a, b, da, db);
+    case OP_ATAN2: return atan2_slope(dag, a, b, da, db);
+    case OP_MIN: return ex_op(dag, OP_POSITIVE, ex_sub(dag, b, a), da, db);
+    case OP_MAX: return ex_op(dag, OP_POSITIVE, ex_sub(dag, a, b), da, db);
+    case OP_POSITIVE: return db == dc ? db : ex_op(dag, OP_POSITIVE, a, db, dc);
+    case OP_TABLE: return ex_mul(dag, ex_op(dag, OP_TABLE_SLOPE, a, b, 0), da);
+    case OP_FRICTION: return ex_op(dag, OP_FRICTION_CHANGE, e, da, db);
+    default: return zero;
+    }
+}
+
+/* [nodes] arguments that a check of the block holds above 0, so that their roots are not 0. */
+static const bool *checked(const Dag *dag, const Block *block)
+{
+    bool *positive = pool_alloc(dag->pool, (size_t)dag->nodes);
+    for (int i = 0; block && i < block->checks; ++i)
+        positive[block->check[i].value] = !block->check[i].magnitude && block->check[i].least >= 0;
+    return positive;
+}
+
+const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds)
+{
+    const int nodes = dag->nodes;
+    Ex *slope = pool_alloc(dag->pool, (size_t)nodes * sizeof *slope);
+    bool *given = pool_alloc(dag->pool, (size_t)nodes);
+    const bool *positive = checked(dag, block), *needed = dag_needed(dag, root, roots);
+    for (int i = 0; i < seeds->givens; ++i) {
+        slope[seeds->given[i]] = seeds->slope[i];
+        given[seeds->given[i]] = true;
+    }
+    for (Ex e = 0; e < (Ex)nodes; ++e) {
+        if (!needed[e] || given[e] || dag->node[e].level < LEVEL_VARIABLE)
+            continue;
+        if (dag->node[e].op == OP_INPUT) {
+            Element element = *dag->node[e].element;
+            if (element.array == ARRAY_number || !seeds->moves(seeds->context, element))
+                continue;
+            element.slope = true;
+            slope[e] = ex_input(dag, element, NULL);
+        } else {
+            slope[e] = slope_of(dag, e, slope, positive);
+        }
+    }
+    return slope;
+}
+
+Block *block_tangent(const Block *block, const Seeds *seeds, bool both, bool (*wanted)(const void *context, Element target))
+{
+    Dag *dag = block->dag;
+    Block *tangent = pool_alloc(dag->pool, sizeof *tangent);
+    Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
+    *tangent = (Block){.dag = dag, .model = block->model};
+    dag_section(dag, "derivatives");
+    for (int i = 0; i < block->stores; ++i)
+        root[i] = block->store[i].value;
+    const Ex *slope = dag_slopes(dag, block, root, block->stores, seeds);
+    for (int i = 0; both && i < block->checks; ++i)
+        block_check_like(tangent, block->check[i].value, &block->check[i]);
+    for (int i = 0; i < block->stores; ++i) {
+        Element target = block->store[i].target;
+        if (wanted && !wanted(seeds->context, target))
+            continue;
+        if (both)
+            block_store(tangent, root[i], target);
+        target.slope = true;
+        block_store(tangent, slope[root[i]], target);
+    }
+    return tangent;
+}

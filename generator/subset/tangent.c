@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ * Derivatives of a class's motions along a direction. Poses with a closed form are differentiated as they are computed.
+ * Others solve Phi(q, x) = 0: along dx they turn and move by the twist -J^-1 Phi_x dx (implicit function theorem), one
+ * linear solve with the factors that `solve` has anyway; Newton's iterations are not looked at. */
+#include "expression/expression.h"
+#include "subset/subset.h"
+
+/* What moves along a direction. */
+typedef struct Moving {
+    bool steady, tuned;
+    bool poses;  /* q too */
+    int factors; /* from this place on stored numbers of the start are wanted; -1: none */
+} Moving;
+
+static bool moves(const void *context, Element element)
+{
+    const Moving *moving = context;
+    switch (element.array) {
+    case ARRAY_x:
+    case ARRAY_rate:
+    case ARRAY_known: return true;
+    case ARRAY_turn: return !moving->steady;
+    case ARRAY_d: return moving->tuned;
+    case ARRAY_q: return moving->poses;
+    default: return false; /* times and starts */
+    }
+}
+
+static bool is_wanted(const void *context, Element target)
+{
+    const Moving *moving = context;
+    const bool factor = target.array == ARRAY_start && moving->factors >= 0 && target.index >= moving->factors;
+    return target.array == ARRAY_motion || target.array == ARRAY_inertia || factor;
+}
+
+/* dq [7] of a body that moves by a small twist: of its place, and E^T omega / 2. */
+static void pose_change(Dag *dag, const Ex *p, const Ex twist[6], Ex dq[7])
+{
+    Ex t[3], cross[3];
+    ex_scale3(dag, ex_literal(dag, 0.5), twist, t);
+    ex_cross(dag, t, p + 1, cross);
+    for (int i = 0; i < 3; ++i) {
+        dq[i] = twist[3 + i];
+        dq[4 + i] = ex_add(dag, ex_mul(dag, p[0], t[i]), cross[i]);
+    }
+    dq[3] = ex_neg(dag, ex_dot(dag, t, p + 1));
+}
+
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned)
+{
+    Dag *dag = formula->dag;
+    const Implicit *implicit = formula->implicit;
+    const int factors = formula->react.stores ? formula->layout.start_factors : -1;
+    Moving moving = {.steady = steady, .tuned = tuned, .factors = factors};
+    Seeds seeds = {.moves = moves, .context = &moving};
+    if (!implicit)
+        return block_tangent(&formula->solve, &seeds, false, is_wanted);
+    const int n = implicit->n, places = 7 * formula->layout.bodies;
+    Ex twist[n], node[2 * places], slope[2 * places];
+    dag_section(dag, "derivatives of the poses: what their equations lack, solved for the twists");
+    const Ex *lack = dag_slopes(dag, &formula->solve, implicit->value, n, &seeds);
+    for (int r = 0; r < n; ++r)
+        twist[r] = ex_neg(dag, lack[implicit->value[r]]);
+    linear_solve(dag, implicit->factors, twist, twist);
+    for (int i = 0; i < places; ++i) {
+        node[i] = ex_input(dag, element_at(ARRAY_q, i), NULL);
+        node[places + i] = implicit->found[i];
+    }
+    for (int b = 0; b < formula->layout.bodies; ++b) {
+        pose_change(dag, node + 7 * b + 3, twist + 6 * b, slope + 7 * b);
+        pose_change(dag, node + 7 * b + 3, twist + 6 * b, slope + places + 7 * b);
+    }
+    seeds.givens = 2 * places;
+    seeds.given = node;
+    seeds.slope = slope;
+    return block_tangent(&formula->solve, &seeds, false, is_wanted);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * Derivatives of rates and outputs of generated code, for comparison. It includes the code and the runtime:
+ *
+ *     gcc -DMODEL=car '-DCODE="car.c"' derivatives.c -lm            by car_tangent_outputs()
+ *     g++ -x c++ -DDUAL -DMODEL=car '-DCODE="car.c"' derivatives.c  by numbers of the type Differential in place of doubles
+ *
+ * For the latter, gic_runtime.h must say `typedef Differential gic_real;`. `derivatives names` prints the numbers of a row, a
+ * line each: kind (state, input, parameter, port, discrete, output) and name; `derivatives start` their values at set-up.
+ * Else, for each row of these numbers on
+ * standard input but for outputs, it prints the status, rates and outputs, then those of their derivatives by each
+ * state, input, parameter and number of a port: a line each. Arguments AMPLITUDE WAVELENGTH: a wavy road. */
+#ifdef DUAL
+#include "dual_real.hpp"
+#endif
+#include "gic_runtime.c"
+#include "gic_road.c"
+#include CODE
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define OF(name) JOIN(MODEL, name)
+typedef MODEL Vehicle;
+
+#ifdef DUAL
+#define VALUE(x) ((x).v)
+#define SLOPE(x) ((x).d)
+#else
+#define VALUE(x) (x)
+#endif
+
+static void print(int count, const double *x)
+{
+    int i;
+    for (i = 0; i < count; ++i)
+        printf("%.17g%s", x[i], i + 1 < count ? " " : "");
+    printf("\n");
+}
+
+static void names(const char *kind, int count, const gic_signal *signal)
+{
+    int i;
+    for (i = 0; i < count; ++i)
+        printf("%s %s\n", kind, signal[i].name);
+}
+
+static int take(int count, gic_real *out)
+{
+    int i;
+    double x;
+    for (i = 0; i < count; ++i) {
+        if (scanf("%lf", &x) != 1)
+            return 0;
+        out[i] = x;
+    }
+    return 1;
+}
+
+#ifdef DUAL
+/* Seeds are in the numbers themselves. Geometric parameters change derived numbers. */
+static int evaluate(Vehicle *self)
+{
+#ifdef TUNED
+    const int status = OF(_derive)(self, 0.0);
+    if (status != GIC_OK)
+        return status;
+#endif
+    self->recovered = 0;
+    return OF(_outputs)(self);
+}
+#endif
+
+int main(int argc, char **argv)
+{
+    const gic_model *code = &OF(_model);
+    static Vehicle self, at;
+    const int states = code->slow_count + code->fast_count, results = states + code->output_count;
+    const int kinds[4] = {states, code->input_count, code->parameter_count, code->port_count};
+    double *line = (double *)calloc((size_t)results + 1, sizeof *line);
+    gic_road_sine wave = {{gic_sine_height, NULL}, 0.0, 1.0, 0.0, 0.0};
+    if (argc == 2) {
+        int i;
+        if (strcmp(argv[1], "start") == 0) {
+            OF(_setup)(&at);
+            for (i = 0; i < states; ++i)
+                printf("%.17g ", VALUE(at.state[i]));
+            for (i = 0; i < code->input_count; ++i)
+                printf("%.17g ", VALUE(at.input[i]));
+            for (i = 0; i < code->parameter_count; ++i)
+                printf("%.17g ", VALUE(at.parameter[i]));
+            for (i = 0; i < code->port_count; ++i)
+                printf("0 ");
+            for (i = 0; i < code->discrete_count; ++i)
+                printf("%d ", (int)at.discrete[i]);
+            printf("\n");
+            return 0;
+        }
+        names("state", states, code->state);
+        names("input", code->input_count, code->input);
+        names("parameter", code->parameter_count, code->parameter);
+        names("port", code->port_count, code->port);
+        names("discrete", code->discrete_count, code->discrete);
+        names("output", code->output_count, code->output);
+        return 0;
+    }
+    if (argc > 2) {
+        wave.amplitude = atof(argv[1]);
+        wave.wavelength = atof(argv[2]);
+    }
+    for (;;) {
+        gic_real parameter[4096], other[4096];
+        int i, k, j, status;
+        OF(_setup)(&at);
+        if (!take(states, other) || !take(code->input_count, other + states) || !take(code->parameter_count, parameter))
+            return 0;
+        status = OF(_setup_with)(&at, parameter);
+        at.head.road = argc > 2 ? &wave.head : NULL;
+        for (i = 0; i < states; ++i)
+            at.state[i] = other[i];
+        for (i = 0; i < code->input_count; ++i)
+            at.input[i] = other[states + i];
+        take(code->port_count, at.port);
+        for (i = 0; i < code->discrete_count; ++i) {
+            gic_real x;
+            take(1, &x);
+            at.discrete[i] = (int)VALUE(x);
+        }
+        if (status == GIC_OK)
+            status = OF(_outputs)(&at);
+        printf("%d\n", status);
+        if (status != GIC_OK)
+            continue;
+        for (i = 0; i < results; ++i)
+            line[i] = VALUE(i < states ? at.rate[i] : at.output[i - states]);
+        print(results, line);
+        for (k = 0; k < 4; ++k)
+            for (j = 0; j < kinds[k]; ++j) {
+#ifdef DUAL
+                self = at;
+                SLOPE((k == 0 ? self.state : k == 1 ? self.input : k == 2 ? self.parameter : self.port)[j]) = 1;
+                status = evaluate(&self);
+                for (i = 0; i < results; ++i)
+                    line[i] = SLOPE(i < states ? self.rate[i] : self.output[i - states]);
+#else
+                static OF(_direction) along;
+                memset(&along, 0, sizeof along);
+                (k == 0 ? along.state : k == 1 ? along.input : k == 2 ? along.parameter : along.port)[j] = 1;
+                self = at;
+                status = OF(_tangent_outputs)(&self, &along);
+                for (i = 0; i < results; ++i)
+                    line[i] = i < states ? along.rate[i] : along.output[i - states];
+#endif
+                if (status != GIC_OK)
+                    for (i = 0; i < results; ++i)
+                        line[i] = status;
+                print(results, line);
+            }
+    }
+}

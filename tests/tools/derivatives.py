@@ -1,0 +1,224 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""derivatives.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT]: derivatives of rates and outputs by the
+code of `gicgen --derivatives` against the very same code computed with dual numbers in C++ (dual_real.hpp), by every state,
+input, parameter and number of a port, at the design and at ROWS (5) random states beside it.
+
+--npz IN OUT: instead, at the operating point of a file IN of `gicrun --linearize`: the matrices A to F by the code, in the
+small motions of models/SCENE.md section 8, which are written again here, against those of the file; those of the code
+go into OUT, for linear_difference.py.
+
+Deviations are relative to the largest of the derivative's row and column. Prints the largest; exit status 1 where it is
+above the tolerance, 1e-13 or, of files, 1e-12, and where nothing was compared."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+tools = os.path.dirname(os.path.abspath(__file__))
+runtime = os.path.join(tools, "..", "..", "runtime")
+words = sys.argv[1:]
+
+
+def option(name, count, default):
+    if name not in words:
+        return default
+    at = words.index(name)
+    values = words[at + 1:at + 1 + count]
+    del words[at:at + 1 + count]
+    return values
+
+
+rows = int(option("-n", 1, ["5"])[0])
+npz = option("--npz", 2, None)
+wave = ["0.05", "5"] if option("--wave", 0, None) is not None else []
+options = [word[9:] for word in words if word.startswith("--option=")]
+gicgen, model = [word for word in words if not word.startswith("--")]
+
+
+def build(folder, dual):
+    """The program of derivatives.c with the code of the model."""
+    subprocess.run([gicgen, *([] if dual else ["--derivatives"]), *[w for o in options for w in o.split("=")], model, "-o",
+                    f"{folder}/code.c"], check=True, stderr=subprocess.DEVNULL)
+    with open(f"{folder}/code.h", encoding="utf-8") as file:
+        header = file.read()
+    name = header.split("typedef struct ", 1)[1].split()[0]
+    for part in ("gic_runtime.c", "gic_road.c", "gic_road.h"): # each includes the header beside it
+        shutil.copy(f"{runtime}/{part}", folder)
+    with open(f"{runtime}/gic_runtime.h", encoding="utf-8") as file:
+        text = file.read()
+    with open(f"{folder}/gic_runtime.h", "w", encoding="utf-8") as file:
+        file.write(text.replace("typedef double gic_real;", "typedef Differential gic_real;") if dual else text)
+    how = ["g++", "-std=c++11", "-x", "c++", "-fpermissive", "-DDUAL"] if dual else ["gcc", "-std=c99"]
+    if " derived[" in header:
+        how.append("-DTUNED")
+    subprocess.run([*how, "-O0", "-w", "-ffp-contract=off", f"-I{folder}", f"-I{tools}", f"-DMODEL={name}",
+                    '-DCODE="code.c"', f"{tools}/derivatives.c", "-o", f"{folder}/program", "-lm"], check=True)
+    return f"{folder}/program"
+
+
+def evaluate(program, numbers):
+    """For each row of numbers: rates and outputs, and the derivatives, a column for each number."""
+    said = subprocess.run([program, *(wave or ["0", "1"])], input="\n".join(" ".join(map(repr, row)) for row in numbers),
+                          capture_output=True, text=True, check=True).stdout.split("\n")
+    found, at = [], 0
+    for _ in numbers:
+        status, at = int(said[at]), at + 1
+        if status:
+            found.append(None)
+            continue
+        lines = said[at:at + 1 + columns]
+        at += 1 + columns
+        table = np.array([[float(word) for word in text.split()] for text in lines])
+        found.append((table[0], table[1:].T))
+    return found
+
+
+with tempfile.TemporaryDirectory() as work:
+    os.mkdir(f"{work}/tangent")
+    tangent = build(f"{work}/tangent", False)
+    names = [text.split() for text in subprocess.run([tangent, "names"], capture_output=True, text=True,
+                                                     check=True).stdout.splitlines()]
+    kind = {k: [text[1] for text in names if text[0] == k] for k in ("state", "input", "parameter", "port", "discrete",
+                                                                     "output")}
+    columns = sum(len(kind[k]) for k in ("state", "input", "parameter", "port"))
+
+    def deviation(a, b):
+        scale = np.maximum(np.abs(b).max(axis=1, keepdims=True), np.abs(b).max(axis=0, keepdims=True))
+        return np.abs(a - b) / np.where(scale == 0, 1, scale)
+
+    if npz is None:
+        os.mkdir(f"{work}/dual")
+        dual = build(f"{work}/dual", True)
+        base = subprocess.run([tangent, "start"], capture_output=True, text=True, check=True).stdout.splitlines()[-1]
+        base = np.array([float(word) for word in base.split()])
+        random = np.random.default_rng(7)
+        states, inputs, parameters = (len(kind[k]) for k in ("state", "input", "parameter"))
+        numbers = []
+        for i in range(rows + 1):
+            row = base.copy()
+            if i:
+                row[:states] += 0.02 * random.standard_normal(states)
+                row[states:states + inputs] += 0.02 * random.standard_normal(inputs)
+                part = slice(states + inputs, states + inputs + parameters)
+                row[part] *= 1 + 0.002 * random.standard_normal(parameters)
+                ports = slice(part.stop, part.stop + len(kind["port"]))
+                row[ports] = random.standard_normal(len(kind["port"]))
+                speeds = [k for k, name in enumerate(kind["state"]) if name in ("v.x", "v.y", "v.z")]
+                row[speeds] += 5 * random.standard_normal(len(speeds))
+                if "e0" in kind["state"]:
+                    e = slice(kind["state"].index("e0"), kind["state"].index("e0") + 4)
+                    row[e] /= np.linalg.norm(row[e])
+            numbers.append(row[:len(row)].tolist())
+        for row in numbers:
+            row[len(row) - len(kind["discrete"]):] = [int(x) for x in row[len(row) - len(kind["discrete"]):]]
+        mine, theirs = evaluate(tangent, numbers), evaluate(dual, numbers)
+        worst, compared = 0, 0
+        for a, b in zip(mine, theirs):
+            if a is None or b is None:
+                if (a is None) != (b is None):
+                    sys.exit("one of both has a status")
+                continue
+            assert np.allclose(a[0], b[0], rtol=1e-9, atol=1e-9)
+            off = deviation(a[1], b[1])
+            if not np.isfinite(off).all():
+                sys.exit("a derivative is no finite number")
+            i, j = np.unravel_index(off.argmax(), off.shape)
+            if off[i, j] > worst:
+                worst, place = off[i, j], (i, j)
+            compared += 1
+        print(f"{compared} states, {columns} columns: {worst:.2e}" + (f" at {place}" if worst else ""))
+        sys.exit(not (compared and worst <= 1e-13))
+
+    # ---- at the point of a file
+    point = dict(np.load(npz[0]))
+    states, inputs, parameters = (list(point[k]) for k in ("states", "inputs", "parameters"))
+    free = len(point["base"]) == 7
+    base = 6 if free else 0
+    places = len([name for name in states if name.endswith(".rate")])
+    held = dict(zip(point["held"], point["held0"]))
+    z0, f = point["z0"], point["f"]
+
+    def plain(name):
+        return name.split("/")[-1]
+
+    def matrix(e):
+        w, x, y, z = e
+        return np.array([[w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                         [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+                         [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z]])
+
+    value = {plain(name): z for name, z in list(zip(states, z0))[base:places] + list(zip(states, z0))[places + base:]}
+    value.update(held)
+    if free:
+        p = point["base"][3:]
+        R, u0, omega0 = matrix(p), z0[places:places + 3], z0[places + 3:places + 6]
+        for group, numbers in (("r.x r.y r.z", point["base"][:3]), ("e0 e1 e2 e3", p), ("v.x v.y v.z", R @ u0),
+                               ("omega.x omega.y omega.z", omega0)):
+            value.update(zip(group.split(), numbers))
+    u, par = dict(zip(inputs, point["u0"])), dict(zip(parameters, point["p0"]))
+    row = [value[name] for name in kind["state"]] + [u[name] for name in kind["input"]]
+    row += [par[name] for name in kind["parameter"]] + [u[name] for name in kind["port"]]
+    row += [int(held.get(name, 0)) for name in kind["discrete"]]
+    found = evaluate(tangent, [row])[0]
+    if found is None:
+        sys.exit("the code refuses the point")
+    n, slow = len(kind["state"]), {name: i for i, name in enumerate(kind["state"])}
+    rate, D = found[0][:n], found[1]
+    change = np.zeros((n, len(states)))  # the state's by each small motion
+    for j, name in enumerate(states):
+        if not (j < base or places <= j < places + base):
+            change[slow[plain(name)], j] = 1
+    if free:
+        r, e, v, omega = slow["r.x"], slow["e0"], slow["v.x"], slow["omega.x"]
+        change[r:r + 3, 0:3] = R
+        for k in range(3):
+            theta = np.eye(3)[k]
+            change[e:e + 4, 3 + k] = np.concatenate([[-p[1:] @ theta], p[0] * theta + np.cross(p[1:], theta)]) / 2
+            change[v:v + 3, 3 + k] = R @ np.cross(theta, u0)
+        change[v:v + 3, places:places + 3] = R
+        change[omega:omega + 3, places + 3:places + 6] = np.eye(3)
+
+    def motions(drate, z):
+        """The change of the motions' rates along z with that of the state's rate."""
+        out = np.zeros(len(states))
+        for i, name in enumerate(states):
+            if not (i < base or places <= i < places + base):
+                out[i] = drate[slow[plain(name)]]
+        if free:
+            rho, theta, du, domega = z[:3], z[3:6], z[places:places + 3], z[places + 3:places + 6]
+            out[:3] = du + np.cross(theta, u0) - np.cross(omega0, rho)
+            out[3:6] = domega - np.cross(omega0, theta)
+            out[places:places + 3] = (R.T @ drate[v:v + 3] - np.cross(theta, R.T @ rate[v:v + 3]) - np.cross(domega, u0) -
+                                      np.cross(omega0, du))
+            out[places + 3:places + 6] = drate[omega:omega + 3]
+        return out
+
+    own = {}
+    total = D[:, :n] @ change
+    eye = np.eye(len(states))
+    own["A"] = np.array([motions(total[:n, j], eye[j]) for j in range(len(states))]).T.reshape(len(states), len(states))
+    own["C"] = total[n:]
+    at = {(k, name): j for j, (k, name) in enumerate((k, name) for k in ("state", "input", "parameter", "port")
+                                                      for name in kind[k])}
+    still = np.zeros(len(states))
+    for upper, lower, wanted in (("B", "D", inputs), ("E", "F", parameters)):
+        cols = [at[("input", m)] if ("input", m) in at and upper == "B" else at[("port", m)] if upper == "B"
+                else at[("parameter", m)] for m in wanted]
+        own[upper] = np.array([motions(D[:n, c], still) for c in cols]).T.reshape(len(states), len(cols))
+        own[lower] = D[n:][:, cols].reshape(len(kind["output"]), len(cols))
+    keep = [kind["output"].index(name) for name in point["outputs"]]
+    for name in "CDF":
+        own[name] = own[name][keep]
+    top = np.hstack([point["A"], point["B"], point["E"]])
+    bottom = np.hstack([point["C"], point["D"], point["F"]])
+    off = deviation(np.vstack([np.hstack([own["A"], own["B"], own["E"]]), np.hstack([own["C"], own["D"], own["F"]])]),
+                    np.vstack([top, bottom]))
+    point.update(own)
+    np.savez(npz[1], **point)
+    i, j = np.unravel_index(off.argmax(), off.shape)
+    print(f"{off.size} derivatives: {off.max():.2e} at {i}, {j}")
+    sys.exit(not off.max() <= 1e-12)
