@@ -384,10 +384,12 @@ static void write_statement(Emitter *m, Ex e)
                        m->indent + 4, "", number);
     } else if (node->op == OP_ROAD_CHANGE) {
         const Ex road = node->arg[0];
-        text_print(&line, "%s road%d[3];\n%*sif (!%sroad_change(self, time", real, number, m->indent, "", own_prefix(m));
+        text_print(&line, "%s road%d[3];\n%*sif (!%sroad_change(self, time", real, number, m->indent, "",
+                   own_prefix(m));
         write_arguments(m, &line, m->dag->node[road].arg, 2);
         write_arguments(m, &line, node->arg + 1, 2);
-        text_print(&line, ", road%d, road%d))\n%*sreturn GIC_ERROR_ROAD;", m->temporary[road], number, m->indent + 4, "");
+        text_print(&line, ", road%d, road%d))\n%*sreturn GIC_ERROR_ROAD;", m->temporary[road], number, m->indent + 4,
+                   "");
     } else {
         text_print(&line, "const %s %s = ", real, m->name[e] ? m->name[e] : pool_print(m->dag->pool, "t%d", number));
         write_text(m, &line, e, 0);

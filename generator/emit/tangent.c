@@ -19,7 +19,8 @@ typedef struct Expansion {
     Constants constants;
 } Expansion;
 
-/* ---- blocks --------------------------------------------------------------------------------------------------------- */
+/* ---- blocks ---------------------------------------------------------------------------------------------------------
+ */
 
 /* What moves along a direction in blocks about the whole vehicle and its wheels; context: the Generation. */
 static bool moves(const void *context, Element element)
@@ -74,7 +75,8 @@ static void write_derived(void *context, Text *out, int indent)
     write_whole(g, out, derive_block(g->pool, g->plan), false, SCOPE_WHOLE, indent);
 }
 
-/* ---- classes of subsets ------------------------------------------------------------------------------------------------ */
+/* ---- classes of subsets
+ * ------------------------------------------------------------------------------------------------ */
 
 /* Pointers to the numbers of known bodies and to what follows geometric parameters, and to their derivatives. */
 static void write_knowns(const Generation *g, Text *out, int indent, bool wrenches)
@@ -82,8 +84,8 @@ static void write_knowns(const Generation *g, Text *out, int indent, bool wrench
     const Class *class = &g->sequence->class[g->class];
     const Subset *first = &g->sequence->subset[class->member[0]];
     for (int i = 0; i < first->knowns; ++i) {
-        line(out, indent, "const gic_real *const m%d = links->known[%d], *const dm%d = dlinks->known[%d]; /* %s */", i, i,
-             i, i, g->model->body[first->known[i]].name);
+        line(out, indent, "const gic_real *const m%d = links->known[%d], *const dm%d = dlinks->known[%d]; /* %s */", i,
+             i, i, i, g->model->body[first->known[i]].name);
         line(out, indent, "(void)m%d, (void)dm%d;", i, i);
     }
     for (int i = 0; wrenches && i < first->knowns; ++i) {
@@ -223,14 +225,16 @@ static void write_react_calls_along(void *context, Text *out, int indent)
                 line(out, indent, "onto[%d] = spare, donto[%d] = dspare;", i, i);
         }
         line(out, indent,
-             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, self->motion + %s, "
+             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, self->motion + "
+             "%s, "
              "along->motion + %s, lambda + %d, dlambda + %d, onto, donto);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), factors, factors, motion,
              motion, own, own);
     }
 }
 
-/* ---- wheels with tires -------------------------------------------------------------------------------------------------- */
+/* ---- wheels with tires
+ * -------------------------------------------------------------------------------------------------- */
 
 static void write_arrays(void *context, Text *out, int indent)
 {
@@ -271,8 +275,8 @@ static void write_wheel_classes(void *context, Text *out, int indent)
             member[i] = g->model->wheel[class->member[i]].name;
         template_expand(g->pool, &body, g->templates, "tangent_wheel.c.in", g->model->name, class->name,
                         &tangent_class_points, &x);
-        write_constants(g, out, pool_print(g->pool, "k_tangent_wheel_%s", class->name), class->contact.dag, &x.constants,
-                        member);
+        write_constants(g, out, pool_print(g->pool, "k_tangent_wheel_%s", class->name), class->contact.dag,
+                        &x.constants, member);
         text_add(out, body.s, body.size);
     }
 }
@@ -293,8 +297,8 @@ static void write_wheel_calls(void *context, Text *out, int indent)
             line(out, indent, "if (status == GIC_OK) /* %s */", g->model->wheel[wheel].name);
             line(out, indent + 4, "status = %s_tangent_wheel_%s(self, along, %s_k_tangent_wheel_%s[%d], time,", name,
                  wheels->class[c].name, name, wheels->class[c].name, i);
-            line(out, indent + 8, "link + %s, dlink + %s, fast + %s, dfast + %s, torque + %s, dtorque + %s,", link, link,
-                 fast, fast, torque, torque);
+            line(out, indent + 8, "link + %s, dlink + %s, fast + %s, dfast + %s, torque + %s, dtorque + %s,", link,
+                 link, fast, fast, torque, torque);
             line(out, indent + 8, "rate + %s, drate + %s, grip + %s, dgrip + %s);", fast, fast, grip, grip);
         }
 }
@@ -317,7 +321,8 @@ static void write_drive_block(void *context, Text *out, int indent)
     write_whole(g, out, &g->formulation->wheels->drive, true, SCOPE_FAST, indent);
 }
 
-/* ---- templates ---------------------------------------------------------------------------------------------------------- */
+/* ---- templates
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static void expand(Generation *g, Text *out, const char *template)
 {
@@ -387,7 +392,8 @@ static void write_orient_along(void *context, Text *out, int indent)
     expand(g, out, g->model->free_base ? "tangent_free.c.in" : "tangent_fixed.c.in");
 }
 
-/* ---- calls where a model has these parts ------------------------------------------------------------------------------- */
+/* ---- calls where a model has these parts
+ * ------------------------------------------------------------------------------- */
 
 static void write_call_derive(void *context, Text *out, int indent)
 {
@@ -413,15 +419,10 @@ static void write_call_react(void *context, Text *out, int indent)
          g->model->name);
 }
 
-static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns},
-                                        {"tangent solve", write_solve},
-                                        {"react knowns", write_react_knowns},
-                                        {"tangent react block", write_react},
-                                        {"tangent arrays", write_arrays},
-                                        {"tangent contact", write_contact},
-                                        {"tangent tire", write_tire},
-                                        {"tangent balance", write_balance},
-                                        {NULL, NULL}};
+static const Insertion class_point[] = {
+    {"tangent knowns", write_solve_knowns}, {"tangent solve", write_solve},     {"react knowns", write_react_knowns},
+    {"tangent react block", write_react},   {"tangent arrays", write_arrays},   {"tangent contact", write_contact},
+    {"tangent tire", write_tire},           {"tangent balance", write_balance}, {NULL, NULL}};
 
 const Insertions tangent_class_points = {
     (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
@@ -466,7 +467,8 @@ void write_tangent_code(void *context, Text *out, int indent)
         expand(g, out, "tangent.c.in");
 }
 
-/* ---- header --------------------------------------------------------------------------------------------------------------- */
+/* ---- header
+ * --------------------------------------------------------------------------------------------------------------- */
 
 static void write_direction_members(void *context, Text *out, int indent)
 {

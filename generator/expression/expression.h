@@ -391,13 +391,14 @@ typedef struct Seeds {
     const Ex *given, *slope;
 } Seeds;
 
-/* The derivative of each node [nodes] that the roots need; of others 0. block: its checks hold; NULL: none do. At a kink
- * it is that of the branch taken; of |x| at x = 0 the mean of both, 0; of a root at 0 that stays there, and of
+/* The derivative of each node [nodes] that the roots need; of others 0. block: its checks hold; NULL: none do. At a
+ * kink it is that of the branch taken; of |x| at x = 0 the mean of both, 0; of a root at 0 that stays there, and of
  * atan2(0, 0), 0. Without lanes. */
 const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds);
 /* The block that stores derivatives of what `block` stores; both: and what it stores itself, with its checks. wanted:
  * which stores; NULL: all. */
-Block *block_tangent(const Block *block, const Seeds *seeds, bool both, bool (*wanted)(const void *context, Element target));
+Block *block_tangent(const Block *block, const Seeds *seeds, bool both,
+                     bool (*wanted)(const void *context, Element target));
 
 /* schedule.c: a statement that computes a node, or a check of one. */
 typedef struct Step {

@@ -141,7 +141,8 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
     return slope;
 }
 
-Block *block_tangent(const Block *block, const Seeds *seeds, bool both, bool (*wanted)(const void *context, Element target))
+Block *block_tangent(const Block *block, const Seeds *seeds, bool both,
+                     bool (*wanted)(const void *context, Element target))
 {
     Dag *dag = block->dag;
     Block *tangent = pool_alloc(dag->pool, sizeof *tangent);

@@ -181,8 +181,8 @@ typedef struct Formula {
     Block react;        /* multipliers from the wrenches w that the bodies need, both in w; f: stored factors. The load
                          * on knowns is subtracted from their wrenches w0, w1, .... Only what outputs need */
     const Implicit *implicit; /* NULL: closed */
-    int derived;        /* numbers d[] that follow tunable parameters */
-    Ex *derived_of;     /* [derived][members] their formulas */
+    int derived;              /* numbers d[] that follow tunable parameters */
+    Ex *derived_of;           /* [derived][members] their formulas */
 } Formula;
 
 /* Formulas of all classes [classes]; fills the sampling. Members that need other pivots than the first member of their
@@ -201,7 +201,8 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
 
 /* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
- * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change. */
+ * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change.
+ */
 const Block *subset_tangent(const Formula *formula, bool steady, bool tuned);
 
 /* ---- assemble.c: the design configuration that fits the given lengths */

@@ -111,6 +111,13 @@ static double power_change(double a, double b, double da, double db)
     return chain(b * pow(a, b - 1), da) + (db == 0 ? 0 : pow(a, b) * log(a) * db);
 }
 
+/* At a = b = 0 there is no angle, and 0 stands for its change. */
+static double atan2_change(double a, double b, double da, double db)
+{
+    const double square = a * a + b * b;
+    return square > 0 ? (b * da - a * db) / square : 0;
+}
+
 /* The result's slot may be an argument's: the derivative first, from arguments that are still there. */
 #define RUN_1(value, change) \
     for (; left; --left, at += 2) { \
@@ -163,7 +170,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
         case OP_LOG: RUN_1(log(a), chain(1 / a, da));
         case OP_TANH: RUN_1(tanh(a), (1 - r * r) * da);
         case OP_POW: RUN_2(pow(a, b), power_change(a, b, da, db));
-        case OP_ATAN2: RUN_2(atan2(a, b), (b * da - a * db) / (a * a + b * b));
+        case OP_ATAN2: RUN_2(atan2(a, b), atan2_change(a, b, da, db));
         case OP_MIN: RUN_2(a < b ? a : b, min_change(world, a, b, da, db));
         case OP_MAX: RUN_2(a > b ? a : b, -min_change(world, -a, -b, -da, -db));
         case OP_POSITIVE:

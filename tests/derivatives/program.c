@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Derivatives of rates and outputs of generated code, for comparison. It includes the code and the runtime:
  *
- *     gcc -DMODEL=car '-DCODE="car.c"' derivatives.c -lm            by car_tangent_outputs()
- *     g++ -x c++ -DDUAL -DMODEL=car '-DCODE="car.c"' derivatives.c  by numbers of the type Differential in place of doubles
+ *     gcc -DMODEL=car '-DCODE="car.c"' program.c -lm            by car_tangent_outputs()
+ *     g++ -x c++ -DDUAL -DMODEL=car '-DCODE="car.c"' program.c  by numbers of the type Differential in place of doubles
  *
- * For the latter, gic_runtime.h must say `typedef Differential gic_real;`. `derivatives names` prints the numbers of a row, a
- * line each: kind (state, input, parameter, port, discrete, output) and name; `derivatives start` their values at set-up.
+ * For the latter, gic_runtime.h must say `typedef Differential gic_real;`. `program names` prints the numbers of a row,
+ * a line each: kind (state, input, parameter, port, discrete, output) and name; `program start` their values at set-up.
  * Else, for each row of these numbers on
  * standard input but for outputs, it prints the status, rates and outputs, then those of their derivatives by each
  * state, input, parameter and number of a port: a line each. Arguments AMPLITUDE WAVELENGTH: a wavy road. */
@@ -140,7 +140,9 @@ int main(int argc, char **argv)
 #ifdef DUAL
                 self = at;
                 SLOPE((k == 0 ? self.state : k == 1 ? self.input : k == 2 ? self.parameter : self.port)[j]) = 1;
-                status = evaluate(&self);
+                status = GIC_OK;
+                for (i = 0; i < 3 && status == GIC_OK; ++i) /* slopes of what is iterated settle */
+                    status = evaluate(&self);
                 for (i = 0; i < results; ++i)
                     line[i] = SLOPE(i < states ? self.rate[i] : self.output[i - states]);
 #else

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""derivatives.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT]: derivatives of rates and outputs by the
+"""compare.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]: derivatives of rates and outputs by the
 code of `gicgen --derivatives` against the very same code computed with dual numbers in C++ (dual_real.hpp), by every state,
 input, parameter and number of a port, at the design and at ROWS (5) random states beside it.
 
@@ -18,8 +18,8 @@ import tempfile
 
 import numpy as np
 
-tools = os.path.dirname(os.path.abspath(__file__))
-runtime = os.path.join(tools, "..", "..", "runtime")
+here = os.path.dirname(os.path.abspath(__file__))
+runtime = os.path.join(here, "..", "..", "runtime")
 words = sys.argv[1:]
 
 
@@ -34,13 +34,14 @@ def option(name, count, default):
 
 rows = int(option("-n", 1, ["5"])[0])
 npz = option("--npz", 2, None)
+left_out = option("--but", 1, [])
 wave = ["0.05", "5"] if option("--wave", 0, None) is not None else []
 options = [word[9:] for word in words if word.startswith("--option=")]
 gicgen, model = [word for word in words if not word.startswith("--")]
 
 
 def build(folder, dual):
-    """The program of derivatives.c with the code of the model."""
+    """The program of program.c with the code of the model."""
     subprocess.run([gicgen, *([] if dual else ["--derivatives"]), *[w for o in options for w in o.split("=")], model, "-o",
                     f"{folder}/code.c"], check=True, stderr=subprocess.DEVNULL)
     with open(f"{folder}/code.h", encoding="utf-8") as file:
@@ -55,8 +56,8 @@ def build(folder, dual):
     how = ["g++", "-std=c++11", "-x", "c++", "-fpermissive", "-DDUAL"] if dual else ["gcc", "-std=c99"]
     if " derived[" in header:
         how.append("-DTUNED")
-    subprocess.run([*how, "-O0", "-w", "-ffp-contract=off", f"-I{folder}", f"-I{tools}", f"-DMODEL={name}",
-                    '-DCODE="code.c"', f"{tools}/derivatives.c", "-o", f"{folder}/program", "-lm"], check=True)
+    subprocess.run([*how, "-O0", "-w", "-ffp-contract=off", f"-I{folder}", f"-I{here}", f"-DMODEL={name}",
+                    '-DCODE="code.c"', f"{here}/program.c", "-o", f"{folder}/program", "-lm"], check=True)
     return f"{folder}/program"
 
 
@@ -213,6 +214,9 @@ with tempfile.TemporaryDirectory() as work:
     keep = [kind["output"].index(name) for name in point["outputs"]]
     for name in "CDF":
         own[name] = own[name][keep]
+    for name in left_out:
+        for key in "BD":
+            own[key][:, inputs.index(name)] = point[key][:, inputs.index(name)]
     top = np.hstack([point["A"], point["B"], point["E"]])
     bottom = np.hstack([point["C"], point["D"], point["F"]])
     off = deviation(np.vstack([np.hstack([own["A"], own["B"], own["E"]]), np.hstack([own["C"], own["D"], own["F"]])]),
