@@ -136,6 +136,15 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
  * Style.derivatives. */
 extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
 void write_tangent_code(void *context, Text *out, int indent);
+/* The blocks of tangents: of a class of subsets; of any other block. */
+const Block *class_tangent(const Generation *g, int class);
+const Block *whole_tangent(const Generation *g, const Block *block);
+/* jacobian.c: the number of columns; sizes, a picture and tables of what may be other than 0. */
+int jacobian_columns(const Generation *g);
+void write_jacobian_sizes(void *context, Text *out, int indent);
+void write_jacobian_picture(void *context, Text *out, int indent);
+void write_jacobian_rows(void *context, Text *out, int indent);
+void write_jacobian_starts(void *context, Text *out, int indent);
 void write_tangent_header(void *context, Text *out, int indent);
 
 /* tables.c: the tables that the descriptor points to. */

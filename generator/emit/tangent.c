@@ -36,6 +36,17 @@ static bool moves(const void *context, Element element)
     }
 }
 
+const Block *class_tangent(const Generation *g, int class)
+{
+    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning);
+}
+
+const Block *whole_tangent(const Generation *g, const Block *block)
+{
+    const Seeds seeds = {.moves = moves, .context = g};
+    return block_tangent(block, &seeds, true, NULL);
+}
+
 /* In blocks with the arguments of a class: the same, for a wheel's `rate` are those of its fast states. */
 static void write_tangent(Generation *g, Text *out, const Block *block, bool both, NamingScope scope,
                           Constants *constants, int indent)
@@ -126,16 +137,13 @@ static void write_class_block(Expansion *x, const Block *block, Text *out, int i
 static void write_solve(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    const Formula *formula = x->g->plan->formula[x->g->class];
-    write_class_block(x, subset_tangent(formula, !x->g->model->free_base, x->g->model->tuning), out, indent);
+    write_class_block(x, class_tangent(x->g, x->g->class), out, indent);
 }
 
 static void write_react(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    const Seeds seeds = {.moves = moves, .context = x->g};
-    const Block *react = &x->g->plan->formula[x->g->class]->react;
-    write_class_block(x, block_tangent(react, &seeds, true, NULL), out, indent);
+    write_class_block(x, whole_tangent(x->g, &x->g->plan->formula[x->g->class]->react), out, indent);
 }
 
 /* The functions of all classes of subsets. */
@@ -451,6 +459,8 @@ static const Insertion tangent_point[] = {{"table slope", write_table_slope},
                                           {"tangent wheel calls", write_wheel_calls},
                                           {"tangent drive", write_drive_along},
                                           {"tangent drive block", write_drive_block},
+                                          {"jacobian rows", write_jacobian_rows},
+                                          {"jacobian starts", write_jacobian_starts},
                                           {NULL, NULL}};
 
 const Insertions tangent_points = {
@@ -481,7 +491,10 @@ static void write_direction_members(void *context, Text *out, int indent)
         line(out, indent, "gic_real watch[%d];", WATCH_NUMBERS);
 }
 
-static const Insertion tangent_header_point[] = {{"direction", write_direction_members}, {NULL, NULL}};
+static const Insertion tangent_header_point[] = {{"direction", write_direction_members},
+                                                 {"jacobian sizes", write_jacobian_sizes},
+                                                 {"jacobian picture", write_jacobian_picture},
+                                                 {NULL, NULL}};
 
 const Insertions tangent_header_points = {(const char *const[]){"tangent.h.in", NULL}, tangent_header_point, NULL};
 

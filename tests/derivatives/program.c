@@ -72,6 +72,41 @@ static int evaluate(Vehicle *self)
 }
 #endif
 
+#ifndef DUAL
+/* All columns at once must be the tangents, in rows that may be other than 0; else the tangents must be 0. 0: they are.
+ */
+static int check_jacobian(const Vehicle *at)
+{
+    const gic_model *code = &OF(_model);
+    const int states = code->slow_count + code->fast_count, results = states + code->output_count;
+    const int columns = states + code->input_count + code->parameter_count + code->port_count;
+    static Vehicle self;
+    static OF(_direction) along;
+    double *all = (double *)calloc((size_t)(results * columns) + 1, sizeof *all);
+    double *rates = (double *)calloc((size_t)(states * columns) + 1, sizeof *rates);
+    int c, k, r, status;
+    self = *at;
+    status = OF(_jacobian_outputs)(&self, &along, all);
+    self = *at;
+    if (status == GIC_OK)
+        status = OF(_jacobian)(&self, gic_time(&at->head), at->state, &along, rates);
+    for (k = 0; k < states * columns && status == GIC_OK; ++k)
+        status = all[k] == rates[k] ? 0 : 1 + k / columns;
+    for (c = 0; c < columns && status == GIC_OK; ++c) {
+        memset(&along, 0, sizeof along);
+        *OF(_tangent_number)(&along, c) = 1;
+        self = *at;
+        status = OF(_tangent_outputs)(&self, &along);
+        for (r = 0; r < results && status == GIC_OK; ++r)
+            if (all[r * columns + c] != (r < states ? along.rate[r] : along.output[r - states]))
+                status = 1 + r;
+    }
+    free(all);
+    free(rates);
+    return status;
+}
+#endif
+
 int main(int argc, char **argv)
 {
     const gic_model *code = &OF(_model);
@@ -135,6 +170,13 @@ int main(int argc, char **argv)
         for (i = 0; i < results; ++i)
             line[i] = VALUE(i < states ? at.rate[i] : at.output[i - states]);
         print(results, line);
+#ifndef DUAL
+        status = check_jacobian(&at);
+        if (status) {
+            fprintf(stderr, "jacobian: row or status %d\n", status);
+            return 1;
+        }
+#endif
         for (k = 0; k < 4; ++k)
             for (j = 0; j < kinds[k]; ++j) {
 #ifdef DUAL
