@@ -196,6 +196,7 @@ typedef struct Dag {
     int members, samples;
     int lanes; /* elements of each vector: the constants are vectors; 0: they are scalars */
     int nodes, room;
+    int own; /* nodes before derivatives were made, which are behind them; 0: there are none */
     Node *node;
     double *value; /* [nodes][samples] */
     Ex *table;     /* hash table */

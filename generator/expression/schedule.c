@@ -65,10 +65,14 @@ static int arguments(const Planner *p, Ex e)
     return node_of(p, e)->level < LEVEL_VARIABLE ? 0 : ex_arity((Op)node_of(p, e)->op);
 }
 
-/* Arguments have smaller numbers, so one sweep downwards finds the longest ways. */
-static void measure_heights(Planner *p)
+/* Arguments have smaller numbers, so one sweep downwards finds the longest ways. Derivatives do not change the order of
+ * what is no derivative. */
+static void measure_heights(Planner *p, const Step *step, int steps)
 {
-    for (int e = p->dag->nodes - 1; e >= 0; --e)
+    int nodes = p->dag->own ? p->dag->own : p->dag->nodes;
+    for (int i = 0; i < steps; ++i)
+        nodes = (int)step[i].value < nodes ? nodes : p->dag->nodes;
+    for (int e = nodes - 1; e >= 0; --e)
         for (int i = 0; i < arguments(p, (Ex)e); ++i) {
             const Ex argument = node_of(p, (Ex)e)->arg[i];
             const int way = p->height[e] + cost_of((Op)node_of(p, (Ex)e)->op).latency;
@@ -142,7 +146,7 @@ void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps)
     for (int i = 0; i < steps; ++i)
         if (step[i].check < 0)
             p.step_of[step[i].value] = 1 + i;
-    measure_heights(&p);
+    measure_heights(&p, step, steps);
     for (int i = 0; i < steps; ++i) {
         const bool computed = step[i].check >= 0 && p.step_of[step[i].value];
         bool guarded = step[i].check >= 0;

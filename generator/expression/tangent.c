@@ -118,6 +118,7 @@ static const bool *checked(const Dag *dag, const Block *block)
 const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds)
 {
     const int nodes = dag->nodes;
+    dag->own = dag->own ? dag->own : nodes;
     Ex *slope = pool_alloc(dag->pool, (size_t)nodes * sizeof *slope);
     bool *given = pool_alloc(dag->pool, (size_t)nodes);
     const bool *positive = checked(dag, block), *needed = dag_needed(dag, root, roots);
