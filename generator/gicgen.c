@@ -43,7 +43,8 @@ static const char usage[] =
     "  -o FILE          where to write; FILE.c gets a FILE.h beside it; `-` is standard output\n"
     "  --lanes W        alike parts of the vehicle side by side in vectors of up to W numbers, a power of 2 up to 16;\n"
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
-    "  --derivatives    code with functions for derivatives of rates and outputs too\n"
+    "  --derivatives    code with functions for derivatives of rates and outputs too; units of FMI with directional\n"
+    "                   derivatives\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -199,7 +200,7 @@ static Options read_options(int count, char **word)
         usage_error("--lanes is for code", NULL);
     if (options.batch.lanes && options.scene)
         usage_error("--lanes and --scene are not for the same code: leave one out", NULL);
-    if (options.derivatives && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
+    if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
@@ -269,7 +270,7 @@ static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, 
         usage_error("the name of an FMU must end in .fmu", path);
     const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
     formulation_validate(pool, formulation, NULL);
-    fmu_write(pool, options->fmi, formulation, setting->scene, options->templates, path);
+    fmu_write(pool, options->fmi, formulation, setting->scene, options->derivatives, options->templates, path);
 }
 
 static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)

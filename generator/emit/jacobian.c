@@ -136,7 +136,7 @@ static void run(const Pattern *p, const Block *block, bool fast)
     for (int i = 0; i < block->stores; ++i) { /* values come before all stores */
         const Store *store = &block->store[i];
         const bool *from = store->target.slope ? set[store->value] : NULL;
-        const Set to = from ? set_of(p, store->target, fast) : NULL;
+        bool *to = from ? set_of(p, store->target, fast) : NULL;
         if (to && to != from)
             join(p, to, from);
     }

@@ -74,6 +74,12 @@ static void write_outputs(void *context, Text *out, int indent)
     write_whole(g, out, g->formulation->outputs, true, SCOPE_WHOLE, indent);
 }
 
+static void write_poses(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_whole(g, out, g->formulation->poses, false, SCOPE_WHOLE, indent);
+}
+
 static void write_wrenches(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -446,6 +452,7 @@ static const Insertion tangent_point[] = {{"table slope", write_table_slope},
                                           {"tangent dynamics", write_dynamics},
                                           {"tangent reactions", write_reactions_along},
                                           {"tangent outputs", write_outputs},
+                                          {"tangent poses", write_poses},
                                           {"tangent orient", write_orient_along},
                                           {"tangent derive", write_call_derive},
                                           {"tangent wheels", write_call_wheels},

@@ -12,7 +12,8 @@ static void describe_interface(Text *out, const Description *d, bool exchange)
     xml_attribute(out, "modelIdentifier", d->f->model->name);
     if (!exchange)
         text_print(out, " canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"true\"");
-    text_print(out, " canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\">\n    <SourceFiles>\n");
+    text_print(out, " canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"%s>\n    <SourceFiles>\n",
+               d->derivatives ? " providesDirectionalDerivative=\"true\"" : "");
     for (const char *const *source = d->source; *source; ++source)
         text_print(out, "      <File name=\"%s\"/>\n", *source);
     text_print(out, "    </SourceFiles>\n  </%s>\n", exchange ? "ModelExchange" : "CoSimulation");

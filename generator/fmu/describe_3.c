@@ -8,16 +8,20 @@
 
 static void describe_interfaces(Text *out, const Description *d)
 {
+    const char *derivatives =
+        d->derivatives ? " providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"" : "";
     text_print(out, "  <ModelExchange");
     xml_attribute(out, "modelIdentifier", d->f->model->name);
     text_print(out,
-               " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" needsCompletedIntegratorStep=\"%s\"/>\n",
-               d->f->model->powertrain ? "true" : "false");
+               " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" needsCompletedIntegratorStep=\"%s\"%s/>\n",
+               d->f->model->powertrain ? "true" : "false", derivatives);
     text_print(out, "  <CoSimulation");
     xml_attribute(out, "modelIdentifier", d->f->model->name);
-    text_print(out, " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\""
-                    " canHandleVariableCommunicationStepSize=\"true\" providesIntermediateUpdate=\"true\""
-                    " canReturnEarlyAfterIntermediateUpdate=\"true\" hasEventMode=\"false\"/>\n");
+    text_print(out,
+               " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\""
+               " canHandleVariableCommunicationStepSize=\"true\" providesIntermediateUpdate=\"true\""
+               " canReturnEarlyAfterIntermediateUpdate=\"true\" hasEventMode=\"false\"%s/>\n",
+               derivatives);
 }
 
 static void describe_bound(Text *out, const Variable *v, const char *name, double value)

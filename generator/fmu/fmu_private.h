@@ -97,6 +97,7 @@ typedef struct Description {
     const char *token;
     const char *const *source; /* names of the C files, NULL at the end */
     const Dependence *rate, *out, *place;
+    bool derivatives; /* directional ones are provided */
 } Description;
 
 /* ` name="text"`, escaped. */

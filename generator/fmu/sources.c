@@ -34,6 +34,13 @@ static void write_token(void *context, Text *out, int indent)
     text_print(out, "#define FMU_TOKEN \"%s\"\n", d->token);
 }
 
+static void write_derivatives(void *context, Text *out, int indent)
+{
+    const Description *d = context;
+    (void)indent;
+    text_print(out, "#define FMU_DERIVATIVES %d\n", d->derivatives);
+}
+
 static void write_enumerators(void *context, Text *out, int indent)
 {
     const Description *d = context;
@@ -119,6 +126,7 @@ static void write_wheel_center(void *context, Text *out, int indent)
 }
 
 static const Insertion header_point[] = {{"token", write_token},
+                                         {"derivatives", write_derivatives},
                                          {"numbers", write_enumerators},
                                          {"experiment", write_experiment},
                                          {"state", write_state},

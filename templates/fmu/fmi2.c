@@ -350,8 +350,14 @@ fmi2Status FMI2(fmi2GetDirectionalDerivative)(fmi2Component component, const fmi
                                               const fmi2Real seed[], fmi2Real sensitivity[])
 {
     BEGIN("fmi2GetDirectionalDerivative", READABLE);
+#if FMU_DERIVATIVES
+    NEEDS(unknowns, unknown && sensitivity);
+    NEEDS(knowns, known && seed);
+    return status_of(fmu_directional(core, unknown, unknowns, known, knowns, seed, sensitivity));
+#else
     (void)unknown, (void)unknowns, (void)known, (void)knowns, (void)seed, (void)sensitivity;
     return status_of(fmu_say(core, FMU_ERROR, "this FMU provides no directional derivatives"));
+#endif
 }
 
 /* ---- model exchange --------------------------------------------------------------------------------------------- */

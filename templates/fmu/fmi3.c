@@ -482,7 +482,25 @@ fmi3Status FMI3(fmi3GetVariableDependencies)(fmi3Instance self, fmi3ValueReferen
     return status_of(fmu_say(core, FMU_ERROR, "this FMU has no arrays, whose dependencies this function is for"));
 }
 
-#define DERIVATIVE(name) \
+#if FMU_DERIVATIVES
+/* given, wanted: which of the lists seeds and sensitivities belong to. */
+#define DERIVATIVE(name, function, given, wanted) \
+    fmi3Status FMI3(name)(fmi3Instance self, const fmi3ValueReference unknown[], size_t unknowns, \
+                          const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[], size_t seeds, \
+                          fmi3Float64 sensitivity[], size_t sensitivities) \
+    { \
+        BEGIN(#name, READABLE); \
+        NEEDS(unknowns, unknown); \
+        NEEDS(knowns, known); \
+        NEEDS(seeds, seed); \
+        NEEDS(sensitivities, sensitivity); \
+        if (seeds != given || sensitivities != wanted) \
+            return status_of( \
+                fmu_say(core, FMU_ERROR, #name ": numbers of seeds, sensitivities and references differ")); \
+        return status_of(function(core, unknown, unknowns, known, knowns, seed, sensitivity)); \
+    }
+#else
+#define DERIVATIVE(name, function, given, wanted) \
     fmi3Status FMI3(name)(fmi3Instance self, const fmi3ValueReference unknown[], size_t unknowns, \
                           const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[], size_t seeds, \
                           fmi3Float64 sensitivity[], size_t sensitivities) \
@@ -492,9 +510,10 @@ fmi3Status FMI3(fmi3GetVariableDependencies)(fmi3Instance self, fmi3ValueReferen
             (void)sensitivities; \
         return status_of(fmu_say(core, FMU_ERROR, "this FMU provides no partial derivatives")); \
     }
+#endif
 
-DERIVATIVE(fmi3GetDirectionalDerivative)
-DERIVATIVE(fmi3GetAdjointDerivative)
+DERIVATIVE(fmi3GetDirectionalDerivative, fmu_directional, knowns, unknowns)
+DERIVATIVE(fmi3GetAdjointDerivative, fmu_adjoint, unknowns, knowns)
 
 /* ---- copies of the state -------------------------------------------------------------------------------------- */
 

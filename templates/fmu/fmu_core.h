@@ -87,6 +87,10 @@ typedef int fmu_between(fmu_instance *instance);
 
 struct fmu_instance {
     fmu_data data;
+#if FMU_DERIVATIVES
+    FMU_DIRECTION along; /* work space of fmu_derivative.c */
+    fmu_data kept;
+#endif
     fmu_log *log;
     fmu_between *between; /* NULL: nobody looks */
 };
@@ -136,6 +140,16 @@ void fmu_ground_move(fmu_ground *ground, gic_real place[FMU_WHEELS_ROOM][2]);
 /* From `point` on by `length`, in steps of equal length not longer than `step`. */
 fmu_result fmu_do_step(fmu_instance *instance, double point, double length);
 double fmu_time(const fmu_instance *instance);
+
+#if FMU_DERIVATIVES
+/* fmu_derivative.c: out [unknowns]: derivatives of unknowns (derivatives, outputs; in initialization mode also states)
+ * along seeds [knowns] of knowns (states, inputs, parameters). Everything else stays as it was. */
+fmu_result fmu_directional(fmu_instance *instance, const uint32_t *unknown, size_t unknowns, const uint32_t *known,
+                           size_t knowns, const double *seed, double *out);
+/* out [knowns]: the sums of seeds [unknowns] times the derivatives of unknowns by each known. */
+fmu_result fmu_adjoint(fmu_instance *instance, const uint32_t *unknown, size_t unknowns, const uint32_t *known,
+                       size_t knowns, const double *seed, double *out);
+#endif
 
 /* Copies: as bytes without addresses. `size` is that of fmu_data; a copy of another model or version is refused. */
 size_t fmu_copy_size(void);

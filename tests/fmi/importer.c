@@ -11,6 +11,7 @@
  *   attack SEED CALLS                     random calls in legal and illegal order, see below
  *   early STEP STOP                       FMI 3.0: intermediate updates, and steps that end early, change nothing
  *   dependencies                          outputs and derivatives change with states and inputs that are listed alone
+ *   derivatives [NAME=VALUE ...]          directional and adjoint derivatives against differences
  *   control STEP STOP                     a controller in the master steers by the yaw rate
  *   misuse                                wrong GUID, names, references, NaN
  *
@@ -739,6 +740,8 @@ int main(int count, char **word)
         attack(&unit, (unsigned)number[0], (long)number[1]);
     else if (!strcmp(task, "dependencies"))
         dependencies(&unit);
+    else if (!strcmp(task, "derivatives") && given == 0)
+        check_derivatives(&unit, rests, rest);
     else if (!strcmp(task, "early") && given == 2)
         early(&unit, number[0], number[1]);
     else if (!strcmp(task, "misuse"))

@@ -36,6 +36,8 @@ void cvode(const Unit *unit, double tolerance, const double *plane, double step,
 /* Two units at a time, couple.c. */
 void couple(const Unit *one, const Unit *other, double step, double stop);
 void both(const Unit *one, const Unit *other, double step, double stop);
+/* derivatives.c: directional and adjoint derivatives; words: NAME=VALUE at the start. */
+void check_derivatives(const Unit *unit, int count, char **word);
 void control(const Unit *unit, double step, double stop);
 
 #endif

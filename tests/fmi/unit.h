@@ -68,6 +68,9 @@ typedef struct {
 
 typedef struct Unit {
     Description d;
+    /* NULL: FMI 2.0, which has none */
+    Status (*GetAdjointDerivative)(Component, const unsigned[], size_t, const unsigned[], size_t, const double[],
+                                   double[]);
 #define MEMBER(name, arguments) Status(*name) arguments;
     FUNCTIONS(MEMBER)
 #undef MEMBER

@@ -45,6 +45,10 @@ typedef void Update(void *environment, double time, bool set_requested, bool get
     X(GetNominalsOfContinuousStates, (Component, double[], size_t)) \
     X(GetNumberOfContinuousStates, (Component, size_t *)) \
     X(GetNumberOfEventIndicators, (Component, size_t *)) \
+    X(GetDirectionalDerivative, \
+      (Component, const uint32_t[], size_t, const uint32_t[], size_t, const double[], size_t, double[], size_t)) \
+    X(GetAdjointDerivative, \
+      (Component, const uint32_t[], size_t, const uint32_t[], size_t, const double[], size_t, double[], size_t)) \
     X(EnterStepMode, (Component)) \
     X(DoStep, (Component, double, double, bool, bool *, bool *, bool *, double *))
 
@@ -75,8 +79,6 @@ static const char *const demanded[] = {"InstantiateScheduledExecution",
                                        "SetClock",
                                        "GetNumberOfVariableDependencies",
                                        "GetVariableDependencies",
-                                       "GetDirectionalDerivative",
-                                       "GetAdjointDerivative",
                                        "GetIntervalDecimal",
                                        "GetIntervalFraction",
                                        "GetShiftDecimal",
@@ -159,6 +161,18 @@ static Status EnterInitializationMode(Component c)
 {
     updates.last_time = -1;
     return api.EnterInitializationMode(c, false, 0, api.start, api.stops, api.stop);
+}
+
+static Status GetDirectionalDerivative(Component c, const unsigned unknown[], size_t unknowns, const unsigned known[],
+                                       size_t knowns, const double seed[], double sensitivity[])
+{
+    return api.GetDirectionalDerivative(c, unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns);
+}
+
+static Status GetAdjointDerivative(Component c, const unsigned unknown[], size_t unknowns, const unsigned known[],
+                                   size_t knowns, const double seed[], double sensitivity[])
+{
+    return api.GetAdjointDerivative(c, unknown, unknowns, known, knowns, seed, unknowns, sensitivity, knowns);
 }
 
 static Status GetReal(Component c, const unsigned reference[], size_t count, double value[])
@@ -285,6 +299,8 @@ void version_3_load(Unit *unit, void *library)
     unit->ExitInitializationMode = api.ExitInitializationMode;
     unit->Terminate = api.Terminate;
     unit->Reset = api.Reset;
+    unit->GetDirectionalDerivative = GetDirectionalDerivative;
+    unit->GetAdjointDerivative = GetAdjointDerivative;
     unit->GetReal = GetReal;
     unit->SetReal = SetReal;
     unit->GetInteger = GetInteger;

@@ -98,6 +98,28 @@ every_model() {
     done
 }
 
+# with_derivatives MODEL.veh [NAME=VALUE ...]
+with_derivatives() {
+    name=$(basename "$1" .veh)
+    for version in 2 3; do
+        rm -rf "$work/unit"
+        "$gicgen" --fmu "$version" --derivatives "$1" -o "$work/unit.fmu" >"$work/out" 2>"$work/err" &&
+            unpack "$work/unit.fmu" "$work/unit"
+        verdict $? "$name: FMI $version.0 with derivatives"
+        check "$name: its description" described
+        grep -q 'providesDirectionalDerivative' "$work/unit/modelDescription.xml"
+        verdict $? "$name: it says so"
+        model=$1
+        shift
+        drive derivatives "$@" >"$work/out" 2>"$work/err"
+        verdict $? "$name, FMI $version.0: derivatives are differences"
+        set -- "$model" "$@"
+    done
+}
+with_derivatives "$root/models/quarter_car.veh"
+with_derivatives "$here/front.veh"
+with_derivatives "$root/models/hmmwv_vehicle.veh" state.v.x=8 input.brake=0.1 input.accelerator=0.3
+
 every_model andrews andrews 0.005 0.0001
 every_model states states 1 0.02
 every_model pendulum pendulum 2 0.01
