@@ -137,7 +137,7 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
 extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
 void write_tangent_code(void *context, Text *out, int indent);
 /* The blocks of tangents: of a class of subsets; of any other block. */
-const Block *class_tangent(const Generation *g, int class);
+const Block *class_tangent(const Generation *g, int class, bool still);
 const Block *whole_tangent(const Generation *g, const Block *block);
 /* jacobian.c: the number of columns; sizes, a picture and tables of what may be other than 0. */
 int jacobian_columns(const Generation *g);

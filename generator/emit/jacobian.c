@@ -194,7 +194,7 @@ static void run_subsets(Pattern *p)
     for (p->number = 0; p->number < g->sequence->subsets; ++p->number) {
         p->subset = &g->sequence->subset[p->number];
         if (p->subset->class >= 0)
-            run(p, class_tangent(g, p->subset->class), false);
+            run(p, class_tangent(g, p->subset->class, false), false);
     }
     p->subset = NULL;
 }

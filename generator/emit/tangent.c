@@ -22,6 +22,31 @@ typedef struct Expansion {
 /* ---- blocks ---------------------------------------------------------------------------------------------------------
  */
 
+/* True for a number of n[], or of m[], that follows from poses alone. */
+static bool is_inertia_of_pose(const Generation *g, int index)
+{
+    const Sequence *sequence = g->sequence;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        const int own = index - g->plan->inertia_offset[s], along = own - INERTIA_COORDINATE;
+        if (subset->class < 0 || own < 0 || own >= g->plan->formula[subset->class]->layout.inertia_size)
+            continue;
+        return along < 0 ? own < INERTIA_FORCE : along >= 7 * subset->deps || along % 7 < 6;
+    }
+    return false;
+}
+
+static bool is_motion_of_pose(const Generation *g, int index)
+{
+    const Sequence *sequence = g->sequence;
+    for (int b = 1; b < g->model->bodies; ++b) {
+        const int class = sequence->subset[sequence->body_subset[b]].class, own = index - g->plan->motion_offset[b];
+        if (class >= 0 && own >= 0 && own < g->plan->formula[class]->layout.motion_size)
+            return motion_is_pose(own);
+    }
+    return false;
+}
+
 /* What moves along a direction in blocks about the whole vehicle and its wheels; context: the Generation. */
 static bool moves(const void *context, Element element)
 {
@@ -36,9 +61,22 @@ static bool moves(const void *context, Element element)
     }
 }
 
-const Block *class_tangent(const Generation *g, int class)
+/* The same where no coordinate changes, nor the geometry, so that no body changes its place relative to the base. */
+static bool moves_still(const void *context, Element element)
 {
-    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning);
+    const Generation *g = context;
+    switch (element.array) {
+    case ARRAY_x:
+    case ARRAY_self_derived: return false;
+    case ARRAY_m: return !is_motion_of_pose(g, element.index);
+    case ARRAY_n: return !is_inertia_of_pose(g, element.index);
+    default: return moves(context, element);
+    }
+}
+
+const Block *class_tangent(const Generation *g, int class, bool still)
+{
+    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still);
 }
 
 const Block *whole_tangent(const Generation *g, const Block *block)
@@ -66,6 +104,14 @@ static void write_dynamics(void *context, Text *out, int indent)
 {
     Generation *g = context;
     write_whole(g, out, g->formulation->dynamics, true, SCOPE_WHOLE, indent);
+}
+
+static void write_still_dynamics(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const Seeds seeds = {.moves = moves_still, .context = g};
+    Constants none = {0};
+    write_fast_block(g, out, block_tangent(g->formulation->dynamics, &seeds, true, NULL), SCOPE_WHOLE, &none, indent);
 }
 
 static void write_outputs(void *context, Text *out, int indent)
@@ -143,7 +189,13 @@ static void write_class_block(Expansion *x, const Block *block, Text *out, int i
 static void write_solve(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_class_block(x, class_tangent(x->g, x->g->class), out, indent);
+    write_class_block(x, class_tangent(x->g, x->g->class, false), out, indent);
+}
+
+static void write_still(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_class_block(x, class_tangent(x->g, x->g->class, true), out, indent);
 }
 
 static void write_react(void *context, Text *out, int indent)
@@ -208,7 +260,8 @@ static void write_calls(void *context, Text *out, int indent)
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
         write_links(g, out, indent, s);
         line(out, indent,
-             "%s_tangent_solve_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, along->motion + "
+             "%s_tangent_solve_%s(along->still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
+             "along->motion + "
              "%s, along->inertia + %s);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
              body_motion_text(g, subset->body[0]), subset_inertia_text(g, s));
@@ -412,8 +465,11 @@ static void write_orient_along(void *context, Text *out, int indent)
 static void write_call_derive(void *context, Text *out, int indent)
 {
     const Generation *g = context;
-    if (g->model->tuning)
-        line(out, indent, "%s_tangent_derive(self, along);", g->model->name);
+    if (!g->model->tuning)
+        return;
+    line(out, indent, "%s_tangent_derive(self, along);", g->model->name);
+    line(out, indent, "for (i = 0; i < %s_DERIVED; ++i)", g->upper);
+    line(out, indent + 4, "along->still = along->still && !(GIC_FABS(along->derived[i]) > R(0.0));");
 }
 
 static void write_call_wheels(void *context, Text *out, int indent)
@@ -433,10 +489,11 @@ static void write_call_react(void *context, Text *out, int indent)
          g->model->name);
 }
 
-static const Insertion class_point[] = {
-    {"tangent knowns", write_solve_knowns}, {"tangent solve", write_solve},     {"react knowns", write_react_knowns},
-    {"tangent react block", write_react},   {"tangent arrays", write_arrays},   {"tangent contact", write_contact},
-    {"tangent tire", write_tire},           {"tangent balance", write_balance}, {NULL, NULL}};
+static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns}, {"tangent solve", write_solve},
+                                        {"tangent still", write_still},         {"react knowns", write_react_knowns},
+                                        {"tangent react block", write_react},   {"tangent arrays", write_arrays},
+                                        {"tangent contact", write_contact},     {"tangent tire", write_tire},
+                                        {"tangent balance", write_balance},     {NULL, NULL}};
 
 const Insertions tangent_class_points = {
     (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
@@ -450,6 +507,7 @@ static const Insertion tangent_point[] = {{"table slope", write_table_slope},
                                           {"gather", write_gathered},
                                           {"tangent calls", write_calls},
                                           {"tangent dynamics", write_dynamics},
+                                          {"tangent still dynamics", write_still_dynamics},
                                           {"tangent reactions", write_reactions_along},
                                           {"tangent outputs", write_outputs},
                                           {"tangent poses", write_poses},

@@ -203,7 +203,9 @@ const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *seq
 /* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
  * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change.
  */
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned);
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still);
+/* True for a number of a body's motion, by its place, that follows from poses alone. */
+bool motion_is_pose(int place);
 
 /* ---- assemble.c: the design configuration that fits the given lengths */
 

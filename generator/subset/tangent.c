@@ -7,20 +7,25 @@
 
 /* What moves along a direction. */
 typedef struct Moving {
-    bool steady, tuned;
+    bool steady, tuned, still;
     bool poses;  /* q too */
     int factors; /* from this place on stored numbers of the start are wanted; -1: none */
 } Moving;
+
+bool motion_is_pose(int place)
+{
+    return place < MOTION_OMEGA || place >= MOTION_S;
+}
 
 static bool moves(const void *context, Element element)
 {
     const Moving *moving = context;
     switch (element.array) {
-    case ARRAY_x:
-    case ARRAY_rate:
-    case ARRAY_known: return true;
+    case ARRAY_x: return !moving->still;
+    case ARRAY_rate: return true;
+    case ARRAY_known: return !moving->still || !motion_is_pose(element.index);
     case ARRAY_turn: return !moving->steady;
-    case ARRAY_d: return moving->tuned;
+    case ARRAY_d: return moving->tuned && !moving->still;
     case ARRAY_q: return moving->poses;
     default: return false; /* times and starts */
     }
@@ -46,12 +51,12 @@ static void pose_change(Dag *dag, const Ex *p, const Ex twist[6], Ex dq[7])
     dq[3] = ex_neg(dag, ex_dot(dag, t, p + 1));
 }
 
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned)
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still)
 {
     Dag *dag = formula->dag;
     const Implicit *implicit = formula->implicit;
     const int factors = formula->react.stores ? formula->layout.start_factors : -1;
-    Moving moving = {.steady = steady, .tuned = tuned, .factors = factors};
+    Moving moving = {.steady = steady, .tuned = tuned, .still = still, .factors = factors};
     Seeds seeds = {.moves = moves, .context = &moving};
     if (!implicit)
         return block_tangent(&formula->solve, &seeds, false, is_wanted);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * What derivatives cost, by turns in one run: a right-hand side, a tangent (both with a state that changes at every
- * call, as in an integrator). MODEL and CODE as in tests/derivatives/program.c. Prints nanoseconds, the least of 40
- * turns. */
+ * What derivatives cost, by turns in one run: a right-hand side, a tangent, a Jacobian (all with a state that changes
+ * at every call, as in an integrator). MODEL and CODE as in tests/derivatives/program.c. Prints nanoseconds, the least
+ * of 40 turns. */
 #define _POSIX_C_SOURCE 199309L
 #include "gic_runtime.c"
 #include CODE
@@ -22,6 +22,7 @@ static double now(void)
 
 static MODEL self;
 static OF(_direction) along;
+static gic_real jacobian[1 << 16];
 
 /* A state near the one of set-up. */
 static void vary(int i, gic_real *state)
@@ -36,7 +37,7 @@ int main(void)
 {
     enum { CALLS = 2000, TURNS = 40 };
     const gic_model *code = &OF(_model);
-    double least[2] = {1e30, 1e30}, sum = 0;
+    double least[3] = {1e30, 1e30, 1e30}, sum = 0;
     gic_real state[sizeof self.state / sizeof(gic_real)], rate[sizeof self.state / sizeof(gic_real)];
     int turn, i, bad = OF(_setup)(&self);
     if (code->free_base)
@@ -59,8 +60,16 @@ int main(void)
         }
         took = (now() - from) / CALLS;
         least[1] = took < least[1] ? took : least[1];
+        from = now();
+        for (i = 0; i < CALLS / 50; ++i) {
+            vary(i, state);
+            bad |= OF(_jacobian)(&self, 0, state, &along, jacobian);
+            sum += jacobian[0];
+        }
+        took = (now() - from) / (CALLS / 50);
+        least[2] = took < least[2] ? took : least[2];
     }
-    printf("right-hand side %.0f ns, tangent %.0f ns, %.2f times%s\n", least[0], least[1], least[1] / least[0],
-           bad || sum != sum ? ", with a status" : "");
+    printf("right-hand side %.0f ns, tangent %.0f ns, %.2f times, jacobian %.0f ns, %.1f times%s\n", least[0], least[1],
+           least[1] / least[0], least[2], least[2] / least[0], bad || sum != sum ? ", with a status" : "");
     return bad != 0;
 }
