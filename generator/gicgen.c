@@ -225,6 +225,13 @@ static const Formulation *formulation_of(Pool *pool, const Model *model, const S
                                setting->facts);
 }
 
+static void check_derivatives(const Model *model, const Options *options)
+{
+    if (options->derivatives && model->states)
+        diag_fail((Place){model->source, 0, 0}, "leave out --derivatives, or use `gicrun --linearize`",
+                  "derivatives of a model with `states` of its own are not written yet");
+}
+
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
 static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
                        const Setting *setting)
@@ -330,6 +337,7 @@ int main(int count, char **word)
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};
+    check_derivatives(model, &options);
     switch (options.task) {
     case TASK_GENERATE:
     case TASK_BATCH: write_code(pool, model, sequence, &options, &setting); break;

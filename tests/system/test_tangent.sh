@@ -170,6 +170,11 @@ refuses() {
 check 'derivatives not in lanes' refuses --derivatives --lanes 4
 check 'derivatives not for many vehicles' refuses --derivatives --batch 8
 check 'derivatives not for one scene' refuses --derivatives --scene "$models/scenes/paper_run.scene"
+own_states() {
+    "$gicgen" --derivatives "$root/tests/data/laws/states.veh" -o "$work/refused.c" >"$work/said" 2>&1
+    [ $? -eq 1 ] && grep -q 'states. of its own' "$work/said" && [ ! -e "$work/refused.c" ]
+}
+check 'derivatives not of own states yet' own_states
 check 'derivatives are of code' refuses --derivatives --sequence
 
 echo "$passed passed, $failed failed"
