@@ -44,8 +44,7 @@ static void join(const Pattern *p, Set to, const bool *from)
         to[c] = to[c] || from[c];
 }
 
-/* ---- where a number of a block stands among all --------------------------------------------------------------------
- */
+/* ---- where a number of a block stands among all -------------------------------------------------------------- */
 
 /* In blocks of a class of subsets. */
 static Element place_in_subset(const Pattern *p, Element e)
@@ -142,8 +141,7 @@ static void run(const Pattern *p, const Block *block, bool fast)
     }
 }
 
-/* ---- the order of generated code: emit/tangent.c -------------------------------------------------------------------
- */
+/* ---- the order of generated code: emit/tangent.c ------------------------------------------------------------- */
 
 static void open_columns(Pattern *p)
 {
@@ -269,8 +267,7 @@ static int rows_of(const Generation *g)
     return states(g) + g->model->output_components;
 }
 
-/* ---- text ----------------------------------------------------------------------------------------------------------
- */
+/* ---- text ---------------------------------------------------------------------------------------------------- */
 
 void write_jacobian_sizes(void *context, Text *out, int indent)
 {

@@ -19,8 +19,7 @@ typedef struct Expansion {
     Constants constants;
 } Expansion;
 
-/* ---- blocks ---------------------------------------------------------------------------------------------------------
- */
+/* ---- blocks -------------------------------------------------------------------------------------------------- */
 
 /* True for a number of n[], or of m[], that follows from poses alone. */
 static bool is_inertia_of_pose(const Generation *g, int index)
@@ -138,8 +137,7 @@ static void write_derived(void *context, Text *out, int indent)
     write_whole(g, out, derive_block(g->pool, g->plan), false, SCOPE_WHOLE, indent);
 }
 
-/* ---- classes of subsets --------------------------------------------------------------------------------------------
- */
+/* ---- classes of subsets -------------------------------------------------------------------------------------- */
 
 /* Pointers to the numbers of known bodies and to what follows geometric parameters, and to their derivatives. */
 static void write_knowns(const Generation *g, Text *out, int indent, bool wrenches)
@@ -300,8 +298,7 @@ static void write_react_calls_along(void *context, Text *out, int indent)
     }
 }
 
-/* ---- wheels with tires ---------------------------------------------------------------------------------------------
- */
+/* ---- wheels with tires --------------------------------------------------------------------------------------- */
 
 static void write_arrays(void *context, Text *out, int indent)
 {
@@ -387,8 +384,7 @@ static void write_drive_block(void *context, Text *out, int indent)
     write_whole(g, out, &g->formulation->wheels->drive, true, SCOPE_FAST, indent);
 }
 
-/* ---- templates -----------------------------------------------------------------------------------------------------
- */
+/* ---- templates ----------------------------------------------------------------------------------------------- */
 
 static void expand(Generation *g, Text *out, const char *template)
 {
@@ -458,8 +454,7 @@ static void write_orient_along(void *context, Text *out, int indent)
     expand(g, out, g->model->free_base ? "tangent_free.c.in" : "tangent_fixed.c.in");
 }
 
-/* ---- calls where a model has these parts ---------------------------------------------------------------------------
- */
+/* ---- calls where a model has these parts --------------------------------------------------------------------- */
 
 static void write_call_derive(void *context, Text *out, int indent)
 {
@@ -542,8 +537,7 @@ void write_tangent_code(void *context, Text *out, int indent)
         expand(g, out, "tangent.c.in");
 }
 
-/* ---- header --------------------------------------------------------------------------------------------------------
- */
+/* ---- header -------------------------------------------------------------------------------------------------- */
 
 static void write_direction_members(void *context, Text *out, int indent)
 {

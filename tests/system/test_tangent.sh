@@ -30,9 +30,10 @@ check 'air' compare "$root/tests/data/laws/aero.veh"
     cat "$models/hmmwv_tires.veh"
     printf 'states:\n  soft: {rate: "(rate(spring_f_l) - soft) / 0.05"}\n'
     printf 'forces:\n  soft: {type: force, coordinate: spring_f_r, value: 1000 * soft}\n'
-} >"$work/soft.veh"
-cp -r "$models/parts" "$models/tires" "$work/"
-check 'states of a model beside tires' compare "$work/soft.veh" -n 2
+} >"$work/soft"
+cp -r "$models" "$work/models"
+mv "$work/soft" "$work/models/soft.veh"
+check 'states of a model beside tires' compare "$work/models/soft.veh" -n 2
 car=$root/tests/data/tuning/car.veh
 "$gicgen" --dump-model "$car" >"$work/dump" && sh "$root/tests/lib/reactions.sh" "$work/dump" "$car" >"$work/reacting.veh"
 check 'reactions, tunable geometry' compare "$work/reacting.veh" -n 2
