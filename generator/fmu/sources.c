@@ -54,10 +54,11 @@ static void write_enumerators(void *context, Text *out, int indent)
     text_print(out,
                "%*sFMU_START_METHOD = %d,\n%*sFMU_START_RATIO = %d,\n%*sFMU_START_GEAR = %d,\n"
                "%*sFMU_LEAST_GEAR = %d,\n%*sFMU_MOST_GEAR = %d,\n%*sFMU_INDICATORS = %d,\n"
-               "%*sFMU_WHEELS = %d,\n%*sFMU_WHEELS_ROOM = %d\n",
+               "%*sFMU_CONTACTS = %d,\n%*sFMU_WHEELS = %d,\n%*sFMU_WHEELS_ROOM = %d\n",
                indent, "", e->method + 1, indent, "", e->ratio, indent, "", gear ? (int)gear->start : 0, indent, "",
                gear ? (int)gear->least : 0, indent, "", gear ? (int)gear->most : 0, indent, "", event_indicators(all),
-               indent, "", wheels, indent, "", wheels ? wheels : 1);
+               indent, "", d->f->contacts ? d->f->contacts->stores : 0, indent, "", wheels, indent, "",
+               wheels ? wheels : 1);
 }
 
 static void write_experiment(void *context, Text *out, int indent)

@@ -283,7 +283,9 @@ fmu_result fmu_get_real(fmu_instance *instance, uint32_t reference, double *valu
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_STEP) {
         *value = data->step;
     } else if (kind == FMU_INDICATOR && i < FMU_INDICATORS) {
-        result = fmu_get_indicators(instance, value, FMU_INDICATORS);
+        double all[FMU_INDICATORS + 1];
+        result = fmu_get_indicators(instance, all, FMU_INDICATORS);
+        *value = result == FMU_OK ? all[i] : 0.0;
     } else if (kind == FMU_ROAD && i < FMU_PLANE * FMU_WHEELS) {
         *value = data->ground.plane[i / FMU_PLANE][i % FMU_PLANE];
     } else if (kind == FMU_PLACE && i < 2 * FMU_WHEELS) {
@@ -502,6 +504,26 @@ int fmu_event_due(fmu_instance *instance)
     return model->shift(&data->shown);
 }
 
+/* Contacts at the present state, on a copy. */
+static fmu_result touch(fmu_instance *instance, double *value)
+{
+    fmu_data *data = &instance->data;
+    gic_real press[GIC_CONTACTS];
+    int32_t i;
+    int status;
+    const fmu_result result = stand(instance);
+    if (result != FMU_OK)
+        return result;
+    data->shown = data->self;
+    data->seen = 0;
+    status = model->contacts(&data->shown, fmu_time(instance), data->shown.state, press);
+    if (status != GIC_OK)
+        return said(instance, FMU_DISCARD, &data->shown, "no contacts", status);
+    for (i = 0; i < model->contact_count; ++i)
+        value[i] = press[i];
+    return FMU_OK;
+}
+
 fmu_result fmu_get_indicators(fmu_instance *instance, double *value, size_t count)
 {
     fmu_result result;
@@ -509,8 +531,10 @@ fmu_result fmu_get_indicators(fmu_instance *instance, double *value, size_t coun
         return fmu_say(instance, FMU_ERROR, "there are %d event indicators, not %u", (int)FMU_INDICATORS,
                        (unsigned)count);
     result = fmu_initialize(instance);
-    if (result == FMU_OK && count)
+    if (result == FMU_OK && model->shift)
         value[0] = fmu_event_due(instance) ? -1.0 : 1.0;
+    if (result == FMU_OK && count > (size_t)(model->shift != NULL))
+        result = touch(instance, value + (model->shift != NULL));
     return result;
 }
 

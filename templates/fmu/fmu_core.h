@@ -119,7 +119,8 @@ fmu_result fmu_set_states(fmu_instance *instance, const double *x, size_t count)
 fmu_result fmu_get_states(fmu_instance *instance, double *x, size_t count);
 fmu_result fmu_get_rates(fmu_instance *instance, double *rate, size_t count);
 fmu_result fmu_get_nominals(fmu_instance *instance, double *x, size_t count);
-/* FMU_INDICATORS numbers: 1, or -1 where the gear would change in the present state. */
+/* FMU_INDICATORS numbers: of a powertrain 1, or -1 where the gear would change in the present state; then those of
+ * contacts, positive where there is a load. */
 fmu_result fmu_get_indicators(fmu_instance *instance, double *value, size_t count);
 /* The same after an integrator step, for importers that don't look for indicators: 1 where it would. */
 int fmu_event_due(fmu_instance *instance);

@@ -114,7 +114,7 @@ static fmu_result exact(fmu_instance *instance, const uint32_t *unknown, size_t 
         out[i] = kind_of(unknown[i]) == FMU_DERIVATIVE ? (double)along->rate[k]
                  : kind_of(unknown[i]) == FMU_OUTPUT   ? (double)along->output[k]
                  : kind_of(unknown[i]) == FMU_PLACE    ? (double)slope[k / 2][k % 2]
-                                                       : 0.0; /* an indicator jumps */
+                                                       : 0.0; /* whether a gear is due jumps */
     }
     return FMU_OK;
 }
@@ -179,6 +179,8 @@ fmu_result fmu_directional(fmu_instance *instance, const uint32_t *unknown, size
         return result;
     for (i = 0; i < knowns; ++i)
         inexact |= kind_of(known[i]) == FMU_ROAD && seed[i] != 0;
+    for (i = 0; i < unknowns; ++i) /* of contacts */
+        inexact |= kind_of(unknown[i]) == FMU_INDICATOR && index_of(unknown[i]) >= FMU_INDICATORS - FMU_CONTACTS;
     return (inexact ? differences : exact)(instance, unknown, unknowns, known, knowns, seed, out);
 }
 
