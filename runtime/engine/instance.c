@@ -92,10 +92,10 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
         const gic_signal *signal = &model->state[self->grown];
         const double value = instance_array((gic_head *)self, model->state_offset)[self->grown];
         const double rate = instance_array((gic_head *)self, model->rate_offset)[self->grown];
-        /* at rest before the step, it is the stages' rates that carry it away */
+        /* 0: the first step has no rate yet, or the rates of its stages carry the state away */
         return rate != 0 ? pool_print(pool, "%s: '%s' is at %.4g %s and changes by %.3g a second",
                                       gic_status_text(status), signal->name, value, signal->unit, rate)
-                         : pool_print(pool, "%s: '%s' is at %.4g %s, at rest before the step", gic_status_text(status),
+                         : pool_print(pool, "%s: '%s' is at %.4g %s before the step", gic_status_text(status),
                                       signal->name, value, signal->unit);
     }
     if (status == GIC_ERROR_MASS && self->grown >= 0 && self->grown < model->slow_count)
