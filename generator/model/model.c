@@ -38,6 +38,7 @@ int wheel_fast_states(const Wheel *wheel)
     return wheel->tire < 0 ? 0 : wheel->brake ? FAST_MOST : FAST_BRAKE;
 }
 
+const char *const wheel_fast_name[FAST_MOST] = {"spin", "slip_x", "slip_y", "brake"};
 const char *const powertrain_fast_name[POWERTRAIN_FAST] = {"engine.speed", "transmission.age"};
 
 const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE] = {"transmission.gear", "transmission.before"};

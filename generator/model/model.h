@@ -308,6 +308,7 @@ typedef struct Powertrain {
 enum { POWERTRAIN_SPEED, POWERTRAIN_AGE, POWERTRAIN_FAST };       /* fast states, rad/s and s */
 enum { POWERTRAIN_GEAR, POWERTRAIN_BEFORE, POWERTRAIN_DISCRETE }; /* discrete states, after that of the base */
 
+extern const char *const wheel_fast_name[FAST_MOST]; /* "spin" */
 extern const char *const powertrain_fast_name[POWERTRAIN_FAST];
 extern const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE];
 /* Time since the last shift at set-up, s: long enough for any shift to be over. */

@@ -126,6 +126,7 @@ const Model *model_read(Pool *pool, const char *path)
     wheels_read(&reader, value[FILE_WHEELS].item);
     states_read(&reader, value[FILE_STATES].item);
     powertrain_read(&reader, value[FILE_POWERTRAIN].item);
+    own_states_check(&reader);
     wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
     signals_close(&reader);

@@ -242,6 +242,8 @@ bool output_follows_accelerations(OutputType type, int component);
 void states_declare(Reader *reader, const Item *map);
 /* Their rates, after the wheels, whose fast states come before theirs. */
 void states_read(Reader *reader, const Item *map);
+/* After all that has states: fail if a state's name in generated code is another one's, too. */
+void own_states_check(Reader *reader);
 
 /* ---- signals.c ---- */
 

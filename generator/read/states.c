@@ -21,8 +21,7 @@ static const char *const state_about[STATE_KEYS] = {
 
 const Section state_section = {state_key, STATE_KEYS, NULL, 0, NULL, NULL, state_about};
 
-/* States of the model in generated code: coordinates, their rates and those of a free base are states, too. */
-static void names_check(Reader *reader)
+void own_states_check(Reader *reader)
 {
     const Model *model = reader->model;
     const char **name = NULL;
@@ -37,6 +36,16 @@ static void names_check(Reader *reader)
     for (int i = 0; i < BASE_STATES && model->free_base && model->states; ++i) {
         *POOL_PUSH(reader->pool, name, names) = base_state_name[i];
         *POOL_PUSH(reader->pool, at, places) = model->body[BODY_BASE].at;
+    }
+    for (int i = 0; i < model->wheels; ++i)
+        for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k) {
+            *POOL_PUSH(reader->pool, name, names) =
+                pool_print(reader->pool, "%s.%s", model->wheel[i].name, wheel_fast_name[k]);
+            *POOL_PUSH(reader->pool, at, places) = model->wheel[i].at;
+        }
+    for (int i = 0; model->powertrain && i < POWERTRAIN_FAST; ++i) {
+        *POOL_PUSH(reader->pool, name, names) = powertrain_fast_name[i];
+        *POOL_PUSH(reader->pool, at, places) = model->state[0].at;
     }
     for (int i = 0; i < model->states; ++i) {
         *POOL_PUSH(reader->pool, name, names) = model->state[i].name;
@@ -64,7 +73,6 @@ void states_declare(Reader *reader, const Item *map)
         };
     }
     model->states = count;
-    names_check(reader);
 }
 
 void states_read(Reader *reader, const Item *map)

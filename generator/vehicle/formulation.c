@@ -169,7 +169,6 @@ bool formulation_reacts(const Formulation *f)
 
 static StateNumber fast_number(Pool *pool, const Model *model, int index)
 {
-    static const char *const name[FAST_MOST] = {"spin", "slip_x", "slip_y", "brake"};
     const Powertrain *powertrain = model->powertrain;
     if (powertrain && index >= powertrain->fast) {
         bool speed = index - powertrain->fast == POWERTRAIN_SPEED;
@@ -183,7 +182,8 @@ static StateNumber fast_number(Pool *pool, const Model *model, int index)
     while (index >= wheel->fast + wheel_fast_states(wheel) || wheel->tire < 0)
         ++wheel;
     int which = index - wheel->fast;
-    return (StateNumber){pool_print(pool, "%s.%s", wheel->name, name[which]), which == FAST_SPIN ? "rad/s" : "1", 0};
+    return (StateNumber){pool_print(pool, "%s.%s", wheel->name, wheel_fast_name[which]),
+                         which == FAST_SPIN ? "rad/s" : "1", 0};
 }
 
 StateNumber state_number(Pool *pool, const Formulation *f, int index)

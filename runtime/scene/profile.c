@@ -73,10 +73,11 @@ double profile_next_kink(const Profile *profile, double time)
 }
 
 /* True if a piece of `width` s, in which the profile moves or rests, is long enough for steps. Of one that moves within
- * a step or two the jump of its jerk says nothing; one that rests has to be wider than differences at its ends. */
+ * some steps the jump of its jerk says nothing: made up for, knots every second step are worse than gone over, those
+ * every third are better. One that rests has to be wider than differences at its ends. */
 static bool is_resolved(double width, bool moves, double step)
 {
-    return width >= (moves ? 2 : 0.25) * step;
+    return width >= (moves ? 4 : 0.25) * step;
 }
 
 /* The same of the piece between points k and k + 1; beyond the points it rests. */

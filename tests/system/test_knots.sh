@@ -99,7 +99,7 @@ while read -r knots times values; do
     done
 done <cases
 
-# Moves within less than two steps: the steps do not resolve them, and nothing is added. A load that nothing holds stays
+# Moves within less than four steps: the steps do not resolve them, and nothing is added. A load that nothing holds stays
 # where it is, but for the parts of the move that the sums of steps meet; those of 1 ms lie between all times of 10 ms.
 sed '/^forces:/,/spring:/d' shaken.veh >loose.veh
 for way in 'integrator: ab3' 'integrator: rk4'; do

@@ -232,5 +232,13 @@ refused 5:21 "formulas of states are evaluated before forces are known: rate of 
 refused 6:24 "value of signal 't': 's' follows itself: value of signal 's' reads 't', value of signal 't' reads 's'" \
     'let one of them read' '{z: {rate: "s"}}' 'signals: {s: "2*t", t: s + z}'
 
+# names that states of wheels and of the powertrain have in generated code
+for own in tire_f_l_spin ENGINE_speed; do
+    printf 'gicgen: 1\nmodel: named\ninclude: %s\nstates: {%s: {rate: -%s}}\n' "$root/models/hmmwv_vehicle.veh" $own $own >bad.veh
+    "$gicgen" bad.veh -o bad.c >out 2>said
+    [ $? -eq 1 ] && [ ! -e bad.c ] && grep -q "bad.veh:4:10: error: the states '.*' and '$own' have the same name in generated code" said
+    verdict $? "a state called $own"
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

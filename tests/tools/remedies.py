@@ -99,7 +99,10 @@ RULES = [
      lambda line, m: without_key(line, re.search(r"key '([^']*)'", m.says).group(1), m.column)),
     (r"^write (zero or )?a positive number$", positive),
     (r"^rename (or remove )?one of (them|the two)|^rename it", renamed),
-    (r"^write (-?[0-9.]+), without a separator of thousands$",
+    (r"^write (-?[0-9.e]+), with a decimal point$",
+     lambda line, m: re.sub(r"(-?\d+),(\d+)", r"\1.\2", line[:m.column - 1]) +
+     re.sub(r"^(-?\d+),(\d+)", r"\1.\2", line[m.column - 1:])),
+    (r"^write (-?[0-9.]+), without a separator of thousands(, or .* with a decimal point)?$",
      lambda line, m: re.sub(r"-?\d{1,3}(,\d{3})+(\.\d+)?",
                             lambda number: number.group(0).replace(",", ""), line)),
     (r"^name two different bodies$", lambda line, m: re.sub(r"\[box, box\]", "[box, arm]", line)),
