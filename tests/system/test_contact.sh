@@ -12,28 +12,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tests/lib/checking.sh"
 cd "$work" || exit 1
 
-cat >hop.veh <<'END'
-gicgen: 1
-model: hop
-base: ground
-gravity: [0, 0, -10]
-bodies:
-  hopper: {mass: 40, com: [0, 0, 0.3], inertia: [1, 1, 1]}
-  load: {mass: 2, com: [0, 0, 1], inertia: [1, 1, 1]}
-joints:
-  mast: {type: prismatic, bodies: [ground, hopper], axis: [0, 0, 1]}
-  track: {type: prismatic, bodies: [ground, load], axis: [1, 0, 0]}
-coordinates:
-  z: {type: translation, bodies: [ground, hopper], axis: [0, 0, 1], range: [-0.3, 0.5]}
-  s: {type: translation, bodies: [ground, load], axis: [1, 0, 0], range: [-1, 1]}
-wheels:
-  hopper: {body: hopper, center: [0, 0, 0.3], radius: 0.3, stiffness: 16000, damping: 0}
-forces:
-  stops: {type: stop, coordinate: s, low: -0.1, high: 0.15, stiffness: 800}
-outputs:
-  z: {type: coordinate, coordinate: z}
-  s: {type: coordinate, coordinate: s}
-END
+cp "$root/tests/data/contact/hop.veh" .
 # scene STEP WAY...
 scene() {
     printf 'gicscene: 1\nduration: 2\nstep: %s\noutput_step: 0.01\noutputs: [z.value, z.rate, s.value, s.rate]\n' "$1"

@@ -205,34 +205,13 @@ verdict $? "FMI 3.0: intermediate updates and early return"
 
 # contacts: a wheel hops on its tire, landing and leaving 5 times each in 2 s (at 0.1 s and 0.203 s later, every 0.403 s);
 # a load slides between two stops, hits and leaves them 4 times each (first at 0.1875 s, 0.157 s in one, 0.3125 s between)
-cat >"$work/hop.veh" <<'END'
-gicgen: 1
-model: hop
-base: ground
-gravity: [0, 0, -10]
-bodies:
-  hopper: {mass: 40, com: [0, 0, 0.3], inertia: [1, 1, 1]}
-  load: {mass: 2, com: [0, 0, 1], inertia: [1, 1, 1]}
-joints:
-  mast: {type: prismatic, bodies: [ground, hopper], axis: [0, 0, 1]}
-  track: {type: prismatic, bodies: [ground, load], axis: [1, 0, 0]}
-coordinates:
-  z: {type: translation, bodies: [ground, hopper], axis: [0, 0, 1], range: [-0.3, 0.5]}
-  s: {type: translation, bodies: [ground, load], axis: [1, 0, 0], range: [-1, 1]}
-wheels:
-  hopper: {body: hopper, center: [0, 0, 0.3], radius: 0.3, stiffness: 16000, damping: 0}
-forces:
-  stops: {type: stop, coordinate: s, low: -0.1, high: 0.15, stiffness: 800}
-outputs:
-  z: {type: coordinate, coordinate: z}
-  s: {type: coordinate, coordinate: s}
-END
+hop=$root/tests/data/contact/hop.veh
 printf '%s\n' 'gicscene: 1' 'duration: 2' 'step: 0.0002' 'integrator: rk4' 'output_step: 0.01' 'locate: true' \
     'initial: {coordinates: {z: 0.05}, rates: {s: 0.8}}' >"$work/hop.scene"
-"$gicrun" -q --general "$work/hop.veh" "$work/hop.scene" -o "$work/hop.csv" 2>"$work/err"
+"$gicrun" -q --general "$hop" "$work/hop.scene" -o "$work/hop.csv" 2>"$work/err"
 verdict $? "contacts: gicrun"
 for version in 2 3; do
-    unit "$work/hop.veh" "$work/hop.scene"
+    unit "$hop" "$work/hop.scene"
     check "contacts: their description" described
     drive cvode 1e-11 0.01 2 >"$work/unit.csv" 2>"$work/err" && grep -q "importer: 0 events, 18 contacts" "$work/err" &&
         as_run 1e-7 "$work/hop.csv"
