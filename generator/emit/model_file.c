@@ -377,6 +377,8 @@ static void write_dynamics(void *context, Text *out, int indent)
 {
     Generation *g = context;
     block_emit(out, g->formulation->dynamics, g->style, &g->packed, indent);
+    if (!states(g)) /* gcc 14 takes what is only passed on for read */
+        line(out, indent, "rate[0] = 0; /* nothing moves */");
 }
 
 static void write_outputs(void *context, Text *out, int indent)

@@ -63,8 +63,9 @@ def build(folder, dual):
 
 def evaluate(program, numbers):
     """For each row of numbers: rates and outputs, and the derivatives, a column for each number."""
-    said = subprocess.run([program, *(wave or ["0", "1"])], input="\n".join(" ".join(map(repr, row)) for row in numbers),
-                          capture_output=True, text=True, check=True).stdout.split("\n")
+    text = "\n".join(" ".join(repr(float(number)) for number in row) for row in numbers)
+    said = subprocess.run([program, *(wave or ["0", "1"])], input=text, capture_output=True, text=True,
+                          check=True).stdout.split("\n")
     found, at = [], 0
     for _ in numbers:
         status, at = int(said[at]), at + 1

@@ -22,11 +22,16 @@ PATH=$work/without:$PATH
 
 strict="-std=c11 -D_GNU_SOURCE -Wall -Wextra -Werror -g -O1"
 libraries="-lsundials_cvode -lsundials_nvecserial -lsundials_sunlinsoldense -lsundials_sunmatrixdense -lxml2 -ldl -lm"
+# SUNDIALS of Debian 13 has a core library of its own, and communicators of MPI in its interface
+if [ -n "$(find /usr/lib -name libsundials_core.so -print -quit)" ]; then
+    mpi=$(pkgconf --cflags mpi-c)
+    libraries="-lsundials_core $libraries $(pkgconf --libs mpi-c)"
+fi
 sanitize="-fsanitize=address,undefined -fno-sanitize-recover=all"
 # importer FLAGS
 importer() {
     # shellcheck disable=SC2086  # lists of words
-    ${CC:-cc} $strict "$@" -I/usr/include/libxml2 "$here"/*.c $libraries
+    ${CC:-cc} $strict "$@" ${mpi-} -I/usr/include/libxml2 "$here"/*.c $libraries
 }
 importer -o "$work/importer" >"$work/out" 2>"$work/err"
 verdict $? "the importer compiles"
