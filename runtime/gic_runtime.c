@@ -698,7 +698,7 @@ static int march(const gic_model *model, void *self, gic_real step)
     return 0;
 }
 
-int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
+static int plain_step(const gic_model *model, void *self, gic_real step, int32_t method)
 {
     gic_head *head = (gic_head *)self;
     if (method == GIC_AB3 && goes_on(head, step, method, 1) && head->history == 2 && march(model, self, step))
@@ -939,15 +939,10 @@ static void keep_dual(const Dual *dual, int32_t known)
     copy(link, link + 3 * links, links);
 }
 
-int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio)
-{
-    return gic_step_steady(model, self, step, ratio, GIC_R(0.0));
-}
-
-int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
+static int plain_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
 {
     if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
-        return gic_step(model, self, step, GIC_AB3);
+        return plain_step(model, self, step, GIC_AB3);
     /* without a valid ratio there is no fast step to check */
     const int usable = ratio > 0 && ratio <= GIC_RATIOS;
     int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
@@ -984,6 +979,266 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
     if (head->history > 0)
         keep_dual(&dual, known);
     return GIC_OK;
+}
+
+/* ---- controllers: FORMAT.md section 7.4 ------------------------------------------------------------------- */
+
+/* Times that differ by less are the same: relative to the period, and what rounding makes of a time. */
+static gic_real same_time(const gic_controller *controller, gic_real time)
+{
+    const gic_real rounding = sizeof(gic_real) < sizeof(double) ? GIC_R(5e-7) : GIC_R(1e-15);
+    return GIC_LIMIT_ROUNDING * controller->period + rounding * absolute(time);
+}
+
+/* Sample `number`, or the effect `late` after it. */
+static gic_real instant(const gic_controller *controller, gic_real late, gic_real number)
+{
+    return controller->offset + late + number * controller->period;
+}
+
+/* True if the next instant has come. A number that does not belong to the time, since a program has moved it, becomes
+ * that of the first instant that is not before the time. */
+static int has_come(const gic_controller *controller, gic_real late, gic_real time, gic_real *number)
+{
+    const gic_real same = same_time(controller, time), wait = instant(controller, late, *number) - time;
+    if (wait < GIC_R(-0.5) * controller->period ||
+        (wait > GIC_R(1.5) * controller->period && *number > GIC_R(0.0))) {
+        const gic_real first = MATH(ceil)((time - same - controller->offset - late) / controller->period);
+        *number = first > GIC_R(0.0) ? first : GIC_R(0.0);
+    }
+    return instant(controller, late, *number) <= time + same;
+}
+
+/* The first instant before `end`; `end`: there is none. */
+static gic_real next_instant(const gic_model *model, const gic_real *state, gic_real end)
+{
+    gic_real next = end;
+    for (int32_t c = 0; c < model->controller_count; ++c) {
+        const gic_controller *controller = &model->controller[c];
+        for (int32_t i = -1; i < controller->rule_count; ++i) {
+            const gic_rule *rule = i < 0 ? NULL : &controller->rule[i];
+            if (rule && rule->effects < 0)
+                continue;
+            const gic_real at = rule ? instant(controller, rule->late, state[rule->effects])
+                                     : instant(controller, GIC_R(0.0), state[controller->samples]);
+            if (at < next && at + same_time(controller, at) < end)
+                next = at;
+        }
+    }
+    return next;
+}
+
+static void take_effect(gic_head *head, gic_real *held, gic_real value)
+{
+    if (gic_alike(held, &value, 1))
+        return;
+    *held = value;
+    ++head->held_count;
+    head->history = 0;
+}
+
+/* Values whose delay ends now. Returns the number of controllers to sample. */
+static int32_t effects_now(const gic_model *model, void *self, gic_real time)
+{
+    gic_real *state = array_at(self, model->state_offset);
+    int32_t due = 0;
+    for (int32_t c = 0; c < model->controller_count; ++c) {
+        const gic_controller *controller = &model->controller[c];
+        const int sampled = has_come(controller, GIC_R(0.0), time, &state[controller->samples]);
+        for (int32_t i = 0; i < controller->rule_count; ++i) {
+            const gic_rule *rule = &controller->rule[i];
+            gic_real *number = rule->effects < 0 ? NULL : &state[rule->effects];
+            if (number ? has_come(controller, rule->late, time, number) : sampled && rule->waiting > 0) {
+                take_effect((gic_head *)self, &state[rule->state], state[rule->state + rule->waiting]);
+                if (number)
+                    *number += GIC_R(1.0);
+            }
+        }
+        due += sampled;
+    }
+    return due;
+}
+
+/* A multiple of the quantum, halves away from zero. */
+static gic_real quantized(gic_real value, gic_real quantum)
+{
+    return quantum > GIC_R(0.0) ? quantum * MATH(round)(value / quantum) : value;
+}
+
+/* The new values of a controller, from the outputs of this time. */
+static int sample_rules(const gic_model *model, void *self, gic_real time, int32_t c)
+{
+    gic_head *head = (gic_head *)self;
+    const gic_controller *controller = &model->controller[c];
+    const gic_real *output = array_at(self, model->output_offset);
+    gic_real *state = array_at(self, model->state_offset), *value = array_at(self, model->scratch_offset);
+    for (int32_t i = 0; i < controller->rule_count; ++i) {
+        const gic_rule *rule = &controller->rule[i];
+        value[i] = rule->output < 0 ? state[rule->state] : output[rule->output];
+    }
+    if (head->controller_function)
+        head->controller_function(head->user, head->lane, c, time, output, value);
+    for (int32_t i = 0; i < controller->rule_count; ++i) {
+        const gic_rule *rule = &controller->rule[i];
+        gic_real *held = &state[rule->state], now = quantized(value[i], rule->quantum);
+        if (!gic_bounded(&now, 1)) {
+            head->grown = rule->state;
+            return GIC_ERROR_UNSTABLE;
+        }
+        for (int32_t k = rule->waiting; k > 1; --k)
+            held[k] = held[k - 1];
+        if (rule->waiting > 0)
+            held[1] = now;
+        else
+            take_effect(head, held, now);
+    }
+    state[controller->samples] += GIC_R(1.0);
+    return GIC_OK;
+}
+
+/* Everything that happens at the present time. On a failure values may have changed. */
+static int sample_now(const gic_model *model, void *self)
+{
+    const gic_real time = gic_time(self), *state = array_at(self, model->state_offset);
+    int32_t due = effects_now(model, self, time);
+    int status = due ? model->outputs(self) : GIC_OK;
+    for (int32_t c = 0; c < model->controller_count && status == GIC_OK && due; ++c) {
+        const gic_controller *controller = &model->controller[c];
+        const gic_real at = instant(controller, GIC_R(0.0), state[controller->samples]);
+        if (at <= time + same_time(controller, time)) {
+            status = sample_rules(model, self, time, c);
+            --due;
+        }
+    }
+    return status;
+}
+
+/* What a step in parts changes of an instance, beside its state and its counts. */
+typedef struct Whole {
+    Kept kept;
+    uint64_t touching;
+    int32_t discrete[MOST_DISCRETE];
+} Whole;
+
+/* Row 10 of the scratch array, which nothing else uses, keeps the state meanwhile. */
+static gic_real *whole_row(const gic_model *model, void *self)
+{
+    return array_at(self, model->scratch_offset) + 10 * (model->slow_count + model->fast_count);
+}
+
+static Whole whole_begin(const gic_model *model, void *self)
+{
+    const gic_head *head = (const gic_head *)self;
+    Whole whole = {{head->start_time, head->step, head->steps, head->method, head->ratio, head->history},
+                   head->touching,
+                   {0}};
+    copy(whole_row(model, self), array_at(self, model->state_offset), model->slow_count + model->fast_count);
+    copy_discrete(model, whole.discrete, discrete_of(model, self));
+    return whole;
+}
+
+static void whole_back(const gic_model *model, void *self, const Whole *whole)
+{
+    gic_head *head = (gic_head *)self;
+    copy(array_at(self, model->state_offset), whole_row(model, self), model->slow_count + model->fast_count);
+    copy_discrete(model, discrete_of(model, self), whole->discrete);
+    head->start_time = whole->kept.start_time;
+    head->step = whole->kept.step;
+    head->steps = whole->kept.steps;
+    head->method = whole->kept.method;
+    head->ratio = whole->kept.ratio;
+    head->history = whole->kept.history;
+    head->touching = whole->touching;
+    set_inputs(model, self, gic_time(self));
+}
+
+int gic_sample(const gic_model *model, void *self, gic_real *next)
+{
+    gic_head *head = (gic_head *)self;
+    int status = model->discrete_count <= MOST_DISCRETE ? GIC_OK : GIC_ERROR_ABI;
+    if (status == GIC_OK && model->controller_count > 0) {
+        const Whole whole = whole_begin(model, self);
+        status = sample_now(model, self);
+        if (status != GIC_OK)
+            whole_back(model, self, &whole);
+    }
+    *next = next_instant(model, array_at(self, model->state_offset), GIC_R(1e30));
+    return head->status = status;
+}
+
+/* To `end` by RK4, in parts about as long as fast steps. */
+static int part_to(const gic_model *model, void *self, gic_real end, gic_real fast_step)
+{
+    const gic_real length = end - gic_time(self);
+    const int32_t parts = 1 + (int32_t)(GIC_R(0.999) * length / fast_step);
+    int status = GIC_OK;
+    for (int32_t i = 0; i < parts && status == GIC_OK; ++i)
+        status = plain_step(model, self, length / (gic_real)parts, GIC_RK4);
+    if (status == GIC_OK) {
+        gic_restart(self, end); /* the time as a product, not as a sum */
+        set_inputs(model, self, end);
+    }
+    return status;
+}
+
+/* A step of a model with controllers, ratio 1 or more: in parts by RK4 where instants lie within it. On a failure the
+ * instance is as before. */
+static int sampled_step(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio,
+                        gic_real steady)
+{
+    gic_head *head = (gic_head *)self;
+    const int usable = ratio > 0 && ratio <= GIC_RATIOS;
+    int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
+    if (status == GIC_OK && (!usable || (method != GIC_AB3 && method != GIC_RK4) || !(steady >= GIC_R(0.0))))
+        status = head->status = GIC_ERROR_ARGUMENT;
+    if (status == GIC_OK && model->discrete_count > MOST_DISCRETE)
+        status = head->status = GIC_ERROR_ABI;
+    if (status != GIC_OK)
+        return status;
+    const int same = goes_on(head, step, method, ratio);
+    const gic_real start = same ? head->start_time : gic_time(self), *state = array_at(self, model->state_offset);
+    const int64_t steps = same ? head->steps : 0;
+    const gic_real end = start + (gic_real)(steps + 1) * step;
+    const Whole whole = whole_begin(model, self);
+    head->parted = 0;
+    status = sample_now(model, self);
+    for (gic_real next; status == GIC_OK && (next = next_instant(model, state, end)) < end;) {
+        head->parted = 1;
+        status = part_to(model, self, next, step / (gic_real)ratio);
+        if (status == GIC_OK)
+            status = sample_now(model, self);
+    }
+    if (status == GIC_OK && head->parted) {
+        status = part_to(model, self, end, step / (gic_real)ratio);
+        head->start_time = start;
+        head->steps = steps + 1;
+        head->step = step;
+        head->method = method;
+        head->ratio = ratio;
+    } else if (status == GIC_OK) {
+        status = method == GIC_AB3 ? plain_steady(model, self, step, ratio, steady)
+                                   : plain_step(model, self, step, method);
+    }
+    if (status != GIC_OK)
+        whole_back(model, self, &whole);
+    return head->status = status;
+}
+
+int gic_step(const gic_model *model, void *self, gic_real step, int32_t method)
+{
+    return model->controller_count > 0 ? sampled_step(model, self, step, method, 1, GIC_R(0.0))
+                                       : plain_step(model, self, step, method);
+}
+
+int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio)
+{
+    return gic_step_steady(model, self, step, ratio, GIC_R(0.0));
+}
+
+int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
+{
+    return model->controller_count > 0 ? sampled_step(model, self, step, GIC_AB3, ratio, steady)
+                                       : plain_steady(model, self, step, ratio, steady);
 }
 
 /* ---- orientation ---------------------------------------------------------------------------------------- */

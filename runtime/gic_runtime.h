@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 8
+#define GIC_ABI_VERSION 9
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -100,6 +100,13 @@ typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
 /* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
 
+/* If set, called at every sample of a controller (FORMAT.md section 7.4), after its formulas: controller is its index in
+ * the descriptor. rule[] has a number for each of its rules, in the order of the file: the values of their formulas, or
+ * what is held by those without one; change them as you like. output[] has all outputs of the model at this time. Values
+ * are then rounded and delayed as the rules say. */
+typedef void gic_controller_function(void *user, int32_t lane, int32_t controller, gic_real time,
+                                     const gic_real *output, gic_real *rule);
+
 /* The head of every generated structure. */
 typedef struct gic_head {
     gic_real start_time; /* s */
@@ -121,6 +128,7 @@ typedef struct gic_head {
     int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
     int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them */
     uint64_t touching;   /* contacts under load at the end of the last step, a bit each; only a hint */
+    int32_t parted;      /* was the last step made in parts at samples of controllers? */
     int32_t unchecked;   /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
     int64_t rhs_count;   /* right-hand sides evaluated */
     int64_t fast_count;  /* evaluations of the fast states' rates only, by gic_step_dual */
@@ -133,11 +141,13 @@ typedef struct gic_head {
     int64_t air_count;     /* tires not evaluated since their wheels had no contact */
     int64_t steady_count;  /* fast rates not evaluated since fast states changed steadily, gic_step_steady */
     int64_t contact_count; /* contacts made or lost that `locate` found within steps */
+    int64_t held_count;    /* values of controllers that changed */
     int64_t sleep_count;   /* steps in which a sleeping vehicle kept its state; counted by hosts */
     gic_real largest_step; /* largest final Newton correction, relative to the subset's size */
     gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */
     const gic_road *road;  /* NULL: flat at z = 0 */
     gic_input_function *input_function; /* NULL: the caller sets input[] */
+    gic_controller_function *controller_function; /* NULL: rules have their formulas' values */
     void *user;
 } gic_head;
 
@@ -146,6 +156,25 @@ typedef struct gic_head {
 typedef struct gic_signal {
     const char *name, *unit;
 } gic_signal;
+
+/* What a controller holds. */
+typedef struct gic_rule {
+    int32_t state;   /* index in state[] of the value in effect; those on their way follow it, newest first */
+    int32_t output;  /* index in output[] of the value of its formula; -1: it has none */
+    int32_t waiting; /* values on their way */
+    int32_t effects; /* index in state[] of the number of the next effect; -1: effects are at samples */
+    gic_real late;   /* s from a sample to when the oldest value on its way takes effect */
+    gic_real quantum; /* 0: values are not rounded */
+} gic_rule;
+
+/* Samples at offset + number * period, number 0, 1, 2, ... */
+typedef struct gic_controller {
+    const char *name;
+    gic_real period, offset;
+    int32_t samples; /* index in state[] of the number of the next sample */
+    int32_t rule_count;
+    const gic_rule *rule;
+} gic_controller;
 
 /* Results of the emitted self-test at one state; all relative, of the size of rounding in correct code. Values beyond
  * those promised in FORMAT.md section 14 come with GIC_ERROR_RESIDUAL. */
@@ -216,6 +245,9 @@ typedef struct gic_model {
      * contact has a load, else not, and continuous. 0 and NULL: there are none, or an engine of a host. */
     int32_t contact_count;
     int (*contacts)(void *self, gic_real time, const gic_real *state, gic_real *press);
+    /* Controllers: step functions sample them, and gic_sample. */
+    int32_t controller_count;
+    const gic_controller *controller;
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
@@ -223,7 +255,7 @@ typedef struct gic_model {
  * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
  * calls. */
 #define GIC_HISTORY(n, fast) (2 * (n) + (fast))
-#define GIC_SCRATCH(n, inputs) (10 * (n) + (inputs))
+#define GIC_SCRATCH(n, inputs) (11 * (n) + (inputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
 
@@ -256,6 +288,13 @@ int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t rat
  * skipped. steady 0: never skipped. SCENE.md section 9 has the consequences. */
 #define gic_step_steady GIC_NAME(gic_step_steady)
 int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady);
+
+/* Sample the controllers whose time has come, and let values take effect: step functions do so at the beginning of a
+ * step and within it; other integrators call it before a step, and end steps at *next, the time of the next sample or
+ * effect (a large number: there is none). A held value that changes restarts the history, and head.held_count counts it.
+ * output[] has the outputs of the last sample. On another status than GIC_OK state and time are as before. */
+#define gic_sample GIC_NAME(gic_sample)
+int gic_sample(const gic_model *model, void *self, gic_real *next);
 
 /* A change of an angle (rad) without whole turns: within half a turn. Changes within half a turn, and changes too large
  * to be those of an angle, are returned as they are. */

@@ -149,6 +149,8 @@ void write_tangent_header(void *context, Text *out, int indent);
 
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);
+/* Of the descriptor: how many controllers, and where they are. */
+void write_controllers(void *context, Text *out, int indent);
 
 /* specialized.c: insertion points of checks of assumptions, and of the road. */
 extern const Insertions assumption_points, road_points;

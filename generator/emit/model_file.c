@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 8 };
+enum { ABI_VERSION = 9 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -684,6 +684,7 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {"press", write_press},
                                        {"contact function", write_contact_function},
                                        {"contacts", write_contacts},
+                                       {"controllers", write_controllers},
                                        {"tangent", write_tangent_code},
                                        {NULL, NULL}};
 

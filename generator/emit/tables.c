@@ -88,6 +88,43 @@ static void write_coordinate_tables(Generation *g, Text *out)
     }
 }
 
+static void write_controller_tables(Generation *g, Text *out)
+{
+    const Model *model = g->model;
+    const int first = g->plan->states;
+    int rules = 0;
+    for (int i = 0; i < model->controllers; ++i)
+        rules += model->controller[i].rules;
+    if (!rules)
+        return;
+    open_table(g, out, "gic_rule ", "rule", rules);
+    for (int i = 0; i < model->controllers; ++i)
+        for (int k = 0; k < model->controller[i].rules; ++k) {
+            const ControlRule *rule = &model->controller[i].rule[k];
+            line(out, 4, "{%d, %d, %d, %d, %s, %s}, /* %s */", first + model->state[rule->state].fast,
+                 rule_output(model, rule), rule->waiting,
+                 rule->effects < 0 ? -1 : first + model->state[rule->effects].fast, emit_number(g->pool, rule->late),
+                 emit_number(g->pool, rule->quantum), rule->name);
+        }
+    close_table(out, rules, "");
+    open_table(g, out, "gic_controller ", "controller", model->controllers);
+    for (int i = 0, at = 0; i < model->controllers; at += model->controller[i++].rules) {
+        const Controller *controller = &model->controller[i];
+        line(out, 4, "{%s, %s, %s, %d, %d, %s_rule + %d},", quoted(g->pool, controller->name),
+             emit_number(g->pool, controller->period), emit_number(g->pool, controller->offset),
+             first + model->state[controller->samples].fast, controller->rules, model->name, at);
+    }
+    close_table(out, model->controllers, "");
+}
+
+void write_controllers(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const int count = g->model->controllers;
+    line(out, indent, "%d,", count);
+    line(out, indent, "%s,", count ? pool_print(g->pool, "%s_controller", g->model->name) : "NULL");
+}
+
 void write_tables(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -112,4 +149,5 @@ void write_tables(void *context, Text *out, int indent)
         line(out, 4, "%s,", quoted(g->pool, g->model->tuning->condition[i].text));
     write_assumption_texts(g, out);
     close_table(out, conditions(g), "NULL");
+    write_controller_tables(g, out);
 }

@@ -43,6 +43,22 @@ const char *const powertrain_fast_name[POWERTRAIN_FAST] = {"engine.speed", "tran
 
 const char *const powertrain_discrete_name[POWERTRAIN_DISCRETE] = {"transmission.gear", "transmission.before"};
 
+int model_held(const Model *model)
+{
+    int held = 0;
+    while (held < model->states && !model->state[model->states - 1 - held].rate)
+        ++held;
+    return held;
+}
+
+int rule_output(const Model *model, const ControlRule *rule)
+{
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
+        if (rule->signal >= 0 && model->output[i].sampled && model->output[i].index == rule->signal)
+            return at;
+    return -1;
+}
+
 int model_discretes(const Model *model)
 {
     return model->free_base + (model->powertrain ? POWERTRAIN_DISCRETE : 0);

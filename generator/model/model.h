@@ -161,15 +161,36 @@ typedef struct Input {
     bool read; /* a formula names it, or it belongs to a driven coordinate */
 } Input;
 
-/* A number of the model's own that changes at a rate (FORMAT.md section 7.3). */
+/* A number of the model's own that changes at a rate (FORMAT.md section 7.3), or that controllers hold (section 7.4).
+ */
 typedef struct State {
     const char *name, *unit;
     Place at;
     double initial;
-    const struct Law *rate;
-    int fast;  /* index among the model's fast states */
-    bool read; /* a formula names it */
+    const struct Law *rate; /* NULL: held */
+    int fast;               /* index among the model's fast states */
+    bool read;              /* a formula names it */
 } State;
+
+/* What a controller holds; states by their indices in the model's `state`. */
+typedef struct ControlRule {
+    const char *name; /* "speed.force" */
+    int state;        /* the value in effect; delayed ones follow, newest first */
+    int signal;       /* of its formula, -1: a program supplies the value */
+    int waiting;      /* values on their way */
+    double late;      /* s from a sample to when the oldest of them takes effect; 0: at the sample */
+    int effects;      /* number of the next effect; -1: late is 0 */
+    double quantum;   /* 0: none */
+} ControlRule;
+
+typedef struct Controller {
+    const char *name;
+    Place at;
+    double period, offset; /* s */
+    int samples;           /* state: number of the next sample */
+    int rules;
+    ControlRule *rule;
+} Controller;
 
 typedef struct Parameter {
     const char *name, *unit;
@@ -347,7 +368,8 @@ typedef struct Output {
     int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
-    bool hidden; /* made for pages of results: scenes can not name it and results do not show it */
+    bool hidden; /* made for pages of results or for a rule: scenes can not name it and results do not show it */
+    bool sampled; /* of a rule: code for a scene has it, too */
 } Output;
 
 /* A quantity that formulas read by its name (FORMAT.md section 7.1): a formula of its own, or a component of an output.
@@ -367,7 +389,8 @@ typedef struct Model {
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
     int parameters, tunables, tables, ports, tires, fast_states;
-    int states;  /* entries of `states` */
+    int states;  /* entries of `states`, then what controllers hold */
+    int controllers;
     int signals; /* entries of `signals`, then the components of outputs that formulas read */
     Body *body;
     Joint *joint;
@@ -383,9 +406,15 @@ typedef struct Model {
     Port *port;
     State *state;
     Signal *signal;
+    Controller *controller;
     struct Tuning *tuning; /* tunable.h; NULL: only numbers of force laws are tunable */
     const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
 } Model;
+
+/* How many states are held, the last ones. */
+int model_held(const Model *model);
+/* Place of a rule's formula among the components of outputs; -1: it has none. */
+int rule_output(const Model *model, const ControlRule *rule);
 
 /* Number of discrete states: one of a free base, and those of a powertrain. */
 int model_discretes(const Model *model);

@@ -26,6 +26,7 @@ enum {
     FILE_PORTS,
     FILE_STATES,
     FILE_SIGNALS,
+    FILE_CONTROLLERS,
     FILE_FORCES,
     FILE_TIRES,
     FILE_WHEELS,
@@ -51,6 +52,7 @@ static const Key file_key[FILE_KEYS] = {
     [FILE_PORTS] = {"ports", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_STATES] = {"states", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_SIGNALS] = {"signals", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_CONTROLLERS] = {"controllers", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_FORCES] = {"forces", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_TIRES] = {"tires", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_WHEELS] = {"wheels", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -75,6 +77,7 @@ static const char *const file_about[FILE_KEYS] = {
     [FILE_PORTS] = "external forces and torques that the calling program supplies",
     [FILE_STATES] = "numbers that change at rates by formulas: filters, actuators, controllers",
     [FILE_SIGNALS] = "formulas with names, which other formulas and outputs read",
+    [FILE_CONTROLLERS] = "formulas that are evaluated at sampling times, and whose values are held",
     [FILE_FORCES] = "force elements: springs, dampers, force laws, loads",
     [FILE_TIRES] = "tires of wheels that roll, from .tir files or with their data",
     [FILE_WHEELS] = "contacts of bodies with the road of the scene",
@@ -120,15 +123,18 @@ const Model *model_read(Pool *pool, const char *path)
     inputs_read(&reader, value[FILE_INPUTS].item);
     ports_read(&reader, value[FILE_PORTS].item);
     states_declare(&reader, value[FILE_STATES].item);
+    controllers_declare(&reader, value[FILE_CONTROLLERS].item);
     signals_read(&reader, value[FILE_SIGNALS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);
     wheels_read(&reader, value[FILE_WHEELS].item);
     states_read(&reader, value[FILE_STATES].item);
     powertrain_read(&reader, value[FILE_POWERTRAIN].item);
+    controllers_place(&reader);
     own_states_check(&reader);
     wheels_driven_check(&reader, value[FILE_WHEELS].item);
     outputs_read(&reader, value[FILE_OUTPUTS].item);
+    controllers_read(&reader, value[FILE_CONTROLLERS].item);
     signals_close(&reader);
     unread_tell(&reader);
     model->drawn = model->body;

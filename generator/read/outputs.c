@@ -244,15 +244,24 @@ void outputs_read(Reader *reader, const Item *map)
         default_outputs(reader);
     for (int i = 0; i < count; ++i)
         output_read(reader, entry + i, model->output + model->outputs++);
+    for (int i = 0; i < model->outputs; ++i)
+        model->output_components += model->output[i].count;
+    outputs_names_check(reader);
+}
+
+void outputs_names_check(Reader *reader)
+{
+    const Model *model = reader->model;
     size_t room = (size_t)(OUTPUT_MAX_COMPONENTS * model->outputs + 1);
     const char **name = pool_alloc(reader->pool, sizeof *name * room);
     Place *at = pool_alloc(reader->pool, sizeof *at * room);
+    int count = 0;
     for (int i = 0; i < model->outputs; ++i)
         for (int k = 0; k < model->output[i].count; ++k) {
-            name[model->output_components] = model->output[i].component[k];
-            at[model->output_components++] = model->output[i].at;
+            name[count] = model->output[i].component[k];
+            at[count++] = model->output[i].at;
         }
-    generated_names_check(reader, "output", name, at, model->output_components);
+    generated_names_check(reader, "output", name, at, count);
 }
 
 /* ---- outputs that a page of ours wants ----------------------------------------------------------------------- */

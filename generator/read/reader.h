@@ -62,6 +62,7 @@ typedef enum KeyKind {
     KEY_TRANSMISSION,
     KEY_DIFFERENTIALS, /* item: a map of named entries of differential_section */
     KEY_POWERTRAIN,    /* item: a map of powertrain_section */
+    KEY_RULES,         /* item: a map of named entries of rule_section, or of formulas */
     KEY_KINDS
 } KeyKind;
 
@@ -126,7 +127,7 @@ extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
 extern const Section coordinate_section;
 extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section,
-    state_section;
+    state_section, controller_section, rule_section;
 extern const Section powertrain_section, engine_section, converter_section, transmission_section, differential_section;
 
 /* An example of each kind of value, for remedies. */
@@ -229,6 +230,8 @@ void coordinates_read(Reader *reader, const Item *map);
 void inputs_read(Reader *reader, const Item *map);
 void forces_read(Reader *reader, const Item *map);
 void outputs_read(Reader *reader, const Item *map);
+/* Refuse outputs that have the same name in generated code. */
+void outputs_names_check(Reader *reader);
 
 /* True if the mirror changes the sign of a component of outputs of this type. */
 bool output_is_odd(OutputType type, int component);
@@ -245,12 +248,24 @@ void states_read(Reader *reader, const Item *map);
 /* After all that has states: fail if a state's name in generated code is another one's, too. */
 void own_states_check(Reader *reader);
 
+/* A value at set-up must be one that a state may have. */
+void initial_check(const Item *item, const char *what, double initial);
+
+/* ---- controllers.c ---- */
+
+/* The entries of `controllers` without their formulas: names and what they hold, after `states`. */
+void controllers_declare(Reader *reader, const Item *map);
+/* Places of what they hold, after all other fast states. */
+void controllers_place(Reader *reader);
+/* Their formulas, after the outputs, behind which these of theirs stand. */
+void controllers_read(Reader *reader, const Item *map);
+
 /* ---- signals.c ---- */
 
 /* True for a word that means something of its own in some formula: `time`, or `speed` of a force between points. */
 bool is_formula_word(const char *name);
 /* Refuse a name that formulas have for something else; thing: "signal". */
-void formula_name_check(const Model *model, const Entry *entry, const char *thing);
+void formula_name_check(const Reader *reader, const Entry *entry, const char *thing);
 /* The entries of `signals`, before forces are read. */
 void signals_read(Reader *reader, const Item *map);
 /* Once outputs are read: find the signals that formulas read, and refuse forces that would follow accelerations or

@@ -70,6 +70,7 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_CONVERTER] = {.section = &converter_section},
     [KEY_TRANSMISSION] = {.section = &transmission_section},
     [KEY_DIFFERENTIALS] = {.section = &differential_section, .entries = true, .group = differentials},
+    [KEY_RULES] = {.section = &rule_section, .entries = true}, /* their names are of the controller, and stay */
 };
 
 /* Maps of named entries in a file; without a section the entries are points. */
@@ -91,6 +92,7 @@ static const struct {
     {"wheels", &wheel_section, false},
     {"states", &state_section, true},
     {"signals", &signal_section, true},
+    {"controllers", &controller_section, true},
     {"outputs", &output_section, false},
 };
 
@@ -273,9 +275,11 @@ static Item *entries_rewrite(const Rewrite *rewrite, const Rule *how, Item *map)
     other->value = copies(rewrite, map->value, map->count);
     other->key = copies(rewrite, map->key, map->count);
     for (int i = 0; i < map->count; ++i) {
-        other->key[i] = name_rewrite(rewrite, how->group, map->key[i]);
+        other->key[i] = how->group ? name_rewrite(rewrite, how->group, map->key[i]) : copy(rewrite, map->key[i]);
         if (map->value[i]->kind == ITEM_MAP)
             other->value[i] = map_rewrite(rewrite, how->section, map->value[i]);
+        else if (how->section == &rule_section)
+            other->value[i] = value_rewrite(rewrite, &rule[KEY_FORMULA], false, map->value[i]);
     }
     return other;
 }

@@ -32,6 +32,7 @@ static void pair(Text *out, const char *name)
 }
 
 static void object(Text *out, const Section *section, int indent);
+static void group(Text *out, const Section *section);
 
 /* Begin a map of named entries, up to the schema of an entry. */
 static void entries_begin(Text *out, int indent)
@@ -113,6 +114,7 @@ static void value(Text *out, const Key *key, int indent)
     case KEY_TRANSMISSION: object(out, &transmission_section, indent); break;
     case KEY_DIFFERENTIALS: entries(out, &differential_section, indent); break;
     case KEY_POWERTRAIN: object(out, &powertrain_section, indent); break;
+    case KEY_RULES: group(out, &rule_section); break;
     case KEY_INTERPOLATION:
     case KEY_BEYOND:
     case KEY_SIDE:
@@ -205,7 +207,8 @@ static void inclusion(Text *out)
 /* A map of named entries; of points where `section` is NULL. */
 static void group(Text *out, const Section *section)
 {
-    const bool bare = section == &parameter_section || section == &signal_section; /* `name: value` will do */
+    /* `name: value` will do */
+    const bool bare = section == &parameter_section || section == &signal_section || section == &rule_section;
     entries_begin(out, 6);
     if (bare)
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
@@ -296,6 +299,7 @@ void keys_print(Text *out)
     for (int k = 0; k < file_section.keys; ++k)
         if (group_section(file_section.key[k].name))
             section_keys(out, file_section.key[k].name, group_section(file_section.key[k].name));
+    section_keys(out, "an entry of rules", &rule_section);
     section_keys(out, "powertrain", &powertrain_section);
     section_keys(out, "engine", &engine_section);
     section_keys(out, "converter", &converter_section);

@@ -66,6 +66,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TRANSMISSION] = "{...}",
     [KEY_DIFFERENTIALS] = "{name: {...}}",
     [KEY_POWERTRAIN] = "{...}",
+    [KEY_RULES] = "{name: formula}",
 };
 
 const char *const kind_words[KEY_KINDS][2] = {
@@ -439,6 +440,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_TRANSMISSION:
     case KEY_DIFFERENTIALS:
     case KEY_POWERTRAIN:
+    case KEY_RULES:
     case KEY_KINDS: break;
     }
 }

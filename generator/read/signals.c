@@ -32,8 +32,9 @@ bool is_formula_word(const char *name)
     return false;
 }
 
-void formula_name_check(const Model *model, const Entry *entry, const char *thing)
+void formula_name_check(const Reader *reader, const Entry *entry, const char *thing)
 {
+    const Model *model = reader->model;
     const char *other = is_formula_word(entry->name) ? "word of formulas" : NULL;
     for (int i = 0; i < model->parameters; ++i)
         other = strcmp(entry->name, model->parameter[i].name) ? other : "parameter";
@@ -44,9 +45,7 @@ void formula_name_check(const Model *model, const Entry *entry, const char *thin
     for (int i = 0; i < model->states; ++i)
         other = strcmp(entry->name, model->state[i].name) ? other : "state";
     if (other)
-        diag_fail(entry->at,
-                  *thing == 's' && thing[1] == 'i' ? "give the signal another name" : "give the state another name",
-                  "%s has the name of a%s %s", entry->what, *other == 'i' ? "n" : "", other);
+        diag_fail(entry->at, pool_print(reader->pool, "give the %s another name", thing), "%s has the name of a%s %s", entry->what, *other == 'i' ? "n" : "", other);
 }
 
 void signals_read(Reader *reader, const Item *map)
@@ -59,7 +58,7 @@ void signals_read(Reader *reader, const Item *map)
         Value value[SIGNAL_KEYS] = {{0}};
         if (entry[i].item->kind == ITEM_MAP)
             section_read(reader, &signal_section, 0, entry + i, value);
-        formula_name_check(model, entry + i, "signal");
+        formula_name_check(reader, entry + i, "signal");
         const Item *formula = entry[i].item->kind == ITEM_MAP ? value[SIGNAL_VALUE].item : entry[i].item;
         model->signal[i] = (Signal){
             .name = entry[i].name,

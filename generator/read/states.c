@@ -5,6 +5,8 @@
 #include "model/model.h"
 #include "read/reader.h"
 
+#include <math.h>
+
 enum { STATE_INITIAL, STATE_RATE, STATE_UNIT, STATE_KEYS };
 
 static const Key state_key[STATE_KEYS] = {
@@ -55,6 +57,14 @@ void own_states_check(Reader *reader)
         generated_names_check(reader, "state", name, at, names);
 }
 
+void initial_check(const Item *item, const char *what, double initial)
+{
+    const double most = 1 << 30; /* gic_bounded() */
+    if (item && !(fabs(initial) < most))
+        diag_fail(item->at, "give it a unit in which it is smaller",
+                  "%s: states are below 2^30 = %.0f in size (FORMAT.md section 14), not %s", what, most, item->text);
+}
+
 void states_declare(Reader *reader, const Item *map)
 {
     Model *model = reader->model;
@@ -64,7 +74,9 @@ void states_declare(Reader *reader, const Item *map)
     for (int i = 0; i < count; ++i) {
         Value value[STATE_KEYS];
         section_read(reader, &state_section, 0, entry + i, value);
-        formula_name_check(model, entry + i, "state");
+        formula_name_check(reader, entry + i, "state");
+        initial_check(value[STATE_INITIAL].item, pool_print(reader->pool, "initial of %s", entry[i].what),
+                      value[STATE_INITIAL].number[0]);
         model->state[i] = (State){
             .name = entry[i].name,
             .unit = value[STATE_UNIT].item ? value[STATE_UNIT].text : "1",

@@ -45,7 +45,7 @@ void unread_tell(const Reader *reader)
             tell(model->table[i].at, "table", model->table[i].name);
     for (int i = 0; i < model->states; ++i)
         if (!model->state[i].read)
-            tell(model->state[i].at, "state", model->state[i].name);
+            tell(model->state[i].at, model->state[i].rate ? "state" : "rule", model->state[i].name);
     for (int i = 0; i < model->signals; ++i) {
         const Signal *signal = &model->signal[i];
         if (signal->law && !is_image(signal->at) && !signal_is_read(reader, i))

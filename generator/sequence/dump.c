@@ -173,6 +173,7 @@ static void coordinates(Text *out, const Model *model)
 }
 
 static void formula(Text *out, const Law *law, const Model *model);
+static void formula_pair(Text *out, const char *name, const Law *law, const Model *model);
 
 /* A signal by its formula; a component of an output by all that it follows. */
 static void signal_read(Text *out, const Law *law, const Model *model)
@@ -308,7 +309,40 @@ static void states(Text *out, const Model *model)
         number_pair(out, "initial", &state->initial, 0, true);
         integer_pair(out, "fast", state->fast);
         key(out, "rate");
-        formula(out, state->rate, model);
+        if (state->rate)
+            formula(out, state->rate, model);
+        else
+            add(out, "0");
+        add(out, "}");
+    }
+}
+
+static void rules(Text *out, const Controller *controller, const Model *model)
+{
+    add(out, ", \"rules\": [");
+    for (int i = 0; i < controller->rules; ++i) {
+        const ControlRule *rule = &controller->rule[i];
+        begin(out, i, rule->name);
+        integer_pair(out, "state", rule->state);
+        formula_pair(out, "value", rule->signal >= 0 ? model->signal[rule->signal].law : NULL, model);
+        integer_pair(out, "waiting", rule->waiting);
+        number_pair(out, "late", &rule->late, 0, true);
+        integer_pair(out, "effects", rule->effects);
+        number_pair(out, "quantum", &rule->quantum, 0, true);
+        add(out, "}");
+    }
+    add(out, "]");
+}
+
+static void controllers(Text *out, const Model *model)
+{
+    for (int i = 0; i < model->controllers; ++i) {
+        const Controller *controller = &model->controller[i];
+        begin(out, i, controller->name);
+        number_pair(out, "period", &controller->period, 0, true);
+        number_pair(out, "offset", &controller->offset, 0, true);
+        integer_pair(out, "samples", controller->samples);
+        rules(out, controller, model);
         add(out, "}");
     }
 }
@@ -548,6 +582,11 @@ void model_dump(Text *out, const Model *model, const Sequence *sequence)
     }
     if (model->powertrain)
         powertrain(out, model);
+    if (model->controllers) {
+        add(out, ",\n  \"controllers\": [");
+        controllers(out, model);
+        add(out, "]");
+    }
     add(out, ",\n  \"sequence\": [");
     if (sequence)
         subsets(out, sequence);

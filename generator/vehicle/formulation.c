@@ -170,7 +170,7 @@ bool formulation_reacts(const Formulation *f)
 static StateNumber fast_number(Pool *pool, const Model *model, int index)
 {
     const Powertrain *powertrain = model->powertrain;
-    if (powertrain && index >= powertrain->fast) {
+    if (powertrain && index >= powertrain->fast && index < powertrain->fast + POWERTRAIN_FAST) {
         bool speed = index - powertrain->fast == POWERTRAIN_SPEED;
         return (StateNumber){powertrain_fast_name[index - powertrain->fast], speed ? "rad/s" : "s",
                              speed ? powertrain->idle : POWERTRAIN_FIRST_AGE};

@@ -482,7 +482,7 @@ const Wheels *wheels_formulate(Pool *pool, const Plan *plan)
         if (model->wheel[i].tire >= 0)
             formula_torques(&l, &model->wheel[i], 2 * wheel_rolling(model, i));
     for (int i = 0; i < model->states; ++i)
-        block_store(&wheels->torque, fast_law(&l, model->state[i].rate, NULL),
+        block_store(&wheels->torque, model->state[i].rate ? fast_law(&l, model->state[i].rate, NULL) : 0,
                     element_at(ARRAY_rate, model->state[i].fast));
     if (model->powertrain)
         powertrain_formulate(pool, &l);

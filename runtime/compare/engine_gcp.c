@@ -557,6 +557,7 @@ static void set_states(Pool *pool, Interpreted *context, int own)
     gic_model *code = &context->code;
     const size_t states = (size_t)(own + code->fast_count);
     code->slow_count = own;
+    descriptor_controllers(pool, context->world->model, code);
     code->state = signals(pool, context->world);
     code->state_offset = descriptor_place(code, states);
     code->rate_offset = descriptor_place(code, states);

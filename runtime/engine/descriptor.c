@@ -24,10 +24,13 @@ const gic_signal *descriptor_fast_states(Pool *pool, const Model *model)
     for (int i = 0; i < model->wheels; ++i)
         for (int k = 0; k < wheel_fast_states(&model->wheel[i]); ++k)
             *next++ = (gic_signal){pool_print(pool, "%s.%s", model->wheel[i].name, part[k].name), part[k].unit};
-    for (int i = 0; i < model->states; ++i)
+    const int own = model->states - model_held(model);
+    for (int i = 0; i < own; ++i)
         *next++ = (gic_signal){model->state[i].name, model->state[i].unit};
     for (int i = 0; model->powertrain && i < POWERTRAIN_FAST; ++i)
         *next++ = (gic_signal){powertrain_fast_name[i], i == POWERTRAIN_SPEED ? "rad/s" : "s"};
+    for (int i = own; i < model->states; ++i)
+        *next++ = (gic_signal){model->state[i].name, model->state[i].unit};
     return signal;
 }
 
@@ -92,6 +95,33 @@ static void set_signals(Pool *pool, const Model *model, gic_model *code)
     code->output = output;
     code->port = port_signals(pool, model);
     code->coordinate = coordinate;
+}
+
+static gic_rule rule_of(const gic_model *code, const Model *model, const ControlRule *rule)
+{
+    const int32_t first = code->slow_count;
+    return (gic_rule){.state = first + model->state[rule->state].fast,
+                      .output = rule_output(model, rule),
+                      .waiting = rule->waiting,
+                      .effects = rule->effects < 0 ? -1 : first + model->state[rule->effects].fast,
+                      .late = rule->late,
+                      .quantum = rule->quantum};
+}
+
+void descriptor_controllers(Pool *pool, const Model *model, gic_model *code)
+{
+    gic_controller *controller = pool_alloc(pool, ((size_t)model->controllers + 1) * sizeof *controller);
+    for (int i = 0; i < model->controllers; ++i) {
+        const Controller *from = &model->controller[i];
+        gic_rule *rule = pool_alloc(pool, (size_t)from->rules * sizeof *rule);
+        for (int k = 0; k < from->rules; ++k)
+            rule[k] = rule_of(code, model, &from->rule[k]);
+        controller[i] =
+            (gic_controller){from->name, from->period, from->offset,
+                             code->slow_count + model->state[from->samples].fast, from->rules, rule};
+    }
+    code->controller_count = model->controllers;
+    code->controller = controller;
 }
 
 static void set_coordinates(Pool *pool, const Model *model, gic_model *code)
@@ -189,6 +219,7 @@ gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequenc
     for (int c = 0; c < model->coordinates; ++c)
         code.slow_count += model->coordinate[c].driven ? 0 : 2;
     set_signals(pool, model, &code);
+    descriptor_controllers(pool, model, &code);
     set_coordinates(pool, model, &code);
     set_names(pool, model, sequence, &code);
     place_arrays(&code);

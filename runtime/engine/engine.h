@@ -93,6 +93,8 @@ typedef struct Instance {
  * `count` more numbers in its instances, at the returned offset, bytes. */
 gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
 size_t descriptor_place(gic_model *code, size_t count);
+/* The controllers, once more where `slow_count` changes. */
+void descriptor_controllers(Pool *pool, const Model *model, gic_model *code);
 /* Names and units of a model's fast states, [fast_states]: TIRES.md section 2. */
 const gic_signal *descriptor_fast_states(Pool *pool, const Model *model);
 

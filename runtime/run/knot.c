@@ -9,7 +9,7 @@ int knots_cross(const gic_model *model, const Scene *scene, gic_head *self, doub
 {
     const double now = gic_time(self);
     int status = GIC_OK;
-    /* the rates that AB3 has of a start, or after a change of gear, are summed otherwise */
+    /* the rates that AB3 has of a start, or after a change of gear, are summed otherwise, as are parts of a step */
     if (!knot_counts(self, history))
         return GIC_OK;
     for (double knot = scene_next_knot(scene, start); knot <= now && status == GIC_OK;

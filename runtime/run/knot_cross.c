@@ -58,5 +58,5 @@ int knot_cross(const gic_model *model, gic_head *self, double start, double knot
 
 int knot_counts(const gic_head *self, int history)
 {
-    return self->method != GIC_AB3 || (history >= 2 && self->history >= 2);
+    return !self->parted && (self->method != GIC_AB3 || (history >= 2 && self->history >= 2));
 }

@@ -37,7 +37,7 @@ typedef struct LinearModel {
     /* at the operating point; z0: places of a free base are 0, since they count from there */
     double *f, *z0, *u0, *y0, *p0;
     double *A, *B, *C, *D, *E, *F;
-    /* what is held as it is: the time since a shift, the gears */
+    /* what is held as it is: the time since a shift, values of controllers, the gears */
     int held;
     gic_signal *held_name;
     double *held_value;

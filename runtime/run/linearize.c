@@ -451,14 +451,15 @@ static const char *place_name(Pool *pool, const char *name, const char *const ba
 }
 
 /* Names of places, also used for their rates, and of fast states; the last fast state of a powertrain is a clock and is
- * left out. */
+ * left out, as is what controllers hold. */
 static void name_numbers(Pool *pool, Linear *linear)
 {
     static const char *const base[BASE_PLACES] = {"x", "y", "z", "roll", "pitch", "yaw"};
     const double small = 0.1;
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
-    linear->clocks = engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
+    linear->clocks = model_held(engine->formulation->model);
+    linear->clocks += engine->formulation->model->powertrain ? POWERTRAIN_FAST - POWERTRAIN_AGE : 0;
     for (int half = 0; half < 2; ++half) {
         for (int i = 0; code->free_base && i < BASE_PLACES; ++i)
             add_number(pool, linear, base[i], small, small);

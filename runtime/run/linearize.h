@@ -28,7 +28,7 @@ typedef struct Linear {
     bool *slips;             /* [count] true for the slip of a tire */
     bool *jumps;             /* [count] set by linearize(): a rate jumps where this number passes its value */
     int of_wheels;           /* number of fast states that belong to wheels; they come first */
-    int clocks;              /* number of fast states after them that only count time: the time since a shift */
+    int clocks;              /* fast states after them that are held as they are: time since a shift, controllers */
     const char **name;       /* [count] */
     double *reach;           /* [count] units for comparison: 0.1 m, 0.1 rad, 0.1 m/s, 0.1 rad/s; 1 rad/s for spins, 0.1
                               * for slips. Equal on the left and right sides */

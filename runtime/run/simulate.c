@@ -262,6 +262,7 @@ static void summary_of_skips(const gic_head *head)
         {head->air_count, "tires skipped", "evaluations of wheels in the air"},
         {head->steady_count, "fast rates skipped", "evaluations while fast states changed steadily"},
         {head->contact_count, "contacts located", "made or lost within steps"},
+        {head->held_count, "values held", "changes of what controllers hold"},
         {head->sleep_count, "steps asleep", "steps while the vehicle was at rest"},
     };
     for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)

@@ -248,10 +248,26 @@ static int return_to_change(Variable *variable, gic_head *self)
     return status;
 }
 
+/* What controllers hold changes now; *end: not beyond the next time of theirs. */
+static int sample(Variable *variable, gic_head *self, double *end)
+{
+    const gic_model *model = variable->model;
+    const size_t size = sizeof(double) * states(model);
+    double next, *state = array_of(self, model->state_offset);
+    memcpy(variable->settled, state, size);
+    const int status = gic_sample(model, self, &next);
+    *end = fmin(*end, next);
+    variable->fresh = variable->fresh || memcmp(variable->settled, state, size);
+    return status;
+}
+
 int variable_step(Variable *variable, void *instance, double end)
 {
     const gic_model *model = variable->model;
     gic_head *self = instance;
+    const int sampled = model->controller_count > 0 ? sample(variable, self, &end) : GIC_OK;
+    if (sampled != GIC_OK)
+        return sampled;
     if (!model->shift)
         return step(variable, self, end);
     memcpy(variable->start, self, model->size);

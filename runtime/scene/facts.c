@@ -181,6 +181,8 @@ static const char *asymmetry_of(const Model *model, const Scene *scene, bool acr
         return "the vehicle is turned about x or z at the beginning";
     if (!(fabs(scene->velocity[1]) <= most && fabs(omega[0]) <= most && fabs(omega[2]) <= most))
         return "the vehicle does not move straight ahead at the beginning";
+    if (model->controllers)
+        return "the model has controllers, which are not looked through";
     return model->wheels && !across ? "the road is not known to be the same on both sides" : NULL;
 }
 

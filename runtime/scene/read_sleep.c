@@ -43,6 +43,8 @@ static const char *restless(const Model *model)
     for (int i = 0; i < model->forces; ++i)
         if (any_reads_time(model, model->force[i].law, sizeof model->force[i].law / sizeof *model->force[i].law))
             return model->force[i].name;
+    if (model->controllers)
+        return model->controller[0].name;
     for (int i = 0; i < model->states; ++i)
         if (law_reads_time(model, model->state[i].rate))
             return model->state[i].name;

@@ -357,7 +357,7 @@ int world_wheels_turn(World *world, const double *fast, double *rate)
             return status;
     }
     for (int i = 0; i < model->states; ++i)
-        rate[model->state[i].fast] = world_law(world, model->state[i].rate, NULL);
+        rate[model->state[i].fast] = model->state[i].rate ? world_law(world, model->state[i].rate, NULL) : 0;
     if (model->powertrain)
         world_drive(world, fast, rate);
     return GIC_OK;
