@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0x308844e3
+#if ANDREWS_H != 0xbbe6c7e3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -4007,6 +4007,8 @@ const gic_model andrews_model = {
     NULL,
     NULL,
     andrews_any_check,
+    0,
+    NULL,
     0,
     NULL,
 };

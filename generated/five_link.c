@@ -72,7 +72,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0xab275d47
+#if FIVE_LINK_H != 0xba7a85bf
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8027,4 +8027,6 @@ const gic_model five_link_model = {
     five_link_any_check,
     FIVE_LINK_CONTACTS,
     five_link_any_contacts,
+    0,
+    NULL,
 };

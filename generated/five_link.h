@@ -71,12 +71,12 @@
  *   outputs, when asked for                                  604       712       0      0        13
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0xab275d47
+#define FIVE_LINK_H 0xba7a85bf
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "five_link.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "five_link.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -86,7 +86,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     FIVE_LINK_CONTACTS = 4,
-    FIVE_LINK_ABI = 8,
+    FIVE_LINK_ABI = 9,
     FIVE_LINK_FREE_BASE = 1,
     FIVE_LINK_STATES = 23,
     FIVE_LINK_SLOW = 23,

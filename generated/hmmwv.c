@@ -78,7 +78,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x0c3c1633
+#if HMMWV_H != 0x1f61d11f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6847,4 +6847,6 @@ const gic_model hmmwv_model = {
     hmmwv_any_check,
     HMMWV_CONTACTS,
     hmmwv_any_contacts,
+    0,
+    NULL,
 };

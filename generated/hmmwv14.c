@@ -80,7 +80,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x740abd0d
+#if HMMWV14_H != 0x5b67be43
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -10151,4 +10151,6 @@ const gic_model hmmwv14_model = {
     hmmwv14_any_check,
     HMMWV14_CONTACTS,
     hmmwv14_any_contacts,
+    0,
+    NULL,
 };

@@ -79,12 +79,12 @@
  *   outputs, when asked for                                  933      1137       4      4        19
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x740abd0d
+#define HMMWV14_H 0x5b67be43
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "hmmwv14.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "hmmwv14.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -94,7 +94,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     HMMWV14_CONTACTS = 4,
-    HMMWV14_ABI = 8,
+    HMMWV14_ABI = 9,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_SLOW = 23,

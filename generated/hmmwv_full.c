@@ -78,7 +78,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0x81b10091
+#if HMMWV_FULL_H != 0x9eabae7f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7969,4 +7969,6 @@ const gic_model hmmwv_full_model = {
     hmmwv_full_any_check,
     HMMWV_FULL_CONTACTS,
     hmmwv_full_any_contacts,
+    0,
+    NULL,
 };

@@ -77,12 +77,12 @@
  *   outputs, when asked for                                  648       750       4      4        27
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x81b10091
+#define HMMWV_FULL_H 0x9eabae7f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "hmmwv_full.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "hmmwv_full.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -92,7 +92,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     HMMWV_FULL_CONTACTS = 12,
-    HMMWV_FULL_ABI = 8,
+    HMMWV_FULL_ABI = 9,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,

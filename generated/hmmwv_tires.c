@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x25fd4dbb
+#if HMMWV_TIRES_H != 0xccdf8677
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8479,4 +8479,6 @@ const gic_model hmmwv_tires_model = {
     hmmwv_tires_any_check,
     HMMWV_TIRES_CONTACTS,
     hmmwv_tires_any_contacts,
+    0,
+    NULL,
 };

@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x25fd4dbb
+#define HMMWV_TIRES_H 0xccdf8677
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "hmmwv_tires.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "hmmwv_tires.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -99,7 +99,7 @@ enum {
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 28,
     HMMWV_TIRES_CONTACTS = 4,
-    HMMWV_TIRES_ABI = 8,
+    HMMWV_TIRES_ABI = 9,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,

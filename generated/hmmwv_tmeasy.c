@@ -82,7 +82,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xc1a69b97
+#if HMMWV_TMEASY_H != 0xf5bcca5f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8525,4 +8525,6 @@ const gic_model hmmwv_tmeasy_model = {
     hmmwv_tmeasy_any_check,
     HMMWV_TMEASY_CONTACTS,
     hmmwv_tmeasy_any_contacts,
+    0,
+    NULL,
 };

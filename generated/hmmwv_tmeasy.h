@@ -81,12 +81,12 @@
  *   outputs, when asked for                                  799       936       0      0         7
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0xc1a69b97
+#define HMMWV_TMEASY_H 0xf5bcca5f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "hmmwv_tmeasy.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "hmmwv_tmeasy.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -99,7 +99,7 @@ enum {
     HMMWV_TMEASY_LINKS = 48,
     HMMWV_TMEASY_GRIP = 28,
     HMMWV_TMEASY_CONTACTS = 4,
-    HMMWV_TMEASY_ABI = 8,
+    HMMWV_TMEASY_ABI = 9,
     HMMWV_TMEASY_FREE_BASE = 1,
     HMMWV_TMEASY_STATES = 37,
     HMMWV_TMEASY_SLOW = 21,

@@ -83,7 +83,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x8f7dd953
+#if HMMWV_VEHICLE_H != 0x7cd1db9d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -9156,4 +9156,6 @@ const gic_model hmmwv_vehicle_model = {
     hmmwv_vehicle_any_check,
     HMMWV_VEHICLE_CONTACTS,
     hmmwv_vehicle_any_contacts,
+    0,
+    NULL,
 };

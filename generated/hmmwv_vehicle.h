@@ -82,12 +82,12 @@
  *   outputs, when asked for                                  855      1018       0      0         7
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x8f7dd953
+#define HMMWV_VEHICLE_H 0x7cd1db9d
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "hmmwv_vehicle.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "hmmwv_vehicle.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -104,7 +104,7 @@ enum {
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
     HMMWV_VEHICLE_CONTACTS = 12,
-    HMMWV_VEHICLE_ABI = 8,
+    HMMWV_VEHICLE_ABI = 9,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,

@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x3ba532d1
+#if PENDULUM_H != 0x21f32587
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1236,6 +1236,8 @@ const gic_model pendulum_model = {
     NULL,
     NULL,
     pendulum_any_check,
+    0,
+    NULL,
     0,
     NULL,
 };

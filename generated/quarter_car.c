@@ -48,7 +48,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x5a4dfdf1
+#if QUARTER_CAR_H != 0x0c216f51
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -2571,4 +2571,6 @@ const gic_model quarter_car_model = {
     quarter_car_any_check,
     QUARTER_CAR_CONTACTS,
     quarter_car_any_contacts,
+    0,
+    NULL,
 };

@@ -47,12 +47,12 @@
  *   outputs, when asked for                                   72        99       0      0         1
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x5a4dfdf1
+#define QUARTER_CAR_H 0x0c216f51
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "quarter_car.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "quarter_car.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -62,7 +62,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     QUARTER_CAR_CONTACTS = 1,
-    QUARTER_CAR_ABI = 8,
+    QUARTER_CAR_ABI = 9,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_SLOW = 4,

@@ -67,7 +67,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x2db3eb51
+#if SOLID_AXLE_H != 0xf6a31ed9
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7589,4 +7589,6 @@ const gic_model solid_axle_model = {
     solid_axle_any_check,
     SOLID_AXLE_CONTACTS,
     solid_axle_any_contacts,
+    0,
+    NULL,
 };

@@ -66,12 +66,12 @@
  *   outputs, when asked for                                  533       619       0      0        10
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x2db3eb51
+#define SOLID_AXLE_H 0xf6a31ed9
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "solid_axle.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "solid_axle.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -81,7 +81,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     SOLID_AXLE_CONTACTS = 4,
-    SOLID_AXLE_ABI = 8,
+    SOLID_AXLE_ABI = 9,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,

@@ -70,7 +70,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xe2c98691
+#if TRAILING_ARM_H != 0x7d14bb5f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6947,4 +6947,6 @@ const gic_model trailing_arm_model = {
     trailing_arm_any_check,
     TRAILING_ARM_CONTACTS,
     trailing_arm_any_contacts,
+    0,
+    NULL,
 };

@@ -69,12 +69,12 @@
  *   outputs, when asked for                                  564       700       4      4        13
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xe2c98691
+#define TRAILING_ARM_H 0x7d14bb5f
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 8
-#error "trailing_arm.h was generated for version 8 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 9
+#error "trailing_arm.h was generated for version 9 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -84,7 +84,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     TRAILING_ARM_CONTACTS = 4,
-    TRAILING_ARM_ABI = 8,
+    TRAILING_ARM_ABI = 9,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_SLOW = 23,

@@ -1001,8 +1001,7 @@ static gic_real instant(const gic_controller *controller, gic_real late, gic_rea
 static int has_come(const gic_controller *controller, gic_real late, gic_real time, gic_real *number)
 {
     const gic_real same = same_time(controller, time), wait = instant(controller, late, *number) - time;
-    if (wait < GIC_R(-0.5) * controller->period ||
-        (wait > GIC_R(1.5) * controller->period && *number > GIC_R(0.0))) {
+    if (wait < GIC_R(-0.5) * controller->period || (wait > GIC_R(1.5) * controller->period && *number > GIC_R(0.0))) {
         const gic_real first = MATH(ceil)((time - same - controller->offset - late) / controller->period);
         *number = first > GIC_R(0.0) ? first : GIC_R(0.0);
     }
@@ -1129,9 +1128,8 @@ static gic_real *whole_row(const gic_model *model, void *self)
 static Whole whole_begin(const gic_model *model, void *self)
 {
     const gic_head *head = (const gic_head *)self;
-    Whole whole = {{head->start_time, head->step, head->steps, head->method, head->ratio, head->history},
-                   head->touching,
-                   {0}};
+    Whole whole = {
+        {head->start_time, head->step, head->steps, head->method, head->ratio, head->history}, head->touching, {0}};
     copy(whole_row(model, self), array_at(self, model->state_offset), model->slow_count + model->fast_count);
     copy_discrete(model, whole.discrete, discrete_of(model, self));
     return whole;
@@ -1216,8 +1214,8 @@ static int sampled_step(const gic_model *model, void *self, gic_real step, int32
         head->method = method;
         head->ratio = ratio;
     } else if (status == GIC_OK) {
-        status = method == GIC_AB3 ? plain_steady(model, self, step, ratio, steady)
-                                   : plain_step(model, self, step, method);
+        status =
+            method == GIC_AB3 ? plain_steady(model, self, step, ratio, steady) : plain_step(model, self, step, method);
     }
     if (status != GIC_OK)
         whole_back(model, self, &whole);

@@ -100,10 +100,10 @@ typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
 /* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
 
-/* If set, called at every sample of a controller (FORMAT.md section 7.4), after its formulas: controller is its index in
- * the descriptor. rule[] has a number for each of its rules, in the order of the file: the values of their formulas, or
- * what is held by those without one; change them as you like. output[] has all outputs of the model at this time. Values
- * are then rounded and delayed as the rules say. */
+/* If set, called at every sample of a controller (FORMAT.md section 7.4), after its formulas: controller is its index
+ * in the descriptor. rule[] has a number for each of its rules, in the order of the file: the values of their formulas,
+ * or what is held by those without one; change them as you like. output[] has all outputs of the model at this time.
+ * Values are then rounded and delayed as the rules say. */
 typedef void gic_controller_function(void *user, int32_t lane, int32_t controller, gic_real time,
                                      const gic_real *output, gic_real *rule);
 
@@ -146,7 +146,7 @@ typedef struct gic_head {
     gic_real largest_step; /* largest final Newton correction, relative to the subset's size */
     gic_real residual;     /* largest constraint residual that checks found, relative to the subset's size */
     const gic_road *road;  /* NULL: flat at z = 0 */
-    gic_input_function *input_function; /* NULL: the caller sets input[] */
+    gic_input_function *input_function;           /* NULL: the caller sets input[] */
     gic_controller_function *controller_function; /* NULL: rules have their formulas' values */
     void *user;
 } gic_head;
@@ -159,11 +159,11 @@ typedef struct gic_signal {
 
 /* What a controller holds. */
 typedef struct gic_rule {
-    int32_t state;   /* index in state[] of the value in effect; those on their way follow it, newest first */
-    int32_t output;  /* index in output[] of the value of its formula; -1: it has none */
-    int32_t waiting; /* values on their way */
-    int32_t effects; /* index in state[] of the number of the next effect; -1: effects are at samples */
-    gic_real late;   /* s from a sample to when the oldest value on its way takes effect */
+    int32_t state;    /* index in state[] of the value in effect; those on their way follow it, newest first */
+    int32_t output;   /* index in output[] of the value of its formula; -1: it has none */
+    int32_t waiting;  /* values on their way */
+    int32_t effects;  /* index in state[] of the number of the next effect; -1: effects are at samples */
+    gic_real late;    /* s from a sample to when the oldest value on its way takes effect */
     gic_real quantum; /* 0: values are not rounded */
 } gic_rule;
 
@@ -291,8 +291,8 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
 
 /* Sample the controllers whose time has come, and let values take effect: step functions do so at the beginning of a
  * step and within it; other integrators call it before a step, and end steps at *next, the time of the next sample or
- * effect (a large number: there is none). A held value that changes restarts the history, and head.held_count counts it.
- * output[] has the outputs of the last sample. On another status than GIC_OK state and time are as before. */
+ * effect (a large number: there is none). A held value that changes restarts the history, and head.held_count counts
+ * it. output[] has the outputs of the last sample. On another status than GIC_OK state and time are as before. */
 #define gic_sample GIC_NAME(gic_sample)
 int gic_sample(const gic_model *model, void *self, gic_real *next);
 

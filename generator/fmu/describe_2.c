@@ -92,7 +92,8 @@ void describe_2(Text *out, const Description *d)
     xml_attribute(out, "generationTool", "gicgen " GICGEN_VERSION);
     text_print(out, " variableNamingConvention=\"structured\" numberOfEventIndicators=\"%d\">\n",
                event_indicators(d->variables));
-    describe_interface(out, d, true);
+    if (!d->f->model->controllers) /* which sample in steps */
+        describe_interface(out, d, true);
     describe_interface(out, d, false);
     describe_units(out, all);
     text_print(out, "  <TypeDefinitions>\n    <SimpleType name=\"solver_method\" description=\"integrator\">\n"

@@ -10,11 +10,14 @@ static void describe_interfaces(Text *out, const Description *d)
 {
     const char *derivatives =
         d->derivatives ? " providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"" : "";
-    text_print(out, "  <ModelExchange");
-    xml_attribute(out, "modelIdentifier", d->f->model->name);
-    text_print(out,
-               " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" needsCompletedIntegratorStep=\"%s\"%s/>\n",
-               d->f->model->powertrain ? "true" : "false", derivatives);
+    if (!d->f->model->controllers) { /* which sample in steps */
+        text_print(out, "  <ModelExchange");
+        xml_attribute(out, "modelIdentifier", d->f->model->name);
+        text_print(
+            out,
+            " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" needsCompletedIntegratorStep=\"%s\"%s/>\n",
+            d->f->model->powertrain ? "true" : "false", derivatives);
+    }
     text_print(out, "  <CoSimulation");
     xml_attribute(out, "modelIdentifier", d->f->model->name);
     text_print(out,

@@ -368,7 +368,7 @@ typedef struct Output {
     int count;                                    /* components */
     const char *component[OUTPUT_MAX_COMPONENTS]; /* full names: "chassis.x" */
     const char *unit[OUTPUT_MAX_COMPONENTS];
-    bool hidden; /* made for pages of results or for a rule: scenes can not name it and results do not show it */
+    bool hidden;  /* made for pages of results or for a rule: scenes can not name it and results do not show it */
     bool sampled; /* of a rule: code for a scene has it, too */
 } Output;
 
@@ -389,7 +389,7 @@ typedef struct Model {
     bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
     int parameters, tunables, tables, ports, tires, fast_states;
-    int states;  /* entries of `states`, then what controllers hold */
+    int states; /* entries of `states`, then what controllers hold */
     int controllers;
     int signals; /* entries of `signals`, then the components of outputs that formulas read */
     Body *body;

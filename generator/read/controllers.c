@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Sampled controllers (FORMAT.md section 7.4): what they hold are states without a rate, the last ones of the model; the
- * formulas of their rules are signals with an output each, so that every engine has their values. */
+ * Sampled controllers (FORMAT.md section 7.4): what they hold are states without a rate, the last ones of the model;
+ * the formulas of their rules are signals with an output each, so that every engine has their values. */
 #include "base/text.h"
 #include "base/yaml.h"
 #include "model/model.h"
@@ -131,8 +131,8 @@ void controllers_declare(Reader *reader, const Item *map)
         const Entry *rule = rules_of(reader, entry + i, &rules);
         for (int k = 0; k < rules; ++k)
             rule_declare(reader, controller, rule + k);
-        controller->samples = state_add(reader, pool_print(reader->pool, "%s.samples", controller->name), "1",
-                                        entry[i].at, 0, true);
+        controller->samples =
+            state_add(reader, pool_print(reader->pool, "%s.samples", controller->name), "1", entry[i].at, 0, true);
     }
     model->controllers = count;
 }
@@ -166,7 +166,8 @@ static void rule_read(Reader *reader, ControlRule *rule, const Entry *entry)
         return;
     State *state = &model->state[rule->state];
     const bool read = state->read; /* by others: its own formula does not count */
-    const Law *law = law_parse(reader->pool, formula, pool_print(reader->pool, "value of rule '%s'", rule->name), &names);
+    const Law *law =
+        law_parse(reader->pool, formula, pool_print(reader->pool, "value of rule '%s'", rule->name), &names);
     state->read = read;
     rule->signal = model->signals;
     *POOL_PUSH(reader->pool, model->signal, model->signals) =

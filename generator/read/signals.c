@@ -45,7 +45,8 @@ void formula_name_check(const Reader *reader, const Entry *entry, const char *th
     for (int i = 0; i < model->states; ++i)
         other = strcmp(entry->name, model->state[i].name) ? other : "state";
     if (other)
-        diag_fail(entry->at, pool_print(reader->pool, "give the %s another name", thing), "%s has the name of a%s %s", entry->what, *other == 'i' ? "n" : "", other);
+        diag_fail(entry->at, pool_print(reader->pool, "give the %s another name", thing), "%s has the name of a%s %s",
+                  entry->what, *other == 'i' ? "n" : "", other);
 }
 
 void signals_read(Reader *reader, const Item *map)
@@ -193,7 +194,11 @@ static void closed_circle(const Order *order)
     while (first > 0 && order->way[first - 1]->law->index != last)
         --first;
     const SignalRead *read = order->way[order->ways - 1];
-    diag_fail(read->at, "let one of them read positions, velocities, coordinates or their rates instead",
+    const size_t length = strlen(read->name);
+    const bool of_rule = length > 5 && !strcmp(read->name + length - 5, ".next");
+    diag_fail(read->at,
+              of_rule ? "read the rule without `.next`, which is what it holds"
+                      : "let one of them read positions, velocities, coordinates or their rates instead",
               "%s: '%s' follows itself: %s", read->what, read->name, way_text(order, first));
 }
 

@@ -116,9 +116,9 @@ void descriptor_controllers(Pool *pool, const Model *model, gic_model *code)
         gic_rule *rule = pool_alloc(pool, (size_t)from->rules * sizeof *rule);
         for (int k = 0; k < from->rules; ++k)
             rule[k] = rule_of(code, model, &from->rule[k]);
-        controller[i] =
-            (gic_controller){from->name, from->period, from->offset,
-                             code->slow_count + model->state[from->samples].fast, from->rules, rule};
+        controller[i] = (gic_controller){from->name,   from->period,
+                                         from->offset, code->slow_count + model->state[from->samples].fast,
+                                         from->rules,  rule};
     }
     code->controller_count = model->controllers;
     code->controller = controller;

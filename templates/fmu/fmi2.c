@@ -119,6 +119,8 @@ fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String g
         error = "the GUID is not that of this FMU: modelDescription.xml and binary are not of the same export";
     else if (type != fmi2ModelExchange && type != fmi2CoSimulation)
         error = "the type is neither model exchange nor co-simulation";
+    else if (type == fmi2ModelExchange)
+        error = fmu_no_exchange();
     c = error ? NULL : (Component *)allocate(functions, sizeof *c + strlen(name) + 1);
     if (!error && !c)
         error = "no memory for the instance";

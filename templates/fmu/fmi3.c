@@ -141,7 +141,7 @@ fmi3Instance FMI3(fmi3InstantiateModelExchange)(fmi3String name, fmi3String toke
                                                 fmi3Boolean visible, fmi3Boolean logging,
                                                 fmi3InstanceEnvironment environment, fmi3LogMessageCallback message)
 {
-    Instance *instance = (Instance *)instantiate(name, token, logging, environment, message, NULL);
+    Instance *instance = (Instance *)instantiate(name, token, logging, environment, message, fmu_no_exchange());
     (void)resources, (void)visible;
     if (instance) {
         instance->core.data.exchange = 1;

@@ -547,6 +547,11 @@ int fmu_event(fmu_instance *instance)
     return shifted;
 }
 
+const char *fmu_no_exchange(void)
+{
+    return model->controller_count ? "the model has sampled controllers, which only co-simulation samples" : NULL;
+}
+
 /* ---- fixed steps -------------------------------------------------------------------------------------------- */
 
 static int one_step(fmu_data *data, gic_real step)

@@ -113,6 +113,8 @@ fmu_result fmu_experiment(fmu_instance *instance, double start, int stops, doubl
 /* Initial state from start values. */
 fmu_result fmu_initialize(fmu_instance *instance);
 
+/* Why there is no model exchange; NULL: there is. */
+const char *fmu_no_exchange(void);
 /* Model exchange. */
 fmu_result fmu_set_time(fmu_instance *instance, double time);
 fmu_result fmu_set_states(fmu_instance *instance, const double *x, size_t count);

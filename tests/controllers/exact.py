@@ -55,36 +55,34 @@ class Loop:
             self.held["force"] = self.waiting.pop(0)[1]
 
 
-def at(times, t):
-    for near in times:
-        if abs(near - t) < SAME:
-            return times[near]
-    return times.setdefault(t, [False, False])
-
-
 def instants(until):
-    """(time, servo sampled, mean sampled) and effects, in order."""
-    times = {}
+    """(time, [servo sampled, mean sampled]) and effects, in order; those at the same time are one."""
+    all_of_them = []
     for which, (period, offset) in enumerate([("period", "offset"), ("mean", "mean_offset")]):
-        k = 0
-        while number[offset] + k * number[period] < until:
+        for k in range(math.ceil((until - number[offset]) / number[period])):
             t = number[offset] + k * number[period]
-            at(times, t)[which] = True
+            all_of_them.append((t, which))
             if which == 0:
-                at(times, t + number["delay"])
-            k += 1
-    return sorted(times.items())
+                all_of_them.append((t + number["delay"], None))
+    merged = []
+    for t, which in sorted(all_of_them, key=lambda instant: instant[0]):
+        if not merged or t - merged[-1][0] > SAME:
+            merged.append((t, [False, False]))
+        if which is not None:
+            merged[-1][1][which] = True
+    return merged
 
 
 rows = list(csv.reader(open(sys.argv[1])))
 names = [name.split(" ")[0] for name in rows[0]]
 table = [[float(cell) for cell in row] for row in rows[1:]]
 step = Fraction(rows[2][0])  # of output
-loop, events, worst = Loop(), instants(step * (len(table) - 1)), 0.0
+loop, events, next_one, worst = Loop(), instants(step * (len(table) - 1)), 0, 0.0
 for i, row in enumerate(table):
     time = i * step
-    while events and events[0][0] < time - SAME:  # what happens at the time of a row comes after it
-        t, (servo, mean) = events.pop(0)
+    while next_one < len(events) and events[next_one][0] < time - SAME:  # what happens at a row's time comes after it
+        t, (servo, mean) = events[next_one]
+        next_one += 1
         loop.move(t)
         loop.effects()
         loop.sample(servo, mean)

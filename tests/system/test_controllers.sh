@@ -60,10 +60,13 @@ for method in 'integrator: rk4' 'integrator: ab3' 'ratio: 4'; do
     run 1e-12 "rounded and delayed, $method" '' -- period=0.07 quantum=0.25 delay=0.1
 done
 scene 0.1 0.1 2
+# adams begins at first order after each change, so that the errors of many steps add up
 for tolerance in 1e-6 1e-9; do
     for method in adams rkck; do
         scene 0.1 0.1 2 "integrator: $method" "tolerance: $tolerance"
-        run $tolerance "variable steps" '' -- period=0.14285714285714285 delay=0.05 mean=0.1
+        most=${tolerance#*-}
+        [ $method = rkck ] || most=$((most - 3))
+        run 1e-$most "variable steps, $method, $tolerance" '' -- period=0.14285714285714285 delay=0.05 mean=0.1
     done
 done
 scene 0.01 0.1 2 'integrator: ab3' 'ratio: 2'
@@ -99,7 +102,7 @@ halves 0.5 '0.25, 0.75, -0.25, -0.75, 0.125, -0.5, 1, 0.24, 0' '0.5 1 -0.5 -1 0 
 
 # ---- orders across samples: a spring, 3 rad/s
 for method in 'rk4 13' 'ab3 6.5'; do
-    for step in 0.01 0.005; do
+    for step in 0.005 0.0025; do
         scene $step 0.1 2 "integrator: ${method% *}"
         settings='period=0.14285714285714285 delay=0.05 mean=0.1 spring=18 start=0.5'
         # shellcheck disable=SC2086  # settings
@@ -111,6 +114,76 @@ for method in 'rk4 13' 'ab3 6.5'; do
     awk -v most="${method#* }" 'NR == 1 { a = $1 } NR == 2 { b = $1 } END { exit !(NR == 2 && a < 1e-4 && a / b > most) }' errors
     verdict $? "order of ${method% *}: $(tr '\n' ' ' <errors)"
 done
+
+# ---- a function in C in the slot of a formula: the same model but for the formula of `force`
+loop period=0.07 delay=0.1 mean=0.1
+"$gicgen" loop.veh -o loop.c
+# shellcheck disable=SC2016  # no expansion
+sed 's/^model: .*/model: slot/; s/force: {value: "8[^"]*", /force: {/' loop.veh >slot.veh
+"$gicgen" slot.veh -o slot.c
+for flags in '-std=c99 -O2' '-std=c11 -O1 -fsanitize=address,undefined -fno-sanitize-recover=all'; do
+    # shellcheck disable=SC2086  # flags
+    ${CC:-cc} $flags -Wall -Wextra -Werror -pedantic -I. -I"$root/runtime" "$root/tests/controllers/slot.c" loop.c slot.c \
+        "$root/runtime/gic_runtime.c" -o slot -lm 2>err && ./slot >said 2>&1
+    verdict $? "a controller in C, $flags: $(tail -n 1 said)"
+done
+# what the page shows of it
+sed -n '/^    static void servo/,/^    }/s/^    //p' "$root/runtime/README.md" >page
+[ "$(wc -l <page)" -gt 4 ]
+verdict $? 'the page has an example'
+while IFS= read -r row; do
+    grep -qF -- "$row" "$root/tests/controllers/slot.c"
+    verdict $? "the page's example is what runs: $row"
+done <page
+
+# ---- linear models, rest and modes hold what controllers hold; derivatives; many vehicles
+"$gicrun" --linearize loop.veh >out 2>err && grep -q '^held/servo.force,N,0' out && grep -q '^output/servo.force.next,N,8.1,-8.1,-6,8.1' out
+verdict $? 'a linear model'
+"$gicrun" --modes loop.veh >out 2>err && grep -q '2 eigenvalues that are zero: neutral in x$' out && ! grep -q servo out
+verdict $? 'modes'
+"$gicrun" --equilibrium loop.veh >out 2>err && grep -q 'servo.force: 0' out
+verdict $? 'rest'
+"$gicgen" --derivatives loop.veh -o derived.c && sed 's/"loop.h"/"derived.h"/' derived.c >d.c &&
+    ${CC:-cc} -std=c99 -Wall -Wextra -Werror -pedantic -I. -I"$root/runtime" -c d.c -o d.o 2>err
+verdict $? 'code with derivatives'
+"$gicgen" --batch 4 loop.veh -o batch.c 2>said
+grep -q 'error: .*states of its own' said && [ ! -e batch.c ]
+verdict $? "many vehicles are refused: $(head -n 1 said)"
+printf 'gicscene: 1\nstep: 0.01\nduration: 1\nsleep: {}\n' >sleep.scene
+"$gicrun" -q loop.veh sleep.scene -o none.csv 2>said
+[ $? -eq 1 ] && grep -q "'servo' of 'loop' changes with time by itself" said
+verdict $? "sleep is refused: $(head -n 1 said)"
+printf 'gicscene: 1\nstep: 0.1\nduration: 0.2\noutput_step: 0.1\ninitial: {states: {servo.force: 4}}\n' >start.scene
+loop period=5 offset=1
+"$gicrun" -q loop.veh start.scene -o start.csv 2>err && awk -F, 'NR == 4 { exit !($2 > 0.0399999999 && $2 < 0.0400000001) }' start.csv
+verdict $? 'a scene gives what is held at the start'
+
+# ---- mistakes
+# refused PLACE MESSAGE REMEDY CONTROLLERS [MORE]: one message and no output
+refused() {
+    rm -f bad.c
+    printf 'gicgen: 1\nmodel: m\nbase: car\nbodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}\ncontrollers: %s\n%b\n' "$4" "$5" >bad.veh
+    "$gicgen" bad.veh -o bad.c >out 2>said
+    [ $? -eq 1 ] && [ ! -e bad.c ] && [ "$(grep -c error: said)" -eq 1 ] && grep -qF "bad.veh:$1: error: $2" said && grep -qF "  remedy: $3" said
+    verdict $? "refused: $2"
+}
+refused 5:15 "controller 'c' lacks the key 'period'" 'add `period: number`' '{c: {rules: {a: 1}}}'
+refused 5:15 "controller 'c' lacks the key 'rules'" 'add `rules: {name: formula}`' '{c: {period: 1}}'
+refused 5:39 "controller 'c' holds nothing" 'write `rules: {name: formula}`' '{c: {period: 0.5, rules: {}}}'
+refused 5:27 "controller 'c': its period is below 1e-6 s" 'write the period in seconds' '{c: {period: 1e-7, rules: {a: 1}}}'
+refused 5:27 "period of controller 'c' must be greater than zero" 'write a positive number' '{c: {period: 0, rules: {a: 1}}}'
+refused 5:38 "offset of controller 'c' must not be negative" 'write zero or a positive number' '{c: {period: 1, offset: -1, rules: {a: 1}}}'
+refused 5:61 "rule 'c.a': its delay is longer than 100 periods" 'shorten the delay' '{c: {period: 0.1, rules: {a: {value: 1, delay: 10.1}}}}'
+refused 5:61 "quantum of rule 'c.a' must be greater than zero" 'write a positive number' '{c: {period: 1, rules: {a: {value: 1, quantum: 0}}}}'
+refused 5:61 "initial of rule 'c.a': states are below 2^30" 'give it a unit in which it is smaller' '{c: {period: 1, rules: {a: {value: 1, initial: 2e9}}}}'
+refused 5:15 "controller 'u' has the name of an input" 'give the controller another name' '{u: {period: 1, rules: {a: 1}}}' 'inputs: {u: {}}'
+refused 5:42 "value of rule 'c.a': there is no 'c.b'" "did you mean 'c.a'?" '{c: {period: 1, rules: {a: "c.b"}}}'
+refused 5:41 "value of rule 'c.a': 'c.a.next' follows itself" 'read the rule without `.next`' '{c: {period: 1, rules: {a: c.a.next}}}'
+refused 5:38 "rule 'c.x' has the name of a component of output 'c'" 'give the rule' '{c: {period: 1, rules: {x: 1}}}' 'outputs: {c: {type: position, body: car}}'
+refused 6:14 "value of signal 's': there is no 'c.q'" "did you mean 'c.a'?" '{c: {period: 1, rules: {a: 1}}}' 'signals: {s: c.q}'
+printf 'gicgen: 1\nmodel: m\nbase: car\nbodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}\ncontrollers: {c: {period: 1, rules: {a: 1}}}\n' >idle.veh
+"$gicgen" idle.veh -o idle.c 2>said && grep -q "warning: nothing in the model reads rule 'c.a'" said
+verdict $? "a rule that nothing reads: $(head -n 1 said)"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -138,6 +138,27 @@ every_model hmmwv_full hmmwv_full 0.5 0.01
 every_model hmmwv_tires tires_brake 0.8 0.02
 every_model hmmwv_tmeasy tires_brake 0.8 0.02
 every_model hmmwv_vehicle straight 1.5 0.03 accelerator=0.3 gear=3
+
+# sampled controllers: co-simulation alone, steps in parts
+sed 's/@period@/0.03/; s/@offset@/0.005/; s/@delay@/0.04/; s/@quantum@//; s/@mean@/0.1/; s/@mean_offset@/0/; s/@spring@/18/; s/@start@/0.5/' \
+    "$root/tests/controllers/loop.veh.in" >"$work/loop.veh"
+printf 'gicscene: 1\nstep: 0.007\noutput_step: 0.07\nduration: 1.4\nintegrator: ab3\n' >"$work/loop.scene"
+"$gicrun" -q --general "$work/loop.veh" "$work/loop.scene" -o "$work/steps.csv" 2>"$work/err"
+verdict $? "loop: gicrun"
+for version in 2 3; do
+    unit "$work/loop.veh" "$work/loop.scene"
+    verdict $? "loop: FMI $version.0"
+    check "loop: its description" described
+    grep -q '<CoSimulation' "$work/unit/modelDescription.xml" && ! grep -q '<ModelExchange' "$work/unit/modelDescription.xml"
+    verdict $? "loop, FMI $version.0: no model exchange"
+    drive steps 0.07 1.4 >"$work/unit.csv" 2>"$work/err" && as_run 0 "$work/steps.csv"
+    verdict $? "loop, FMI $version.0: co-simulation is gicrun's, bit for bit"
+    drive rollback 0.07 1.4 7 >"$work/out" 2>"$work/err"
+    verdict $? "loop, FMI $version.0: going back"
+    drive cvode 1e-9 0.07 1.4 >"$work/out" 2>"$work/err"
+    [ $? -ne 0 ] && grep -q 'only co-simulation' "$work/err"
+    verdict $? "loop, FMI $version.0: an instance for model exchange is refused"
+done
 # a road of the master's, wheel by wheel: gicrun has the whole slope
 slope="0.03 -0.02 0.5"
 on_slope() {
