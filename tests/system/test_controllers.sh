@@ -14,7 +14,7 @@ within() { awk "BEGIN { exit !($1 <= $2) }"; }
 
 # loop SETTING=VALUE...: loop.veh with these; the others as exact.py has them
 loop() {
-    period=0.1 offset=0 delay=0 quantum= mean=0.1 mean_offset=0 spring=0 start=0
+    period=0.1 offset=0 delay=0 quantum='' mean=0.1 mean_offset=0 spring=0 start=0
     for setting; do
         eval "${setting%%=*}=${setting#*=}"
     done
@@ -66,7 +66,7 @@ for tolerance in 1e-6 1e-9; do
         scene 0.1 0.1 2 "integrator: $method" "tolerance: $tolerance"
         most=${tolerance#*-}
         [ $method = rkck ] || most=$((most - 3))
-        run 1e-$most "variable steps, $method, $tolerance" '' -- period=0.14285714285714285 delay=0.05 mean=0.1
+        run 1e-"$most" "variable steps, $method, $tolerance" '' -- period=0.14285714285714285 delay=0.05 mean=0.1
     done
 done
 scene 0.01 0.1 2 'integrator: ab3' 'ratio: 2'
