@@ -10,17 +10,9 @@ gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
+# shellcheck source=tests/lib/against_gic.sh
+. "$(dirname "$0")/../lib/against_gic.sh"
 cd "$work" || exit 1
-
-# column NAME FILE: its numbers
-column() { awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if (index($i, name " ") == 1) k = i; next } { print $k }' "$2"; }
-# apart FILE FILE: the largest difference of two tables relative to 1 and the larger number
-apart() {
-    paste -d, "$1" "$2" | awk -F, 'NR > 1 { for (i = 1; i <= NF / 2; ++i) {
-            d = $i - $(i + NF / 2); s = $i < 0 ? -$i : $i; if (d < 0) d = -d; d /= 1 + s; if (!(d <= most)) most = d } }
-        END { print (NR > 1 ? most + 0 : 1) }'
-}
-within() { awk "BEGIN { exit !($1 <= $2) }"; }
 
 # ---- coasting: m v' = -c v^2, c = 1.2 * 2.5 * 0.4 / 2 = 0.6, so v = v0 / (1 + c v0 t / m), whichever way the car points
 cat >coast.veh <<'END'
@@ -148,21 +140,11 @@ integrator: rk4
 initial: {speed: 30, angular_velocity: [0.1, 0.2, 1], rates: {flap_l: 0.5}}
 inputs: {gust: {sine: {amplitude: 8, frequency: 1}}}
 END
-"$gicrun" -q --engine gic "$model" wings.scene -o gic.csv
-for way in '' --general '--engine tape' '--engine cc --lanes 4' '--solve augmented' '--recovery newton'; do
-    # shellcheck disable=SC2086  # options
-    "$gicrun" -q $way "$model" wings.scene -o way.csv && off=$(apart way.csv gic.csv)
-    check "against gic, $way: ${off:-no run}" within "${off:-1}" 1e-10
-done
+every_way 'both sides' 1e-10 "$model" wings.scene
 
 # straight on, where code for the scene leaves one side out
 sed 's/angular_velocity: .*}/position: [0, 0, 1]}/; s/gust: .*/gust: 0}/' wings.scene >straight.scene
-"$gicrun" -q --engine gic "$model" straight.scene -o gic.csv
-for way in '' --general '--engine tape'; do
-    # shellcheck disable=SC2086  # options
-    "$gicrun" -q $way "$model" straight.scene -o way.csv && off=$(apart way.csv gic.csv)
-    check "straight on against gic, $way: ${off:-no run}" within "${off:-1}" 1e-10
-done
+some_ways 'straight on' 1e-10 "$model" straight.scene '' --general '--engine tape'
 
 # the engines that integrate other coordinates have other errors of their steps: accelerations at states of a run
 awk 'BEGIN { print "r.x,r.y,r.z,e0,e1,e2,e3,flap_l,flap_r,v.x,v.y,v.z,omega.x,omega.y,omega.z,flap_l.rate,flap_r.rate"

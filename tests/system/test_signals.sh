@@ -10,17 +10,9 @@ gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
+# shellcheck source=tests/lib/against_gic.sh
+. "$(dirname "$0")/../lib/against_gic.sh"
 cd "$work" || exit 1
-
-# column NAME FILE: its numbers
-column() { awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if (index($i, name " ") == 1) k = i; next } { print $k }' "$2"; }
-# apart FILE FILE: the largest difference of two tables relative to 1 and the larger number
-apart() {
-    paste -d, "$1" "$2" | awk -F, 'NR > 1 { for (i = 1; i <= NF / 2; ++i) {
-            d = $i - $(i + NF / 2); s = $i < 0 ? -$i : $i; if (d < 0) d = -d; d /= 1 + s; if (!(d <= most)) most = d } }
-        END { print (NR > 1 ? most + 0 : 1) }'
-}
-within() { awk "BEGIN { exit !($1 <= $2) }"; }
 
 # ---- coasting: m v' = -b v, and m v' = -c v^2 with v = v0 / (1 + c v0 t / m); a wind moves the air
 cat >coast.veh <<'END'
@@ -75,12 +67,7 @@ integrator: rk4
 initial: {speed: 10, rates: {yaw: 1, swing_l: 0.5}}
 inputs: {wind: {sine: {amplitude: 3, frequency: 1}}}
 END
-"$gicrun" -q --engine gic "$model" reader.scene -o gic.csv
-for way in '' --general '--engine tape' '--engine cc --lanes 4' '--solve augmented' '--recovery newton'; do
-    # shellcheck disable=SC2086  # options
-    "$gicrun" -q $way "$model" reader.scene -o way.csv && off=$(apart way.csv gic.csv)
-    check "against gic, $way: ${off:-no run}" within "${off:-1}" 1e-11
-done
+every_way 'both sides' 1e-11 "$model" reader.scene
 mkdir again && "$gicgen" "$model" -o reader.c && "$gicgen" "$model" -o again/reader.c && cmp -s reader.c again/reader.c
 verdict $? "the same code twice"
 
@@ -180,13 +167,8 @@ outputs:
   load_l: {type: signal, signal: load_l}
 END
 sed 's/^duration: .*/duration: 4/' "$root/models/scenes/full_run.scene" >driven.scene
-"$gicrun" -q --engine gic driven.veh driven.scene -o gic.csv
 # a step of AB3 takes roundings of stiff tires along: 1e-8, as without signals
-for way in '' --general '--engine tape'; do
-    # shellcheck disable=SC2086  # options
-    "$gicrun" -q $way driven.veh driven.scene -o way.csv && off=$(apart way.csv gic.csv)
-    check "tires and powertrain against gic, $way: ${off:-no run}" within "${off:-1}" 1e-8
-done
+some_ways 'tires and powertrain' 1e-8 driven.veh driven.scene '' --general '--engine tape'
 
 # ---- scenes see signals as they see outputs
 printf 'until: air_speed < 20\n' >>coast.scene
