@@ -25,12 +25,12 @@ bool force_is_torque(const Force *force)
 
 bool force_is_wrench(const Force *force)
 {
-    return force->type == FORCE_LOAD || force->type == FORCE_AERO;
+    return force->type == FORCE_LOAD || force->type == FORCE_AERO || force->type == FORCE_BUSHING;
 }
 
 int force_laws(const Force *force)
 {
-    return force->type == FORCE_AERO ? FORCE_MOST_LAWS : force->type == FORCE_LOAD ? 6 : force_is_law(force);
+    return force->type == FORCE_AERO ? FORCE_MOST_LAWS : force_is_wrench(force) ? 6 : force_is_law(force);
 }
 
 int wheel_fast_states(const Wheel *wheel)

@@ -224,8 +224,26 @@ typedef enum ForceType {
     FORCE_AXIS_STOP,
     FORCE_LOAD, /* force and torque on a body */
     FORCE_AERO, /* of the air on a body */
+    FORCE_BUSHING,
     FORCE_TYPES
 } ForceType;
+
+/* What FORCE_BUSHING adds. Axes of its frame: along x, y, z, then about them. */
+enum { BUSHING_AXES = 6, BUSHING_NUMBERS = 21 };
+typedef struct Bushing {
+    double frame[2][9]; /* from its frame to that of either body, at the drawing */
+    /* [BUSHING_NUMBERS] lower triangles of symmetric matrices, row by row; of numbers and parameters, NULL: 0 */
+    const struct Law *stiffness[BUSHING_NUMBERS], *damping[BUSHING_NUMBERS];
+} Bushing;
+
+/* Place of an element of such a triangle. */
+static inline int bushing_place(int row, int column)
+{
+    return row < column ? column * (column + 1) / 2 + row : row * (row + 1) / 2 + column;
+}
+
+/* Cosine of the rotation between both ends of a bushing, of 3 rad, up to which it is defined. */
+#define BUSHING_COSINE (-0.99)
 
 /* Formulas of FORCE_AERO behind the six that a load has, too. */
 enum { AERO_DRAG = 6, AERO_WIND, AERO_DENSITY = AERO_WIND + 3, FORCE_MOST_LAWS };
@@ -242,9 +260,11 @@ typedef struct Force {
     const struct Law *stiffness, *damping, *free; /* of numbers and parameters */
     const struct Law *low, *high, *fade;          /* of a stop: the same; NULL for an end that it does not have */
     const struct Law *area, *length;              /* of FORCE_AERO: the same */
+    const Bushing *bushing;                       /* of FORCE_BUSHING */
     int table;                                    /* in place of stiffness; -1: none */
     const struct Law *law[FORCE_MOST_LAWS];       /* [0]: generalised force, tension or torque; FORCE_LOAD: force,
-                                                   * torque; FORCE_AERO: their coefficients, and AERO_...; NULL: 0 */
+                                                   * torque; FORCE_AERO: their coefficients, and AERO_...;
+                                                   * FORCE_BUSHING: what it exerts besides; NULL: 0 */
 } Force;
 
 bool force_is_spring(const Force *force);
@@ -252,13 +272,14 @@ bool force_is_stop(const Force *force);
 bool force_is_law(const Force *force);
 /* True for elements about an axis. */
 bool force_is_torque(const Force *force);
-/* True for elements that act on one body with force and torque, which have no single number. */
+/* True for elements that act with force and torque, which have no single number. */
 bool force_is_wrench(const Force *force);
 /* How many formulas a force element has, those that are NULL counted; numbers such as stiffness are none of them. */
 int force_laws(const Force *force);
 
-/* Of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed; of coefficients of FORCE_AERO: */
-enum { AERO_INCIDENCE, AERO_SIDESLIP, AERO_SPEED, FORCE_LOCALS };
+/* Of FORCE_POINTS_LAW: length, speed; of FORCE_AXIS_LAW: angle, speed; of FORCE_BUSHING: displacements and their rates;
+ * of coefficients of FORCE_AERO: */
+enum { AERO_INCIDENCE, AERO_SIDESLIP, AERO_SPEED, AERO_LOCALS, FORCE_LOCALS = 2 * BUSHING_AXES };
 
 typedef enum TireType { TIRE_PAC2002, TIRE_TMEASY, TIRE_TYPES } TireType;
 typedef enum TireSide { SIDE_LEFT, SIDE_RIGHT, SIDE_SYMMETRIC } TireSide;

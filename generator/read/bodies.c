@@ -215,9 +215,9 @@ static void euler_from_axes(const double x[3], const double y[3], const double z
         p[i] *= sign;
 }
 
-static void orientation_read(Reader *reader, const Item *item, const Entry *body, double euler[4])
+void orientation_read(Reader *reader, const Item *item, const Entry *of, double euler[4])
 {
-    Entry entry = {"orientation", pool_print(reader->pool, "orientation of %s", body->what), item->at, item};
+    Entry entry = {"orientation", pool_print(reader->pool, "orientation of %s", of->what), item->at, item};
     bool is_map = item->kind == ITEM_MAP;
     int form = is_map && doc_find(item, "euler")                               ? ORIENTATION_EULER
                : is_map && (doc_find(item, "axis") || doc_find(item, "angle")) ? ORIENTATION_ANGLE

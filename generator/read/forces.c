@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Inputs and force elements (FORMAT.md sections 6 and 7). */
 #include "base/table.h"
+#include "base/vec3.h"
 #include "base/yaml.h"
 #include "expression/expression.h"
 #include "model/model.h"
@@ -49,6 +50,7 @@ enum {
     ELEMENT_WIND,
     ELEMENT_DRAG,
     ELEMENT_MOMENT,
+    ELEMENT_ORIENTATION,
     ELEMENT_KEYS
 };
 
@@ -58,8 +60,10 @@ enum {
 #define FORCE_SPRING (FORM(FORCE_COORDINATE) | FORM(FORCE_POINTS) | FORM(FORCE_AXIS))
 #define FORCE_LAWS (FORM(FORCE_COORDINATE_LAW) | FORM(FORCE_POINTS_LAW) | FORM(FORCE_AXIS_LAW))
 #define FORCE_STOP (FORM(FORCE_COORDINATE_STOP) | FORM(FORCE_POINTS_STOP) | FORM(FORCE_AXIS_STOP))
-#define FORCE_PAIR (FORCE_BETWEEN | FORCE_ABOUT)
-#define FORCE_WRENCH (FORM(FORCE_LOAD) | FORM(FORCE_AERO))
+#define FORCE_PAIR (FORCE_BETWEEN | FORCE_ABOUT | FORM(FORCE_BUSHING))
+#define FORCE_ACTED (FORM(FORCE_LOAD) | FORM(FORCE_AERO))
+#define FORCE_WRENCH (FORCE_ACTED | FORM(FORCE_BUSHING))
+#define FORCE_ELASTIC (FORCE_SPRING | FORCE_STOP | FORM(FORCE_BUSHING))
 
 static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
@@ -67,28 +71,29 @@ static const Key force_key[ELEMENT_KEYS] = {
     [ELEMENT_BODIES] = {"bodies", KEY_FORCE_BODIES, FORCE_PAIR, FORCE_PAIR, BOUND_NONE, 0},
     [ELEMENT_POINTS] = {"points", KEY_POINTS, FORCE_BETWEEN, FORCE_BETWEEN, BOUND_NONE, 0},
     [ELEMENT_AXIS] = {"axis", KEY_TURN, FORCE_ABOUT, FORCE_ABOUT, BOUND_NONE, 0},
-    [ELEMENT_STIFFNESS] = {"stiffness", KEY_FORMULA, FORCE_SPRING | FORCE_STOP, 0, BOUND_NOT_NEGATIVE, 0},
-    [ELEMENT_DAMPING] = {"damping", KEY_FORMULA, FORCE_SPRING | FORCE_STOP, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_STIFFNESS] = {"stiffness", KEY_STIFFNESS, FORCE_ELASTIC, 0, BOUND_NOT_NEGATIVE, 0},
+    [ELEMENT_DAMPING] = {"damping", KEY_STIFFNESS, FORCE_ELASTIC, 0, BOUND_NOT_NEGATIVE, 0},
     [ELEMENT_FREE] = {"free", KEY_FORMULA, FORCE_SPRING, 0, BOUND_NONE, 0},
     [ELEMENT_LOW] = {"low", KEY_FORMULA, FORCE_STOP, 0, BOUND_NONE, 0},
     [ELEMENT_HIGH] = {"high", KEY_FORMULA, FORCE_STOP, 0, BOUND_NONE, 0},
     [ELEMENT_FADE] = {"fade", KEY_FORMULA, FORCE_STOP, 0, BOUND_POSITIVE, 0.01},
     [ELEMENT_TABLE] = {"table", KEY_TABLE, FORCE_SPRING | FORCE_STOP, 0, BOUND_NONE, 0},
     [ELEMENT_VALUE] = {"value", KEY_FORMULA, FORCE_LAWS, FORCE_LAWS, BOUND_NONE, 0},
-    [ELEMENT_BODY] = {"body", KEY_BODY, FORCE_WRENCH, FORCE_WRENCH, BOUND_NONE, 0},
-    [ELEMENT_POINT] = {"point", KEY_POINT, FORCE_WRENCH, 0, BOUND_NONE, 0},
+    [ELEMENT_BODY] = {"body", KEY_BODY, FORCE_ACTED, FORCE_ACTED, BOUND_NONE, 0},
+    [ELEMENT_POINT] = {"point", KEY_POINT, FORCE_WRENCH, FORM(FORCE_BUSHING), BOUND_NONE, 0},
     [ELEMENT_IN] = {"in", KEY_FRAME, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
     [ELEMENT_FORCE] = {"force", KEY_FORCE_VECTOR, FORCE_WRENCH, 0, BOUND_NONE, 0},
-    [ELEMENT_TORQUE] = {"torque", KEY_TORQUE_VECTOR, FORM(FORCE_LOAD), 0, BOUND_NONE, 0},
+    [ELEMENT_TORQUE] = {"torque", KEY_TORQUE_VECTOR, FORM(FORCE_LOAD) | FORM(FORCE_BUSHING), 0, BOUND_NONE, 0},
     [ELEMENT_AREA] = {"area", KEY_FORMULA, FORM(FORCE_AERO), FORM(FORCE_AERO), BOUND_POSITIVE, 0},
     [ELEMENT_LENGTH] = {"length", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_POSITIVE, 0},
     [ELEMENT_DENSITY] = {"density", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_NONE, 1.225},
     [ELEMENT_WIND] = {"wind", KEY_WORLD_VECTOR, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
     [ELEMENT_DRAG] = {"drag", KEY_FORMULA, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
     [ELEMENT_MOMENT] = {"moment", KEY_TORQUE_VECTOR, FORM(FORCE_AERO), 0, BOUND_NONE, 0},
+    [ELEMENT_ORIENTATION] = {"orientation", KEY_ORIENTATION, FORM(FORCE_BUSHING), 0, BOUND_NONE, 0},
 };
 
-enum { TYPE_SPRING, TYPE_FORCE, TYPE_STOP, TYPE_LOAD, TYPE_AERO, TYPES };
+enum { TYPE_SPRING, TYPE_FORCE, TYPE_STOP, TYPE_LOAD, TYPE_AERO, TYPE_BUSHING, TYPES };
 
 static const char *const force_type_name[TYPES] = {
     [TYPE_SPRING] = "spring_damper",
@@ -96,6 +101,7 @@ static const char *const force_type_name[TYPES] = {
     [TYPE_STOP] = "stop",
     [TYPE_LOAD] = "load",
     [TYPE_AERO] = "aero",
+    [TYPE_BUSHING] = "bushing",
 };
 
 static const char *const force_form_name[FORCE_TYPES] = {
@@ -110,26 +116,34 @@ static const char *const force_form_name[FORCE_TYPES] = {
     [FORCE_AXIS_STOP] = "about an axis",
     [FORCE_LOAD] = "load",
     [FORCE_AERO] = "aero",
+    [FORCE_BUSHING] = "bushing",
 };
 
 static const char *const between_local[] = {"length", "speed"};
 static const char *const about_local[] = {"angle", "speed"};
-static const char *const aero_local[FORCE_LOCALS] = {
+static const char *const aero_local[AERO_LOCALS] = {
     [AERO_INCIDENCE] = "incidence", [AERO_SIDESLIP] = "sideslip", [AERO_SPEED] = "airspeed"};
+static const char *const bushing_local[FORCE_LOCALS] = {
+    "dx", "dy", "dz", "rx", "ry", "rz", "dx_rate", "dy_rate", "dz_rate", "rx_rate", "ry_rate", "rz_rate"};
+/* Bits of those that change their sign in the mirror: dy, rx, rz and their rates. */
+static const unsigned bushing_odd = 0x2A | 0x2A << BUSHING_AXES;
 
 static const unsigned force_type_forms[TYPES] = {
     [TYPE_SPRING] = FORCE_SPRING,   [TYPE_FORCE] = FORCE_LAWS,      [TYPE_STOP] = FORCE_STOP,
-    [TYPE_LOAD] = FORM(FORCE_LOAD), [TYPE_AERO] = FORM(FORCE_AERO),
+    [TYPE_LOAD] = FORM(FORCE_LOAD), [TYPE_AERO] = FORM(FORCE_AERO), [TYPE_BUSHING] = FORM(FORCE_BUSHING),
 };
 
 static const char *const force_about[ELEMENT_KEYS] = {
-    [ELEMENT_TYPE] = "spring and damper, any force law, stop, force and torque on a body, or air forces on a body",
+    [ELEMENT_TYPE] =
+        "spring and damper, any force law, stop, force and torque on a body, air forces on a body, or six axes",
     [ELEMENT_COORDINATE] = "the dual coordinate that it acts along",
     [ELEMENT_BODIES] = "the bodies a and b that it acts between; `ground` is allowed",
     [ELEMENT_POINTS] = "the point of a and the point of b at design, m, model frame",
     [ELEMENT_AXIS] = "direction fixed in a, about which it turns b",
-    [ELEMENT_STIFFNESS] = "N/m, or N m/rad about an axis; of numbers and parameters; default 0",
-    [ELEMENT_DAMPING] = "N s/m, or N m s/rad about an axis; of numbers and parameters; default 0",
+    [ELEMENT_STIFFNESS] =
+        "N/m, or N m/rad about an axis; of numbers and parameters; default 0; of `bushing` a list or triangle",
+    [ELEMENT_DAMPING] =
+        "N s/m, or N m s/rad about an axis; of numbers and parameters; default 0; of `bushing` a list or triangle",
     [ELEMENT_LOW] = "value, length or angle below which there is contact, m or rad",
     [ELEMENT_HIGH] = "value, length or angle above which there is contact, m or rad",
     [ELEMENT_FADE] = "depth of contact over which damping builds up, m or rad; default 0.01",
@@ -138,16 +152,20 @@ static const char *const force_about[ELEMENT_KEYS] = {
     [ELEMENT_VALUE] =
         "force, N, or torque, N m: along the coordinate, or tension between the points, torque about the axis",
     [ELEMENT_BODY] = "the body that load or air acts on",
-    [ELEMENT_POINT] = "where the force acts, at design, m, model frame; default: origin of the body frame",
+    [ELEMENT_POINT] =
+        "where the force acts, at design, m, model frame; default, not of `bushing`: origin of the body frame",
     [ELEMENT_IN] = "the body in whose frame components are given; default `world`",
-    [ELEMENT_FORCE] = "N, a formula for each component; of `aero`: coefficients, along the axes of the body",
-    [ELEMENT_TORQUE] = "N m, a formula for each component",
+    [ELEMENT_FORCE] = "N, a formula for each component; of `aero`: coefficients, along the axes of the body; of "
+                      "`bushing`: on b, in its "
+                      "axes",
+    [ELEMENT_TORQUE] = "N m, a formula for each component; of `bushing`: on b, in its axes",
     [ELEMENT_AREA] = "area that coefficients refer to, m^2; of numbers and parameters",
     [ELEMENT_LENGTH] = "length that coefficients of moments refer to, m; of numbers and parameters",
     [ELEMENT_DENSITY] = "of the air, kg/m^3, a formula; default 1.225",
     [ELEMENT_WIND] = "velocity of the air in the world, m/s, a formula for each component; default still",
     [ELEMENT_DRAG] = "coefficient of the force against the motion through the air, a formula",
     [ELEMENT_MOMENT] = "coefficients of the moment about the axes of the body, a formula for each component",
+    [ELEMENT_ORIENTATION] = "of the axes of a bushing at design; default: the model frame's",
 };
 
 const Section force_section = {force_key,       ELEMENT_KEYS,     force_type_name, TYPES,
@@ -210,13 +228,8 @@ static const Law *literal_law(Reader *reader, double value, Ex tuned)
 
 /* A number of a spring or a stop: a formula of numbers and parameters only, so that the force stays the law of the
  * element. */
-static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback,
-                             Ex tuned_fallback)
+static const Law *constant_law(Reader *reader, const Item *item, const char *what, const Key *key)
 {
-    if (!value[key].item)
-        return literal_law(reader, fallback, tuned_fallback);
-    const Item *item = value[key].item;
-    const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
     LawNames names = {
         .model = reader->model, .constant = true, .remedy = "use the element type `force` for any other law"};
     bool formula = item->quoted || mentions_parameter(reader, item);
@@ -226,8 +239,18 @@ static const Law *spring_law(Reader *reader, const Entry *entry, const Value *va
     if (!isfinite(number))
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
                   what);
-    bound_check(&force_key[key], item, what, number);
+    bound_check(key, item, what, number);
     return law;
+}
+
+/* The same of a key, which may be absent. */
+static const Law *spring_law(Reader *reader, const Entry *entry, const Value *value, int key, double fallback,
+                             Ex tuned_fallback)
+{
+    if (!value[key].item)
+        return literal_law(reader, fallback, tuned_fallback);
+    const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
+    return constant_law(reader, value[key].item, what, &force_key[key]);
 }
 
 /* Stiffness or table, and damping. */
@@ -309,7 +332,7 @@ static void read_aero(Reader *reader, const Entry *entry, const Value *value, Fo
     const LawNames names = {.model = reader->model, .reads = &reader->reads};
     const LawNames own = {.model = reader->model,
                           .local = aero_local,
-                          .locals = FORCE_LOCALS,
+                          .locals = AERO_LOCALS,
                           .odd = 1u << AERO_SIDESLIP,
                           .reads = &reader->reads};
     if (!drag && !moment && !value[ELEMENT_FORCE].item)
@@ -336,13 +359,100 @@ static void read_aero(Reader *reader, const Entry *entry, const Value *value, Fo
                 : literal_law(reader, force_key[ELEMENT_DENSITY].fallback, 0);
 }
 
+/* Refuse a matrix by which the bushing would give energy: the pivots of its elimination must not be negative. */
+static void semidefinite_check(Reader *reader, const Item *item, const char *what,
+                               const Law *const law[BUSHING_NUMBERS])
+{
+    static const double least = 1e-9; /* of an element on the diagonal: numbers of a file have some digits */
+    double a[BUSHING_NUMBERS], diagonal[BUSHING_AXES];
+    for (int i = 0; i < BUSHING_NUMBERS; ++i)
+        a[i] = law[i] ? law_number(law[i], reader->model) : 0;
+    for (int i = 0; i < BUSHING_AXES; ++i)
+        diagonal[i] = a[bushing_place(i, i)];
+    bool good = true;
+    for (int k = 0; k < BUSHING_AXES; ++k) {
+        const double pivot = a[bushing_place(k, k)];
+        const bool gone = pivot <= least * diagonal[k];
+        good = good && pivot >= -least * diagonal[k];
+        for (int i = k + 1; i < BUSHING_AXES && gone; ++i)
+            good = good && fabs(a[bushing_place(i, k)]) <= sqrt(least * diagonal[i] * diagonal[k]);
+        for (int i = k + 1; i < BUSHING_AXES && !gone; ++i)
+            for (int j = k + 1; j <= i; ++j)
+                a[bushing_place(i, j)] -= a[bushing_place(i, k)] * a[bushing_place(j, k)] / pivot;
+    }
+    if (!good)
+        diag_fail(item->at, "check the signs and the order of the axes: x, y, z, then about x, y, z",
+                  "%s: the matrix is not positive semidefinite: some motions would be pushed on", what);
+}
+
+/* Six numbers, one an axis, or the lower triangle of a symmetric matrix. */
+static void read_matrix(Reader *reader, const Entry *entry, const Value *value, int key,
+                        const Law *law[BUSHING_NUMBERS])
+{
+    const Item *item = value[key].item;
+    if (!item)
+        return;
+    const char *what = pool_print(reader->pool, "%s of %s", force_key[key].name, entry->what);
+    bool fits = item->kind == ITEM_LIST && item->count == BUSHING_AXES;
+    const bool triangle = fits && item->value[0]->kind == ITEM_LIST;
+    for (int i = 0; i < BUSHING_AXES && fits; ++i)
+        fits = triangle ? item->value[i]->kind == ITEM_LIST && item->value[i]->count == i + 1
+                        : item->value[i]->kind == ITEM_SCALAR;
+    if (!fits)
+        diag_fail(item->at, "write [x, y, z, about x, about y, about z], or the lower triangle, rows of 1 to 6 numbers",
+                  "%s must be a list of 6 numbers, or of 6 rows of 1 to 6 numbers", what);
+    const Key free = {.name = force_key[key].name, .bound = BOUND_NONE};
+    for (int i = 0; i < BUSHING_AXES; ++i)
+        for (int j = triangle ? 0 : i; j <= i; ++j)
+            law[bushing_place(i, j)] = constant_law(reader, triangle ? item->value[i]->value[j] : item->value[i], what,
+                                                    i == j ? &force_key[key] : &free);
+    semidefinite_check(reader, item, what, law);
+}
+
+static void read_bushing(Reader *reader, const Entry *entry, const Value *value, Force *force)
+{
+    Bushing *bushing = pool_alloc(reader->pool, sizeof *bushing);
+    double euler[4] = {1, 0, 0, 0}, frame[9];
+    const LawNames names = {.model = reader->model,
+                            .local = bushing_local,
+                            .locals = FORCE_LOCALS,
+                            .odd = bushing_odd,
+                            .reads = &reader->reads};
+    if (!value[ELEMENT_STIFFNESS].item && !value[ELEMENT_DAMPING].item && !value[ELEMENT_FORCE].item &&
+        !value[ELEMENT_TORQUE].item)
+        diag_fail(entry->at, "add `stiffness: [x, y, z, about x, about y, about z]`, or a force law by `force`",
+                  "%s does nothing: it has no stiffness, damping, force or torque", entry->what);
+    *bushing = (Bushing){.stiffness = {0}};
+    memcpy(force->body, value[ELEMENT_BODIES].index, sizeof force->body);
+    for (int i = 0; i < 2; ++i)
+        body_point(reader, force->body[i], value[ELEMENT_POINT].number, value[ELEMENT_POINT].tuned,
+                   value[ELEMENT_POINT].item->at, force->point[i]);
+    if (value[ELEMENT_ORIENTATION].item)
+        orientation_read(reader, value[ELEMENT_ORIENTATION].item, entry, euler);
+    mat_from_euler(euler, frame);
+    for (int i = 0; i < 2; ++i) {
+        double body[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        if (force->body[i] != BODY_GROUND)
+            mat_from_euler(reader->model->body[force->body[i]].euler, body);
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                bushing->frame[i][3 * row + column] =
+                    body[row] * frame[column] + body[3 + row] * frame[3 + column] + body[6 + row] * frame[6 + column];
+    }
+    read_matrix(reader, entry, value, ELEMENT_STIFFNESS, bushing->stiffness);
+    read_matrix(reader, entry, value, ELEMENT_DAMPING, bushing->damping);
+    read_components(reader, entry, value, ELEMENT_FORCE, &names, force->law);
+    read_components(reader, entry, value, ELEMENT_TORQUE, &names, force->law + 3);
+    force->bushing = bushing;
+}
+
 static void force_read(Reader *reader, const Entry *entry, Force *force)
 {
     Value value[ELEMENT_KEYS];
     int type = section_type(reader, &force_section, entry);
     bool along = doc_find(entry->item, "coordinate"), about = doc_find(entry->item, "axis");
     bool between = doc_find(entry->item, "bodies") || doc_find(entry->item, "points");
-    const bool wrench = type == TYPE_LOAD || type == TYPE_AERO;
+    const bool wrench = type == TYPE_LOAD || type == TYPE_AERO || type == TYPE_BUSHING;
     if (!along && !about && !between && !wrench)
         diag_fail(entry->at,
                   "add `coordinate: name`, or `bodies: [a, b]` and `points: [p_a, p_b]` or `axis: [x, y, z]`",
@@ -364,6 +474,8 @@ static void force_read(Reader *reader, const Entry *entry, Force *force)
         read_load(reader, entry, value, force);
     } else if (form == FORCE_AERO) {
         read_aero(reader, entry, value, force);
+    } else if (form == FORCE_BUSHING) {
+        read_bushing(reader, entry, value, force);
     } else if (along) {
         force->coordinate = value[ELEMENT_COORDINATE].index[0];
         fallback = reader->model->coordinate[force->coordinate].design;

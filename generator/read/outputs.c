@@ -175,7 +175,8 @@ static void output_read(Reader *reader, const Entry *entry, Output *output)
                   "`type: signal`",
                   "%s: load '%s' has components of force and torque, no single force", entry->what,
                   reader->model->force[output->index].name);
-    if (type == OUTPUT_FORCE && reader->model->force[output->index].type == FORCE_AERO)
+    const ForceType acting = type == OUTPUT_FORCE ? reader->model->force[output->index].type : FORCE_TYPES;
+    if (acting == FORCE_AERO || acting == FORCE_BUSHING)
         diag_fail(value[WATCH_ELEMENT].item->at,
                   "write its law as formulas under `signals`, which outputs of `type: signal` show",
                   "%s: force '%s' has components of force and moment, no single force", entry->what,

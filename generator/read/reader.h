@@ -17,6 +17,7 @@ typedef enum KeyKind {
     KEY_TYPE,          /* one of the section's types; read by section_type */
     KEY_ITEM,          /* read by the section itself: item */
     KEY_FORMULA,       /* read by the section itself: a number or a formula */
+    KEY_STIFFNESS,     /* read by the section itself: a formula, or such of six axes: a list or a triangle */
     KEY_FORCE_VECTOR,  /* read by the section itself: three formulas, components of a force */
     KEY_WORLD_VECTOR,  /* read by the section itself: three formulas, of the world, which the mirror leaves as it is */
     KEY_TORQUE_VECTOR, /* read by the section itself: three formulas, components of a torque */
@@ -204,6 +205,8 @@ void generated_names_check(Reader *reader, const char *thing, const char *const 
 /* ---- bodies.c ---- */
 
 void bodies_read(Reader *reader, const Item *base, const Item *bodies);
+/* Euler parameters of an `orientation` of an entry. */
+void orientation_read(Reader *reader, const Item *item, const Entry *of, double euler[4]);
 /* A point or a direction of the model frame, and its formula, in the frame of a body (BODY_GROUND: unchanged); out:
  * where the Model keeps it. */
 void body_point(const Reader *reader, int body, const double x[3], const Ex tuned[3], Place at, double out[3]);

@@ -9,7 +9,7 @@
 #include <ctype.h>
 #include <string.h>
 
-enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 4 /* bits of components of a list of numbers */ };
+enum { X = 1 << 0, Y = 1 << 1, Z = 1 << 2, LONGEST = 6 /* bits of components of a list of numbers */ };
 
 /* Formulas contain names of coordinates, inputs, parameters and tables. */
 typedef enum Words { WORDS_NONE, WORDS_FORMULA, WORDS_NAME, WORDS_SIDE, WORDS_PATH } Words;
@@ -18,6 +18,7 @@ typedef struct Rule {
     unsigned odd;           /* bit i: component i changes its sign in the mirror y -> -y */
     bool place;             /* components are those of a point, which can be moved */
     bool pair;              /* a list of two such values */
+    bool triangle;          /* a list that has lists is a triangle of a matrix of such components */
     bool series;            /* a list of any length, of components like the first */
     Words words;            /* the meaning of a scalar that is not a number */
     const char *group;      /* WORDS_NAME: a name of this group */
@@ -34,6 +35,8 @@ static const Rule rule[KEY_KINDS] = {
     [KEY_LIST] = {.series = true, .words = WORDS_FORMULA},
     [KEY_SERIES] = {.series = true, .words = WORDS_FORMULA},
     [KEY_FORMULA] = {.words = WORDS_FORMULA},
+    /* along x, y, z and about them */
+    [KEY_STIFFNESS] = {.odd = Y | X << 3 | Z << 3, .triangle = true, .words = WORDS_FORMULA},
     [KEY_FORCE_VECTOR] = {.odd = Y, .words = WORDS_FORMULA},
     [KEY_TORQUE_VECTOR] = {.odd = X | Z, .words = WORDS_FORMULA},
     [KEY_WORLD_VECTOR] = {.words = WORDS_FORMULA},
@@ -232,9 +235,35 @@ static Item *number_rewrite(const Rewrite *rewrite, const Rule *how, int compone
 
 static Item *entries_rewrite(const Rewrite *rewrite, const Rule *how, Item *map);
 
+/* A number, the diagonal of a matrix or its lower triangle: an element changes its sign where one of its row and column
+ * does. */
+static Item *triangle_rewrite(const Rewrite *rewrite, const Rule *how, Item *item)
+{
+    const Rule even = {.words = how->words};
+    if (item->kind != ITEM_LIST || item->count > LONGEST)
+        return number_rewrite(rewrite, &even, 0, item);
+    Item *other = copy(rewrite, item);
+    other->value = copies(rewrite, item->value, item->count);
+    for (int i = 0; i < item->count; ++i) {
+        Item *row = item->value[i];
+        if (row->kind != ITEM_LIST || row->count > LONGEST) {
+            other->value[i] = number_rewrite(rewrite, &even, i, row);
+            continue;
+        }
+        const Rule of_row = {.odd = how->odd >> i & 1 ? ~how->odd : how->odd, .words = how->words};
+        other->value[i] = copy(rewrite, row);
+        other->value[i]->value = copies(rewrite, row->value, row->count);
+        for (int j = 0; j < row->count; ++j)
+            other->value[i]->value[j] = number_rewrite(rewrite, &of_row, j, row->value[j]);
+    }
+    return other;
+}
+
 /* pair: item is the list of two values, not one of them. */
 static Item *value_rewrite(const Rewrite *rewrite, const Rule *how, bool pair, Item *item)
 {
+    if (how->triangle)
+        return triangle_rewrite(rewrite, how, item);
     if (item->kind == ITEM_MAP && how->entries)
         return entries_rewrite(rewrite, how, item);
     if (item->kind == ITEM_MAP)

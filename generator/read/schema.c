@@ -17,7 +17,13 @@ static const char definitions[] =
     "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 3, \"maxItems\": "
     "3},\n"
     "    \"point\": {\"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, {\"$ref\": \"#/$defs/name\"}]},\n"
-    "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2}\n"
+    "    \"numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, \"minItems\": 2},\n"
+    "    \"stiffness\": {\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"type\": \"array\", \"minItems\": 6, "
+    "\"maxItems\": 6, "
+    "\"items\":\n"
+    "      {\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"type\": \"array\", \"minItems\": 1, \"maxItems\": 6, "
+    "\"items\": "
+    "{\"$ref\": \"#/$defs/number\"}}]}}]}\n"
     "  },\n";
 
 static void reference(Text *out, const char *name)
@@ -61,6 +67,7 @@ static void value(Text *out, const Key *key, int indent)
                        key->bound == BOUND_POSITIVE ? "exclusiveMinimum" : "minimum");
         break;
     case KEY_FORMULA: reference(out, "number"); break;
+    case KEY_STIFFNESS: reference(out, "stiffness"); break;
     case KEY_FLAG: text_print(out, "{\"type\": \"boolean\"}"); break;
     case KEY_PAIR:
     case KEY_RANGE: pair(out, "number"); break;

@@ -21,6 +21,7 @@ const char *const kind_example[KEY_KINDS] = {
     [KEY_TYPE] = "name",
     [KEY_ITEM] = "{...}",
     [KEY_FORMULA] = "formula",
+    [KEY_STIFFNESS] = "number",
     [KEY_FORCE_VECTOR] = "[x, y, z]",
     [KEY_TORQUE_VECTOR] = "[x, y, z]",
     [KEY_WORLD_VECTOR] = "[x, y, z]",
@@ -427,6 +428,7 @@ static void read_value(Reader *reader, const Key *key, const Item *item, const c
     case KEY_ITEM:
     case KEY_LIST:
     case KEY_FORMULA:
+    case KEY_STIFFNESS:
     case KEY_FORCE_VECTOR:
     case KEY_TORQUE_VECTOR:
     case KEY_WORLD_VECTOR:

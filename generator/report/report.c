@@ -420,6 +420,9 @@ static bool force_uses(const Model *model, const Force *force, int parameter)
         uses = uses || law_uses(model, number[i], parameter);
     for (size_t i = 0; i < sizeof force->law / sizeof *force->law; ++i)
         uses = uses || law_uses(model, force->law[i], parameter);
+    for (int i = 0; force->bushing && i < BUSHING_NUMBERS; ++i)
+        uses = uses || law_uses(model, force->bushing->stiffness[i], parameter) ||
+               law_uses(model, force->bushing->damping[i], parameter);
     return uses;
 }
 

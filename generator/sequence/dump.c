@@ -223,6 +223,25 @@ static void law_pair(Text *out, const char *name, const Law *law, const Model *m
     number_pair(out, name, &number, 0, law);
 }
 
+/* A symmetric matrix, row by row. */
+static void matrix_pair(Text *out, const char *name, const Law *const law[BUSHING_NUMBERS], const Model *model)
+{
+    double number[BUSHING_AXES * BUSHING_AXES];
+    for (int i = 0; i < BUSHING_AXES * BUSHING_AXES; ++i) {
+        const Law *of = law[bushing_place(i / BUSHING_AXES, i % BUSHING_AXES)];
+        number[i] = of ? law_number(of, model) : 0;
+    }
+    number_pair(out, name, number, BUSHING_AXES * BUSHING_AXES, true);
+}
+
+static void bushing_pairs(Text *out, const Bushing *bushing, const Model *model)
+{
+    number_pair(out, "frame_a", bushing->frame[0], 9, true);
+    number_pair(out, "frame_b", bushing->frame[1], 9, true);
+    matrix_pair(out, "stiffness_matrix", bushing->stiffness, model);
+    matrix_pair(out, "damping_matrix", bushing->damping, model);
+}
+
 static void forces(Text *out, const Model *model)
 {
     static const char *const type[FORCE_TYPES] = {[FORCE_COORDINATE] = "coordinate",
@@ -235,7 +254,8 @@ static void forces(Text *out, const Model *model)
                                                   [FORCE_POINTS_STOP] = "points_stop",
                                                   [FORCE_AXIS_STOP] = "axis_stop",
                                                   [FORCE_LOAD] = "load",
-                                                  [FORCE_AERO] = "aero"};
+                                                  [FORCE_AERO] = "aero",
+                                                  [FORCE_BUSHING] = "bushing"};
     for (int i = 0; i < model->forces; ++i) {
         const Force *force = model->force + i;
         bool along = force->coordinate >= 0, about = force_is_torque(force), wrench = force_is_wrench(force);
@@ -245,7 +265,7 @@ static void forces(Text *out, const Model *model)
         for (int k = 0; k < 2; ++k)
             index_pair(out, k ? "b" : "a", force->body[k], !along);
         number_pair(out, "point_a", force->point[0], 3, !along && !about);
-        number_pair(out, "point_b", force->point[1], 3, !along && !about && !wrench);
+        number_pair(out, "point_b", force->point[1], 3, !along && !about && (!wrench || force->bushing));
         number_pair(out, "axis_a", force->axis, 3, about);
         number_pair(out, "reference_a", force->reference[0], 3, about);
         number_pair(out, "reference_b", force->reference[1], 3, about);
@@ -259,6 +279,8 @@ static void forces(Text *out, const Model *model)
             law_pair(out, "area", force->area, model);
             law_pair(out, "reference_length", force->length, model);
         }
+        if (force->bushing)
+            bushing_pairs(out, force->bushing, model);
         index_pair(out, "table", force->table, force->table >= 0);
         key(out, "law");
         add(out, "[");

@@ -312,6 +312,11 @@ static void find_push(Comparison *c)
         /* a spring at its free length has the rounding of that length */
         if (force_is_spring(force) && force->table < 0)
             c->push = fmax(c->push, fabs(world_law(world, force->stiffness, NULL)) * world->size);
+        /* nor do displacements and rotations vanish by more than their rounding */
+        for (int k = 0; force->bushing && k < BUSHING_NUMBERS; ++k)
+            if (force->bushing->stiffness[k])
+                c->push =
+                    fmax(c->push, fabs(world_law(world, force->bushing->stiffness[k], NULL)) * fmax(world->size, 1));
     }
     for (int i = 0; i < c->v.model->coordinates; ++i)
         c->watts += fabs(world->along[i] * world->xd[i]);

@@ -245,8 +245,7 @@ static void add_between(Whole *whole, Loads *loads, int index)
     push(whole, loads, force->body[1], &end[1], F);
 }
 
-/* A direction fixed in a body, or in the ground, in the base frame. */
-static void direction(Whole *whole, int body, const Ex local[3], Ex out[3])
+void force_direction(Whole *whole, int body, const Ex local[3], Ex out[3])
 {
     if (body == BODY_GROUND)
         ex_apply_transposed(whole->dag, whole->R, local, out);
@@ -269,10 +268,10 @@ static void add_about(Whole *whole, Loads *loads, int index)
         local[3][i] = whole_number(whole, &force->reference[1][i]);
     }
     ex_cross(dag, local[0], local[1], local[2]);
-    direction(whole, force->body[0], local[0], u);
-    direction(whole, force->body[0], local[1], e1);
-    direction(whole, force->body[0], local[2], e2);
-    direction(whole, force->body[1], local[3], f1);
+    force_direction(whole, force->body[0], local[0], u);
+    force_direction(whole, force->body[0], local[1], e1);
+    force_direction(whole, force->body[0], local[2], e2);
+    force_direction(whole, force->body[1], local[3], f1);
     for (int i = 0; i < 2; ++i) {
         ex_zero3(dag, turn[i]);
         if (force->body[i] == BODY_GROUND)
@@ -321,6 +320,28 @@ static void add_load(Whole *whole, Loads *loads, int body, int in, const double 
     loads->power = ex_add(dag, loads->power, ex_add(dag, ex_dot(dag, force, v), ex_dot(dag, torque, total)));
 }
 
+/* Both bodies are pushed along the same line, through the second one's point. */
+static void add_bushing(Whole *whole, Loads *loads, const Force *force)
+{
+    Dag *dag = whole->dag;
+    const BushingLoad load = bushing_load(whole, force);
+    Ex back[3], moment[3], size[2] = {load.size[0], load.size[1]};
+    loads->terms = size[0];
+    push(whole, loads, force->body[1], &load.end[1], load.force);
+    ex_sub3(dag, (Ex[3]){0}, load.force, back);
+    push(whole, loads, force->body[0], &load.end[0], back);
+    loads->terms = size[1];
+    twist(whole, loads, force->body[1], load.torque);
+    ex_cross(dag, load.arm, back, moment);
+    ex_sub3(dag, moment, load.torque, moment);
+    if (whole->sized)
+        loads->terms = ex_add(dag, size[1], ex_mul(dag, magnitude3(dag, load.arm), size[0]));
+    twist(whole, loads, force->body[0], moment);
+    loads->potential = ex_add(dag, loads->potential, load.potential);
+    loads->potential_rate = ex_add(dag, loads->potential_rate, load.potential_rate);
+    loads->power = ex_add(dag, loads->power, load.power);
+}
+
 static void add_force(Whole *whole, Loads *loads, int index)
 {
     const Force *force = &whole->model->force[index];
@@ -329,6 +350,8 @@ static void add_force(Whole *whole, Loads *loads, int index)
         add_along(whole, loads, index);
     } else if (force_is_torque(force)) {
         add_about(whole, loads, index);
+    } else if (force->bushing) {
+        add_bushing(whole, loads, force);
     } else if (!force_is_wrench(force)) {
         add_between(whole, loads, index);
     } else {

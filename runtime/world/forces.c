@@ -272,6 +272,117 @@ static void aero(const World *world, const Force *force, double load[6])
     }
 }
 
+/* The rotation of its second end against the first, by three numbers: along the axes of the first. Cosine of its angle;
+ * axis: of both ends in the world. */
+static double bushing_turn(const World *world, const Force *force, double axis[2][3][3], double turn[3])
+{
+    double cosine = -0.5;
+    for (int end = 0; end < 2; ++end)
+        for (int k = 0; k < 3; ++k) {
+            const double *F = force->bushing->frame[end];
+            direction(world, force->body[end], (const double[3]){F[k], F[3 + k], F[6 + k]}, axis[end][k]);
+        }
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        turn[i] = (dot3(axis[0][k], axis[1][j]) - dot3(axis[0][j], axis[1][k])) / 2;
+        cosine += dot3(axis[0][i], axis[1][i]) / 2;
+    }
+    const double sine = norm3(turn), angle = atan2(sine, cosine);
+    for (int i = 0; i < 3; ++i)
+        turn[i] *= sine > 0 ? angle / sine : 1;
+    return cosine;
+}
+
+bool world_bushing_is_sure(const World *world, const Force *force)
+{
+    double axis[2][3][3], turn[3];
+    return bushing_turn(world, force, axis, turn) > BUSHING_COSINE + 1e-7;
+}
+
+/* The share of turn x (turn x v) in the rate of a rotation vector, FORMAT.md section 7.4. */
+static double bushing_share(double angle)
+{
+    if (angle < 0.05) /* the next term is 1e-14 of the first */
+        return (1 + angle * angle / 60 * (1 + angle * angle / 42)) / 12;
+    return (1 - angle / 2 / tan(angle / 2)) / (angle * angle);
+}
+
+/* v + s turn x v / 2 + share turn x (turn x v) */
+static void bushing_turned(const double turn[3], double s, const double v[3], double out[3])
+{
+    double once[3], twice[3];
+    cross3(turn, v, once);
+    cross3(turn, once, twice);
+    copy3(v, out);
+    add_scaled3(s / 2, once, out);
+    add_scaled3(bushing_share(norm3(turn)), twice, out);
+}
+
+static double bushing_row(const World *world, const Law *const matrix[BUSHING_NUMBERS], int row, const double *x)
+{
+    double sum = 0;
+    for (int i = 0; i < BUSHING_AXES; ++i) {
+        const Law *law = matrix[bushing_place(row, i)];
+        const double number = law ? world_law(world, law, NULL) : 0;
+        sum += number == 0 ? 0 : number * x[i]; /* what does not count may have no value */
+    }
+    return sum;
+}
+
+static void add_bushing(World *world, const Force *force)
+{
+    static const double still[3] = {0, 0, 0};
+    const Bushing *bushing = force->bushing;
+    const double *omega[2];
+    double axis[2][3][3], arm[3], v[3], swept[3], turning[3], q[FORCE_LOCALS], Q[BUSHING_AXES], own[3];
+    double F[3] = {0, 0, 0}, T[3] = {0, 0, 0};
+    Point end[2];
+    for (int i = 0; i < 2; ++i) {
+        end[i] = point_at(world, force->body[i], force->point[i]);
+        omega[i] = force->body[i] == BODY_GROUND ? still : world->omega[force->body[i]];
+    }
+    const bool defined = bushing_turn(world, force, axis, q + 3) > BUSHING_COSINE;
+    for (int k = 0; k < 3 && !defined; ++k)
+        q[3 + k] = NAN;
+    sub3(end[1].r, end[0].r, arm);
+    cross3(omega[0], arm, swept);
+    sub3(end[1].v, end[0].v, v);
+    sub3(v, swept, v);
+    sub3(omega[1], omega[0], turning);
+    for (int k = 0; k < 3; ++k) {
+        q[k] = dot3(axis[0][k], arm);
+        q[BUSHING_AXES + k] = dot3(axis[0][k], v);
+        own[k] = dot3(axis[0][k], turning);
+    }
+    bushing_turned(q + 3, -1, own, q + BUSHING_AXES + 3);
+    for (int i = 0; i < BUSHING_AXES; ++i) {
+        const double elastic = bushing_row(world, bushing->stiffness, i, q);
+        Q[i] = (force->law[i] ? world_law(world, force->law[i], q) : 0) - elastic -
+               bushing_row(world, bushing->damping, i, q + BUSHING_AXES);
+        if (elastic != 0) {
+            world->potential += 0.5 * elastic * q[i];
+            world->stored += elastic * q[BUSHING_AXES + i];
+        }
+    }
+    copy3(Q + 3, own);
+    if (own[0] != 0 || own[1] != 0 || own[2] != 0)
+        bushing_turned(q + 3, 1, Q + 3, own);
+    for (int k = 0; k < 3; ++k) {
+        add_scaled3(Q[k], axis[0][k], F);
+        add_scaled3(own[k], axis[0][k], T);
+    }
+    world->power += dot3(F, v) + dot3(T, turning);
+    push(world, &end[1], F);
+    if (force->body[1] != BODY_GROUND)
+        add3(world->wrench[force->body[1]] + 3, T, world->wrench[force->body[1]] + 3);
+    if (force->body[0] == BODY_GROUND)
+        return;
+    Point acted = end[0]; /* of the first body, where the second one's point is */
+    add3(acted.arm, arm, acted.arm);
+    push(world, &acted, (const double[3]){-F[0], -F[1], -F[2]});
+    add_scaled3(-1, T, world->wrench[force->body[0]] + 3);
+}
+
 static void add_force(World *world, int index)
 {
     const Force *force = &world->model->force[index];
@@ -280,6 +391,8 @@ static void add_force(World *world, int index)
         add_along(world, index);
     } else if (force_is_torque(force)) {
         add_about(world, index);
+    } else if (force->bushing) {
+        add_bushing(world, force);
     } else if (!force_is_wrench(force)) {
         add_between(world, index);
     } else {

@@ -134,7 +134,8 @@ bool world_signals_are_sure(const World *world)
         for (int k = 0; k < FORCE_MOST_LAWS; ++k)
             sure = sure && law_is_sure(world, model->force[f].law[k], &signals);
     for (int f = 0; f < model->forces; ++f)
-        sure = sure && (model->force[f].type != FORCE_AERO || sideslip_is_sure(world, &model->force[f]));
+        sure = sure && (model->force[f].type != FORCE_AERO || sideslip_is_sure(world, &model->force[f])) &&
+               (!model->force[f].bushing || world_bushing_is_sure(world, &model->force[f]));
     for (int i = 0; i < model->states; ++i)
         sure = sure && law_is_sure(world, model->state[i].rate, &signals);
     for (int i = 0; i < model->wheels; ++i)

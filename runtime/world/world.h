@@ -141,6 +141,8 @@ double world_law(const World *world, const Law *law, const double *local);
 double world_law_size(const World *world, const Law *law, const double *local);
 /* signals.c: the value of a signal, of elements that have been evaluated. */
 double world_signal(const World *world, int signal);
+/* False where rounding decides whether a bushing has turned too far. */
+bool world_bushing_is_sure(const World *world, const Force *force);
 /* Motion of an element FORCE_AERO through the air, m/s, in the axes of its body. */
 void world_airflow(const World *world, const Force *force, double u[3]);
 /* Orders the elements by what their formulas read. */

@@ -386,6 +386,42 @@ static void add_nice_element(Vehicle *v)
         say(force, ", free: 0");
 }
 
+/* Six axes at a point, some of them free; a matrix whose rows outweigh the rest of them, so that it gives no energy. */
+static void add_bushing(Vehicle *v)
+{
+    static const char *const orientation[] = {"{axis: [0, 0, 1], angle: 1.5707963267948966}",
+                                              "{x: [1, 1, 0], z: [0, 0, 1]}", "{axis: [1, 2, 3], angle: 0.7}",
+                                              "{euler: [0, 1, 0, 0]}"};
+    static const char *const matrix =
+        "[[20], [-5, 30], [1, 0, 20], [2, 0, 0, 10], [0, 3, 0, 1, 12], [1, 0, -2, 0, 2, 10]]";
+    static const char *const law[] = {", force: [1, 0, -0.5]", ", torque: [0, 0, 1]",
+                                      ", force: [\"-5 * dx^3\", 0, \"-dz_rate\"]",
+                                      ", torque: [\"-2 * rx\", \"sin(ry)\", \"-rz_rate * abs(rz_rate)\"]"};
+    int a = any_body(v), b = any_body(v);
+    if (a == b)
+        a = v->fixed ? BASE : NOTHING;
+    if (a == b || (v->fixed && (a == NOTHING || b == NOTHING)))
+        return;
+    Entry *element = add(v, FORCE, "bushing");
+    say(element, "type: bushing, bodies: [%s, %s]", body_name(v, a), body_name(v, b));
+    say_point(v, element, ", point: ", any_point(v));
+    if (chance(v, 0.5))
+        say(element, ", orientation: %s", orientation[pick(v, 4)]);
+    if (chance(v, 0.3)) {
+        say(element, ", stiffness: %s", matrix);
+    } else {
+        for (int i = 0; i < 6; ++i)
+            say(element, "%s%.6g", i ? ", " : ", stiffness: [", chance(v, 0.3) ? 0 : nice_size(v, 0.1, 50));
+        say(element, "]");
+    }
+    if (v->conserves)
+        return;
+    if (chance(v, 0.5))
+        say(element, ", damping: [1, 0, 2, 0.5, 0, 1]");
+    if (chance(v, 0.5))
+        say(element, "%s", law[pick(v, 4)]);
+}
+
 /* ---- the whole ---- */
 
 static void add_unit(Vehicle *v)
@@ -470,6 +506,8 @@ void build_mechanism(Vehicle *v)
     }
     for (int i = pick(v, 3); i > 0 && !v->halves; --i)
         add_nice_element(v);
+    if (!v->halves && chance(v, 0.3))
+        add_bushing(v);
     for (int i = pick(v, 3); i > 0 && !v->conserves && !v->halves; --i)
         add_law(v, pick(v, v->section[COORDINATE].count));
     for (int i = pick(v, 4); i > 1 && !v->conserves && !v->halves; --i)

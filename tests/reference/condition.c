@@ -162,7 +162,9 @@ double worst_condition(const Solver *solver)
     for (int i = 0; i < solver->model->forces; ++i) {
         const Force *force = &solver->model->force[i];
         quad length, rate;
-        if (force->load || force->about || force->coordinate >= 0)
+        if (force->bushing && bushing_cosine(solver->configuration, force) < -0.99)
+            worst = HUGE_VAL; /* nor near half a turn about which axis it was */
+        if (force->load || force->about || force->bushing || force->coordinate >= 0)
             continue;
         element_extension(solver->model, solver->configuration, i, &length, &rate);
         worst = fmax(worst, length > 0 ? solver->model->length / (double)length : HUGE_VAL);

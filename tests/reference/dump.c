@@ -85,7 +85,7 @@ static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies
 
 static void read_force(Force *force, const Json *json, const Model *model)
 {
-    enum { COORDINATE, POINTS, AXIS, LOAD, AERO };
+    enum { COORDINATE, POINTS, AXIS, LOAD, AERO, BUSHING };
     static const struct {
         const char *name;
         int place, laws;
@@ -100,7 +100,8 @@ static void read_force(Force *force, const Json *json, const Model *model)
                  {"points_stop", POINTS, 0, true},
                  {"axis_stop", AXIS, 0, true},
                  {"load", LOAD, 6, false},
-                 {"aero", AERO, 11, false}};
+                 {"aero", AERO, 11, false},
+                 {"bushing", BUSHING, 6, false}};
     enum { TYPES = sizeof known / sizeof *known };
     const char *name[TYPES];
     for (int i = 0; i < TYPES; ++i)
@@ -110,6 +111,7 @@ static void read_force(Force *force, const Json *json, const Model *model)
     force->aero = place == AERO;
     force->load = place == LOAD || force->aero;
     force->about = place == AXIS;
+    force->bushing = place == BUSHING;
     force->stop = known[type].stop;
     if (place != COORDINATE) {
         force->body[0] = index_of(json, "a", GROUND, model->bodies);
@@ -131,6 +133,12 @@ static void read_force(Force *force, const Json *json, const Model *model)
     if (force->aero) {
         force->area = json_number(json, "area");
         force->reference_length = json_number(json, "reference_length");
+    }
+    if (force->bushing) {
+        json_numbers(json, "frame_a", force->frame[0], 9);
+        json_numbers(json, "frame_b", force->frame[1], 9);
+        json_numbers(json, "stiffness_matrix", force->stiffness_matrix, 36);
+        json_numbers(json, "damping_matrix", force->damping_matrix, 36);
     }
     const Json *law = list_of(json, "law", &laws);
     if (laws != known[type].laws)

@@ -60,6 +60,8 @@ typedef struct Force {
                                       * the air: coefficients of force and moment, of drag, wind, density */
     bool load, aero;                 /* aero: a load too, whose force and torque are those of the air */
     double area, reference_length;
+    bool bushing; /* frame: row-major, to that of either body; law: force and torque on the second body */
+    double frame[2][9], stiffness_matrix[36], damping_matrix[36];
 } Force;
 
 /* A tire, with its data by their names; a pair of TMeasy's is `name` and `name.2`. */

@@ -42,16 +42,25 @@ static void add_body(const Solver *solver, int index, Term *kinetic, Term *poten
 }
 
 /* Of a spring or stop with a stiffness. */
-static void add_spring(const Solver *solver, int index, Term *potential, quad *rate)
+static void add_spring(const Solver *solver, int index, Term *potential, quad *work)
 {
     const Force *force = &solver->model->force[index];
     quad x, x_rate;
     if (force->load || force->table)
         return;
+    if (force->bushing) {
+        quad strain[6], rate[6];
+        bushing_strain(solver->model, solver->configuration, index, strain, rate);
+        for (int i = 0; i < 36; ++i) {
+            add(potential, force->stiffness_matrix[i] * strain[i / 6] * strain[i % 6] / 2);
+            *work += force->stiffness_matrix[i] * strain[i / 6] * rate[i % 6];
+        }
+        return;
+    }
     element_extension(solver->model, solver->configuration, index, &x, &x_rate);
     quad over = force->stop ? fmaxq(0, x - force->high) - fmaxq(0, force->low - x) : x - force->free;
     add(potential, force->stiffness * over * over / 2);
-    *rate += force->stiffness * over * x_rate;
+    *work += force->stiffness * over * x_rate;
 }
 
 void solve_energy(Solver *solver)

@@ -153,6 +153,11 @@ quad formula_value(const Formula *formula, const Surroundings *around)
         return around->local.airspeed;
     if (!strcmp(op, "if"))
         return x[0] > 0 ? x[1] : x[2];
+    static const char *const strain[] = {"dx",      "dy",      "dz",      "rx",      "ry",      "rz",
+                                         "dx_rate", "dy_rate", "dz_rate", "rx_rate", "ry_rate", "rz_rate"};
+    for (size_t i = 0; i < sizeof strain / sizeof *strain; ++i)
+        if (!strcmp(op, strain[i]))
+            return around->local.bushing[i];
     for (size_t i = 0; i < sizeof operation / sizeof *operation; ++i)
         if (operation[i].arguments == formula->arguments && !strcmp(operation[i].name, op))
             return operation[i].function(x[0], x[1]);

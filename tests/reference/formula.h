@@ -29,9 +29,10 @@ typedef struct Lookup {
 } Lookup;
 
 /* What the place of a formula adds to what formulas know: length (or angle) of a force element and its rate, spin of a
- * wheel, speed and throttle of an engine, how a body moves through the air. */
+ * wheel, speed and throttle of an engine, how a body moves through the air, how a bushing is strained. */
 typedef struct Locals {
     quad length, speed, spin, throttle, incidence, sideslip, airspeed;
+    quad bushing[12]; /* displacements and rotations, and their rates */
 } Locals;
 
 /* What a formula's names stand for. */

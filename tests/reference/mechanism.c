@@ -486,6 +486,128 @@ static void add_about(const Model *model, const Configuration *configuration, co
             Q[force->body[side]][j] -= torque * angle.slope[side][j];
 }
 
+/* ---- bushings, FORMAT.md section 7.4: displacements and rotations with their own slopes, along which force and torque
+ * do virtual work */
+
+/* sum += factor times row */
+static void add_row(Row *sum, quad factor, const Row *row)
+{
+    combine(sum, 1, factor, row);
+}
+
+static Arrow bushing_axis(const Configuration *configuration, const Force *force, int side, int i)
+{
+    const double *frame = force->frame[side];
+    return direction(configuration, force->body[side], side, (const quad[3]){frame[i], frame[3 + i], frame[6 + i]});
+}
+
+static Arrow bushing_point(const Model *model, const Configuration *configuration, const Force *force, int side)
+{
+    quad s[3];
+    if (force->body[side] == GROUND) {
+        Arrow arrow = {.on = {false, false}};
+        widen(force->point[side], arrow.value, 3);
+        return arrow;
+    }
+    from_com(model, force->body[side], force->point[side], s);
+    return body_point(configuration, force->body[side], side, s);
+}
+
+/* The rotation vector: s = n sin(angle) and the cosine by the matrix of direction cosines, then s angle / sin(angle).
+ */
+static void bushing_turn(Arrow axis[2][3], Row out[3])
+{
+    Row s[3], cosine = {.value = -0.5}, sine = {.value = 0}, angle, part;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        s[i] = (Row){.value = 0};
+        part = dot(&axis[0][k], &axis[1][j]);
+        add_row(&s[i], 0.5, &part);
+        part = dot(&axis[0][j], &axis[1][k]);
+        add_row(&s[i], -0.5, &part);
+        part = dot(&axis[0][i], &axis[1][i]);
+        add_row(&cosine, 0.5, &part);
+    }
+    const quad size = sqrtq(s[0].value * s[0].value + s[1].value * s[1].value + s[2].value * s[2].value);
+    quad share = 1 + size * size / 6; /* angle over sine */
+    Row share_row = {.value = 0};     /* and its change */
+    if (size < 1e-8 && cosine.value > 0) {
+        for (int i = 0; i < 3; ++i)
+            add_row(&share_row, s[i].value / 3, &s[i]);
+    } else {
+        for (int i = 0; i < 3; ++i)
+            add_row(&sine, s[i].value / size, &s[i]);
+        const quad square = size * size + cosine.value * cosine.value, turned_by = atan2q(size, cosine.value);
+        angle = (Row){.value = 0};
+        add_row(&angle, cosine.value / square, &sine);
+        add_row(&angle, -size / square, &cosine);
+        share = turned_by / size;
+        add_row(&share_row, 1 / size, &angle);
+        add_row(&share_row, -share / size, &sine);
+    }
+    for (int i = 0; i < 3; ++i) {
+        out[i] = (Row){.value = 0};
+        add_row(&out[i], share, &s[i]);
+        add_row(&out[i], s[i].value, &share_row);
+        out[i].value = share * s[i].value;
+    }
+}
+
+static void bushing_rows(const Model *model, const Configuration *configuration, const Force *force, Row out[6])
+{
+    Arrow axis[2][3], a = bushing_point(model, configuration, force, 0),
+                      b = bushing_point(model, configuration, force, 1);
+    for (int side = 0; side < 2; ++side)
+        for (int i = 0; i < 3; ++i)
+            axis[side][i] = bushing_axis(configuration, force, side, i);
+    for (int i = 0; i < 3; ++i) {
+        Row far = dot(&axis[0][i], &b), near = dot(&axis[0][i], &a);
+        out[i] = far;
+        add_row(&out[i], -1, &near);
+    }
+    bushing_turn(axis, out + 3);
+}
+
+quad bushing_cosine(const Configuration *configuration, const Force *force)
+{
+    quad cosine = -0.5;
+    for (int i = 0; i < 3; ++i) {
+        const Arrow a = bushing_axis(configuration, force, 0, i), b = bushing_axis(configuration, force, 1, i);
+        cosine += quad_dot(a.value, b.value, 3) / 2;
+    }
+    return cosine;
+}
+
+void bushing_strain(const Model *model, const Configuration *configuration, int force, quad x[6], quad rate[6])
+{
+    Row row[6];
+    bushing_rows(model, configuration, &model->force[force], row);
+    for (int i = 0; i < 6; ++i) {
+        x[i] = row[i].value;
+        rate[i] = row[i].rate;
+    }
+}
+
+static void add_bushing(const Model *model, const Configuration *configuration, const Force *force,
+                        quad (*Q)[BODY_COORDINATES])
+{
+    Row row[6];
+    Locals local = {0};
+    bushing_rows(model, configuration, force, row);
+    for (int i = 0; i < 6; ++i) {
+        local.bushing[i] = row[i].value;
+        local.bushing[6 + i] = row[i].rate;
+    }
+    for (int i = 0; i < 6; ++i) {
+        quad along = law_value(model, configuration, force->law[i], local);
+        for (int j = 0; j < 6; ++j)
+            along -= force->stiffness_matrix[6 * i + j] * row[j].value + force->damping_matrix[6 * i + j] * row[j].rate;
+        for (int side = 0; side < 2; ++side)
+            for (int j = 0; j < BODY_COORDINATES && force->body[side] != GROUND; ++j)
+                Q[force->body[side]][j] += along * row[i].slope[side][j];
+    }
+}
+
 /* 2 G^T times its components in the body */
 void add_torque(const Configuration *configuration, int body, const quad torque[3], quad (*Q)[BODY_COORDINATES])
 {
@@ -553,7 +675,12 @@ void add_force_element(const Model *model, const Configuration *configuration, c
 {
     const Force *element = &model->force[force];
     if (element->coordinate < 0) {
-        (element->load ? add_load : element->about ? add_about : add_between)(model, configuration, element, Q);
+        void (*add)(const Model *, const Configuration *, const Force *, quad(*)[BODY_COORDINATES]) =
+            element->load      ? add_load
+            : element->about   ? add_about
+            : element->bushing ? add_bushing
+                               : add_between;
+        add(model, configuration, element, Q);
         return;
     }
     int c = element->coordinate;

@@ -57,6 +57,10 @@ quad law_size(const Model *model, const Configuration *configuration, const Form
 /* Place and velocity of a point of a body, or of a point of the ground. */
 void point_motion(const Model *model, const Configuration *configuration, int body, const double point[3], quad x[3],
                   quad v[3]);
+/* Displacements and rotations of a bushing in its axes, and their rates. */
+void bushing_strain(const Model *model, const Configuration *configuration, int force, quad x[6], quad rate[6]);
+/* Cosine of its rotation. */
+quad bushing_cosine(const Configuration *configuration, const Force *force);
 /* Q or T of an element that is no load (FORMAT.md section 7). */
 quad element_value(const Model *model, const Configuration *configuration, int force);
 /* Length, angle or coordinate along which a force element acts, and its rate. Not for loads. */

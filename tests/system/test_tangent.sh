@@ -25,6 +25,7 @@ check 'tires and powertrain on a wavy road' compare "$models/hmmwv_vehicle.veh" 
 sh "$root/tests/lib/chain.sh" 6 >"$work/chain.veh" && check 'a chain, articulated form' compare "$work/chain.veh" \
     --option=--solve=articulated
 check 'states of a model, no wheels' compare "$root/tests/data/laws/states.veh"
+check 'bushings' compare "$root/tests/data/laws/bushing.veh"
 check 'air' compare "$root/tests/data/laws/aero.veh"
 {
     cat "$models/hmmwv_tires.veh"
