@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Bushings (FORMAT.md section 7.4): displacement and rotation of their second end against the first, in the axes of the
+ * Bushings (FORMAT.md section 7.5): displacement and rotation of their second end against the first, in the axes of the
  * first, and the force and torque that do their work. */
 #include "expression/expression.h"
 #include "model/model.h"

@@ -299,7 +299,7 @@ bool world_bushing_is_sure(const World *world, const Force *force)
     return bushing_turn(world, force, axis, turn) > BUSHING_COSINE + 1e-7;
 }
 
-/* The share of turn x (turn x v) in the rate of a rotation vector, FORMAT.md section 7.4. */
+/* The share of turn x (turn x v) in the rate of a rotation vector, FORMAT.md section 7.5. */
 static double bushing_share(double angle)
 {
     if (angle < 0.05) /* the next term is 1e-14 of the first */

@@ -486,7 +486,7 @@ static void add_about(const Model *model, const Configuration *configuration, co
             Q[force->body[side]][j] -= torque * angle.slope[side][j];
 }
 
-/* ---- bushings, FORMAT.md section 7.4: displacements and rotations with their own slopes, along which force and torque
+/* ---- bushings, FORMAT.md section 7.5: displacements and rotations with their own slopes, along which force and torque
  * do virtual work */
 
 /* sum += factor times row */

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_bushing.sh GICGEN GICRUN GICSWEEP: bushings (FORMAT.md section 7.4). Frequencies, rest under load, large turns about
+# test_bushing.sh GICGEN GICRUN GICSWEEP: bushings (FORMAT.md section 7.5). Frequencies, rest under load, large turns about
 # an axis, damping and momenta in closed form; nothing at the design; energy at large angles, by the order of the integrator;
 # turns of 3 rad and more; a matrix against elements of one axis each; tunable stiffness; runs of every engine and way of
 # generating against the engine gic, a sweep in lanes, a batch; images in the mirror against both sides written out;
