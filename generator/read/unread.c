@@ -31,6 +31,18 @@ static bool signal_is_read(const Reader *reader, int signal)
     return false;
 }
 
+/* True if a formula reads what the rule that holds this state would give: by that it remembers. */
+static bool next_is_read(const Reader *reader, int state)
+{
+    const Model *model = reader->model;
+    for (int c = 0; c < model->controllers; ++c)
+        for (int k = 0; k < model->controller[c].rules; ++k)
+            for (int i = 0; model->controller[c].rule[k].state == state && i < reader->reads.count; ++i)
+                if (reader->reads.read[i].law->index == model->controller[c].rule[k].signal)
+                    return true;
+    return false;
+}
+
 void unread_tell(const Reader *reader)
 {
     const Model *model = reader->model;
@@ -44,7 +56,7 @@ void unread_tell(const Reader *reader)
         if (!model->table[i].read)
             tell(model->table[i].at, "table", model->table[i].name);
     for (int i = 0; i < model->states; ++i)
-        if (!model->state[i].read)
+        if (!model->state[i].read && !next_is_read(reader, i))
             tell(model->state[i].at, model->state[i].rate ? "state" : "rule", model->state[i].name);
     for (int i = 0; i < model->signals; ++i) {
         const Signal *signal = &model->signal[i];

@@ -37,21 +37,21 @@ static bool powertrain_reads_time(const Model *model, const Powertrain *powertra
     return false;
 }
 
-/* A part of the model that changes with time by itself; NULL: none. */
-static const char *restless(const Model *model)
+/* A part of the model that changes with time by itself, "force 'shake'"; NULL: none. */
+static const char *restless(Pool *pool, const Model *model)
 {
     for (int i = 0; i < model->forces; ++i)
         if (any_reads_time(model, model->force[i].law, sizeof model->force[i].law / sizeof *model->force[i].law))
-            return model->force[i].name;
+            return pool_print(pool, "force '%s'", model->force[i].name);
     if (model->controllers)
-        return model->controller[0].name;
+        return pool_print(pool, "controller '%s'", model->controller[0].name);
     for (int i = 0; i < model->states; ++i)
         if (law_reads_time(model, model->state[i].rate))
-            return model->state[i].name;
+            return pool_print(pool, "state '%s'", model->state[i].name);
     for (int i = 0; i < model->wheels; ++i)
         if (law_reads_time(model, model->wheel[i].drive) || law_reads_time(model, model->wheel[i].brake))
-            return model->wheel[i].name;
-    return model->powertrain && powertrain_reads_time(model, model->powertrain) ? "powertrain" : NULL;
+            return pool_print(pool, "wheel '%s'", model->wheel[i].name);
+    return model->powertrain && powertrain_reads_time(model, model->powertrain) ? "the powertrain" : NULL;
 }
 
 Sleep *sleep_read(Pool *pool, const Item *item, const Model *model)
@@ -64,8 +64,9 @@ Sleep *sleep_read(Pool *pool, const Item *item, const Model *model)
     rest->pool = pool;
     rest->within = doc_find(item, "within") ? scene_positive(doc_find(item, "within"), "within") : within;
     rest->after = doc_find(item, "after") ? scene_positive(doc_find(item, "after"), "after") : after;
-    if (restless(model))
-        diag_fail(item->at, "remove it", "'%s' of '%s' changes with time by itself, so that nothing rests",
-                  restless(model), model->name);
+    const char *moves = restless(pool, model);
+    if (moves)
+        diag_fail(item->at, "remove it", "%s of '%s' changes with time by itself, so that nothing rests", moves,
+                  model->name);
     return rest;
 }

@@ -151,12 +151,50 @@ grep -q 'error: .*states of its own' said && [ ! -e batch.c ]
 verdict $? "many vehicles are refused: $(head -n 1 said)"
 printf 'gicscene: 1\nstep: 0.01\nduration: 1\nsleep: {}\n' >sleep.scene
 "$gicrun" -q loop.veh sleep.scene -o none.csv 2>said
-[ $? -eq 1 ] && grep -q "'servo' of 'loop' changes with time by itself" said
+[ $? -eq 1 ] && grep -q "controller 'servo' of 'loop' changes with time by itself" said
 verdict $? "sleep is refused: $(head -n 1 said)"
 printf 'gicscene: 1\nstep: 0.1\nduration: 0.2\noutput_step: 0.1\ninitial: {states: {servo.force: 4}}\n' >start.scene
 loop period=5 offset=1
 "$gicrun" -q loop.veh start.scene -o start.csv 2>err && awk -F, 'NR == 4 { exit !($2 > 0.0399999999 && $2 < 0.0400000001) }' start.csv
 verdict $? 'a scene gives what is held at the start'
+
+# ---- an engine held at a speed, gears that change meanwhile, two rates; a part with a controller, twice
+cp -r "$root/models/parts" "$root/models/tires" .
+cp "$root"/models/hmmwv*.veh .
+sed 's/^    throttle: .*/    throttle: cruise.pedal/' parts/hmmwv_powertrain.veh >held && mv held parts/hmmwv_powertrain.veh
+cat >cruise.veh <<'END'
+gicgen: 1
+model: cruise
+include: hmmwv_vehicle.veh
+controllers:
+  cruise:
+    period: 0.02
+    rules:
+      sum: {value: "min(1, max(0, cruise.sum + 0.004 * (11 - ahead.x)))", initial: 0.1}
+      pedal: {value: "min(1, max(0, 0.2 * (11 - ahead.x) + cruise.sum.next))", delay: 0.03}
+outputs:
+  ahead: {type: velocity, body: chassis, in: chassis}
+  drive: {type: powertrain}
+END
+sed 's/^duration: .*/duration: 3/; /^inputs/,$d' "$root/models/scenes/straight.scene" >cruise.scene
+for way in general 'engine tape' 'engine gic'; do
+    # shellcheck disable=SC2086  # options
+    "$gicrun" -q --$way cruise.veh cruise.scene -o "${way#* }.csv" 2>said
+done
+cmp general.csv tape.csv >said
+verdict $? 'cruise: general code and the tape'
+! grep -q 'reads rule' said
+verdict $? 'a rule of which formulas read what comes next is read'
+found=$(paste -d, general.csv gic.csv | awk -F, 'NR > 1 { for (i = 1; i <= NF / 2; ++i) {
+        d = $i - $(i + NF / 2); s = $i < 0 ? -$i : $i; if (d < 0) d = -d; d /= 1 + s; if (!(d <= most)) most = d } }
+    END { print (NR > 50 ? most + 0 : 1) }')
+check "cruise: general code and gic, $found" within "$found" 1e-9
+{ printf 'gicgen: 1\n'; loop; sed -n '/^bodies/,/^  mean:$/p' loop.veh | sed '/^inputs/d; /^  mean:/d; s/wish/1/g; s/ + 0.125 . mean.mean//'
+    printf 'forces: {f: {type: force, coordinate: x, value: servo.force}}\noutputs: {x: {type: coordinate, coordinate: x}}\n'; } >part.veh
+printf 'gicgen: 1\nmodel: two\ngravity: [0, 0, 0]\nbase: ground\ninclude: [{file: part.veh, prefix: a_}, {file: part.veh, prefix: b_}]\n' >two.veh
+scene 0.01 0.1 1 'integrator: rk4'
+"$gicrun" -q two.veh a.scene -o two.csv 2>said && awk -F, 'NR > 1 && ($2 != $5 || $3 != $6) { wrong = 1 } END { exit !(NR == 12 && $2 > 0.5 && !wrong) }' two.csv
+verdict $? 'a part with a controller twice, by prefixes'
 
 # ---- mistakes
 # refused PLACE MESSAGE REMEDY CONTROLLERS [MORE]: one message and no output
