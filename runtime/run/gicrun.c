@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "read/read.h"
 #include "run/engines.h"
+#include "run/kc.h"
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/run.h"
@@ -27,6 +28,7 @@ static const char help[] =
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
+    "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
     "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
@@ -51,17 +53,19 @@ static const char help[] =
     "                     tunable parameters, with names and units; -o: as CSV, or for NumPy\n"
     "                     (.npz) or MATLAB (.mat)\n"
     "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
+    "      --kc           kinematics of axles over travel and steering, models/KC.md; -o: as CSV\n"
+    "      --axle NAME    of --kc: front, rear or a number from the front\n"
+    "      --travel M     of --kc: wheel travel up and down, m (0.08)\n"
+    "      --report FILE  of --kc: a page of curves\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
     "      --tolerance NUMBER\n"
     "                     of variable steps instead of the scene's\n"
     "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
-    "                     compiled in this process, and in a run of more than a moment by\n"
-    "                     the C compiler too, whose code takes over; tcc, the first of them;\n"
-    "                     cc, the second; tape, formulas for any scene interpreted; with\n"
-    "                     --general all four give the same digits, and only cc needs a\n"
-    "                     compiler. gic, gcp1, gcp2: the paper's methods interpreted\n"
+    "                     compiled in this process, in a run of more than a moment by\n"
+    "                     the C compiler too; tcc, the first of them; cc, the second; tape,\n"
+    "                     formulas interpreted; gic, gcp1, gcp2: the paper's methods\n"
     "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
     "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
     "                     is one; auto (default), whichever takes fewer operations\n"
@@ -75,9 +79,7 @@ static const char help[] =
     "  -h, --help         this text\n"
     "      --version      version\n"
     "\n"
-    "What the compiler made is kept for the next run, in $GICGEN_CACHE (default: gicgen in\n"
-    "$XDG_CACHE_HOME or ~/.cache), at most $GICGEN_CACHE_SIZE megabytes (default: 64); an\n"
-    "empty GICGEN_CACHE keeps nothing. The compiler works in $TMPDIR (default: /tmp).\n"
+    "Of the environment: CC, GICGEN_CACHE, GICGEN_CACHE_SIZE, XDG_CACHE_HOME, TMPDIR; gicrun(1).\n"
     "\n"
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
     "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
@@ -99,6 +101,15 @@ static void read_at(void *request, char *word)
     if (*end || end == word || !(value >= 0 && isfinite(value)))
         usage_fail("gicrun", "--at must be a time in s, 0 or more, unlike", word);
     ((Request *)request)->at = value;
+}
+
+static void read_travel(void *request, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || end == word || !(value > 0 && value <= 10))
+        usage_fail("gicrun", "--travel must be a length in m, above 0 and at most 10, unlike", word);
+    ((Request *)request)->travel = value;
 }
 
 static void read_engine(void *request, char *name)
@@ -137,7 +148,7 @@ static void read_lanes(void *request, char *word)
 /* False: something else than to run a scene is asked for. */
 static bool is_run(const Request *request)
 {
-    return !request->states && !request->rests && !request->modes && !request->linear;
+    return !request->states && !request->rests && !request->modes && !request->linear && !request->kinematics;
 }
 
 static Request read_command_line(int count, char **word)
@@ -155,6 +166,10 @@ static Request read_command_line(int count, char **word)
         {"modes", .on = &request.modes},
         {"linearize", .on = &request.linear},
         {"at", .read = read_at},
+        {"kc", .on = &request.kinematics},
+        {"axle", .text = &request.axle},
+        {"travel", .read = read_travel},
+        {"report", .text = &request.report},
         {"integrator", .text = &request.integrator},
         {"tolerance", .read = read_tolerance},
         {"engine", .read = read_engine},
@@ -171,8 +186,12 @@ static Request read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (request.rests + request.modes + request.linear + (request.states != NULL) > 1)
-        usage_fail("gicrun", "one of --eval, --equilibrium, --modes and --linearize, please", NULL);
+    if (request.rests + request.modes + request.linear + request.kinematics + (request.states != NULL) > 1)
+        usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize and --kc, please", NULL);
+    if (!request.kinematics && (request.axle || request.travel > 0 || request.report))
+        usage_fail("gicrun", "--axle, --travel and --report go with --kc", NULL);
+    if (request.report && !path_ends(request.report, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", request.report);
     const bool runs = is_run(&request), at = !isnan(request.at);
     if (at && !request.linear)
         usage_fail("gicrun", "--at goes with --linearize", NULL);
@@ -189,24 +208,24 @@ static Request read_command_line(int count, char **word)
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
-        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
+        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
     if (request.with && !request.picture && !request.page)
         usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
-        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
+        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
         usage_fail("gicrun",
                    "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                   "nor with --eval, --equilibrium, --modes and --linearize",
+                   "nor with --eval, --equilibrium, --modes, --linearize and --kc",
                    NULL);
     if (request.driven && !path_ends(request.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
     if (request.recording && !runs)
-        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes or --linearize", NULL);
+        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
     if (!request.results && !request.picture && !request.page && !request.driven &&
@@ -236,7 +255,8 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
 /* Refuse outputs that are inputs of the run, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
-    const char *const output[] = {request->results, request->picture, request->page, request->driven};
+    const char *const output[] = {request->results, request->picture, request->page, request->driven,
+                                  request->report};
     const Source states = {.path = request->states ? request->states : "-"};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
@@ -245,6 +265,7 @@ static void check_outputs(const Request *request, const Model *model, const Scen
             usage_fail("gicrun",
                        i == 1   ? "--plot needs another file than the results, which go to"
                        : i == 2 ? "--animate needs another file than the results, which go to"
+                       : i == 4 ? "--report needs another file than the results, which go to"
                                 : "--drive needs another file than the results, which go to",
                        request->results);
         file_check(output[i]);
@@ -278,6 +299,11 @@ int main(int count, char **word)
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);
+    if (request.kinematics) {
+        kc_report(pool, model, scene, &request);
+        pool_free(pool);
+        return 0;
+    }
     model = scene_rig(pool, model, &scene);
     if (request.linear) {
         linear(pool, model, scene, &request);

@@ -17,6 +17,10 @@ typedef struct Request {
     const char *model, *scene;    /* paths; scene may be NULL with `states` */
     const char *states;           /* --eval, or NULL */
     bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
+    bool kinematics;              /* --kc */
+    const char *axle;             /* --axle, or NULL: all */
+    const char *report;           /* --report, or NULL */
+    double travel;                /* --travel, m; 0: as usual */
     double at;                    /* --at, s; NAN: not given */
     const char *results;          /* "-": standard output; NULL: none */
     const char *picture;          /* --plot, or NULL */

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * kc: kinematics of the axles of a vehicle whose base is held (gicrun --kc), by the definitions of models/KC.md. First
+ * and second derivatives of poses are exact: those of the expression graph, in dual numbers (linearize.h). */
+#ifndef RUN_KC_H
+#define RUN_KC_H
+
+#include "base/pool.h"
+#include "engine/engine.h"
+#include "model/model.h"
+#include "run/linearize.h"
+#include "run/run.h"
+#include "scene/scene.h"
+
+/* ---- what moves, and how it is asked: kc_model.c */
+
+/* A force element that a coordinate, two points or an axis has; its value x: coordinate, length or angle. */
+typedef struct KcElement {
+    const char *name;
+    int coordinate;     /* or -1: */
+    int value, rate;    /* places among the outputs of x and x' */
+    int force;          /* place of the element's Q or T */
+    double sign;        /* of the generalized force: Q acts along x (1), T against it (-1) */
+    bool angle;         /* x is in rad */
+} KcElement;
+
+typedef struct KcWheel {
+    const Wheel *wheel;
+    const char *name;
+    double side;    /* 1: left or in the middle, y >= 0; -1: right */
+    double radius;
+    bool shaft;     /* the torque of its drive is taken by another body than its carrier */
+    int centre;     /* places among the outputs: position and velocity of the centre, of a point 1 m along the axis, */
+    int velocity;   /* angular velocity of the carrier; three each */
+    int tip, turn;
+} KcWheel;
+
+enum { KC_WHEELS = 8 /* the most of an axle */ };
+
+/* Wheels of nearly the same x. */
+typedef struct KcAxle {
+    const char *name; /* front, rear, axle_2; `axle` where it is the only one */
+    int number;       /* from 1, the foremost */
+    int wheels;
+    KcWheel wheel[KC_WHEELS];
+    double ahead;     /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
+    int travel[KC_WHEELS]; /* [wheels] coordinates that move them up and down */
+    int steer;             /* coordinate, -1: none */
+    const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
+    const char *unsteered; /* why it is not steered; NULL: it is */
+} KcAxle;
+
+typedef struct Kc {
+    Pool *pool;
+    const Model *model; /* the user's, with outputs and force elements that measure */
+    const Engine *engine;
+    const Linear *linear;
+    Instance *self;     /* as set up: the base at the design, coordinates at their initial values */
+    Instance *work;
+    int axles, elements, outputs;
+    KcAxle *axle;
+    KcElement *element;
+    double *initial;    /* [coordinates] */
+    double wheelbase;   /* from the last axle to the first, m; 0: there is one axle */
+    double height;      /* of the centre of mass above the mean of all contacts, m; 0: the base is ground */
+    double fixed_x;     /* of the mean contact of axles without steering; used if `turns` */
+    bool turns;         /* there is an axle with steering, and one without */
+    double *f, *df, *dout; /* work */
+} Kc;
+
+/* axle: name or number of the one that is asked for, NULL: all. scene: its parameters are those of set-up; NULL: the
+ * model's. Ends in diag_fail where the model has no wheels, or no such axle. */
+Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle);
+
+/* ---- kc_look.c: a position, with derivatives */
+
+/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, then that
+ * of steering. */
+typedef struct KcLook {
+    int columns, outputs;
+    int column[KC_WHEELS + 1];
+    double *value; /* [outputs] at rest */
+    double *slope; /* [columns][outputs] derivative by a coordinate, of places; of the rates x' and v: by its rate */
+} KcLook;
+
+KcLook *kc_look_new(const Kc *kc, const KcAxle *axle);
+/* w: [coordinates]. Returns a status. */
+int kc_look(const Kc *kc, const double *w, KcLook *look);
+/* Derivatives by the columns of the outputs that are rates, while coordinates move with the rates `along` [columns]:
+ * second derivatives. second: [columns][outputs]. Returns a status. */
+int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const double *along, double *second);
+/* The text of a status that a look has returned. */
+const char *kc_status(const Kc *kc, int status);
+
+/* ---- kc_wheel.c: a wheel as geometry sees it */
+
+/* Its pose, or a rate of it along a motion. */
+typedef struct KcPose {
+    double centre[3], axis[3]; /* axis: unit vector, to the left */
+    double contact[3];         /* lowest point of the rim of its radius */
+    double locked[3];          /* rates: velocity of the point of the carrier at the contact */
+    double turn[3];            /* rates: angular velocity */
+} KcPose;
+
+void kc_pose(const KcWheel *wheel, const KcLook *look, KcPose *pose);
+/* along: rates of the columns. */
+void kc_rate(const KcWheel *wheel, const KcLook *look, const KcPose *pose, const double *along, KcPose *rate);
+double kc_camber(const KcWheel *wheel, const KcPose *pose);
+double kc_camber_rate(const KcWheel *wheel, const KcPose *pose, const KcPose *rate);
+/* Steer angle, positive to the left. */
+double kc_steer(const KcPose *pose);
+double kc_steer_rate(const KcPose *pose, const KcPose *rate);
+/* z of the contact along two motions: its second derivative. second: of the rates along the first, by the second. */
+double kc_contact_bend(const KcWheel *wheel, const KcPose *pose, const KcPose *a, const KcPose *b,
+                       const double centre[3], const double turn[3]);
+
+/* ---- kc_sweep.c: motions */
+
+typedef enum KcMotion { KC_PARALLEL, KC_OPPOSITE, KC_STEER, KC_MOTIONS } KcMotion;
+extern const char *const kc_motion_name[KC_MOTIONS];
+
+/* Quantities of a wheel and of an axle: kc_table.c */
+enum { KC_WHEEL_ROOM = 32, KC_AXLE_ROOM = 24 };
+
+typedef struct KcRow {
+    double at;        /* travel, m, of the left wheels; in steering the coordinate */
+    double (*wheel)[KC_WHEEL_ROOM]; /* [wheels]; NAN: has no value here */
+    double (*ratio);  /* [wheels][elements] dx/dz */
+    double axle[KC_AXLE_ROOM];
+} KcRow;
+
+typedef struct KcCurve {
+    KcMotion motion;
+    int rows, zero;   /* zero: the row at the position of set-up */
+    KcRow *row;
+    const char *stop[2]; /* why it ends at the low and the high end before what was asked for; NULL: it does not */
+} KcCurve;
+
+enum { KC_STEPS = 20 /* to each side */ };
+
+/* Move an axle to `travel`, m, up and down, or its steering through its range. NULL: it can not do that at all, *why. */
+const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, double travel, const char **why);
+
+/* ---- kc_row.c: the quantities of one position */
+
+/* along: rates of the look's columns along the motion, of which `at` moves with the rate 1. Returns a status. */
+int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, const KcLook *look, const double *along,
+           KcRow *row);
+/* Rates of travel coordinates that move the wheels' centres, or else their contacts, with the velocities vz [wheels] and
+ * the steering with the rate `steer`. along: [columns]. False: they can not. */
+bool kc_along(const KcAxle *axle, const KcLook *look, bool contacts, const double *vz, double steer, double *along);
+/* Solve A x = b of n equations in place; false: singular. */
+bool kc_solve(int n, double *A, double *b);
+
+/* ---- kc_force.c: forces of the axle's elements at the contacts */
+
+/* Vertical forces [wheels] of the ground that hold the force elements, and their rates along a motion. Returns a status.
+ */
+int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along, double *force,
+              double *rate);
+
+/* ---- kc_table.c: names and units */
+
+typedef struct KcQuantity {
+    const char *name, *title; /* "camber", "Camber" */
+    const char *unit, *shown; /* "rad", "deg" */
+    double scale;             /* from unit to shown */
+    bool of_steering;         /* has a value only where the axle is steered */
+} KcQuantity;
+
+typedef enum KcOfWheel {
+    KC_TRAVEL, KC_CAMBER, KC_TOE, KC_STEER_ANGLE, KC_CAMBER_RATE, KC_TOE_RATE, KC_CENTRE_X, KC_CENTRE_Y, KC_CONTACT_X,
+    KC_CONTACT_Y, KC_CONTACT_Z, KC_FRONT_ARM, KC_FRONT_ANGLE, KC_SIDE_ARM, KC_SIDE_ANGLE, KC_BRAKE_ANGLE, KC_DRIVE_ANGLE,
+    KC_FORCE, KC_RATE, KC_INCLINATION, KC_CASTER, KC_SCRUB, KC_TRAIL, KC_OFFSET, KC_OFFSET_X, KC_OF_WHEEL
+} KcOfWheel;
+
+typedef enum KcOfAxle {
+    KC_TRACK, KC_TRACK_RATE, KC_CENTRE_HEIGHT, KC_CENTRE_SIDE, KC_FORCE_HEIGHT, KC_ROLL_RATE, KC_ANTI_BRAKE,
+    KC_ANTI_DRIVE, KC_MEAN_STEER, KC_RATIO, KC_ACKERMANN_ERROR, KC_ACKERMANN, KC_RADIUS, KC_OF_AXLE
+} KcOfAxle;
+
+extern const KcQuantity kc_of_wheel[KC_OF_WHEEL], kc_of_axle[KC_OF_AXLE];
+/* The unit of the steering ratio and of the steering coordinate, whose type differs. */
+const char *kc_unit(const Kc *kc, const KcAxle *axle, int of_axle);
+
+/* ---- kc_report.c: --kc */
+
+/* Results of all axles. */
+typedef struct KcStudy {
+    const Kc *kc;
+    double travel;
+    const KcCurve *(*curve)[KC_MOTIONS]; /* [axles]; NULL: can not be moved so */
+    const char *(*refusal)[KC_MOTIONS];
+} KcStudy;
+
+void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+/* Of the wheels' centres, m, unless the user says another. */
+extern const double kc_usual_travel;
+/* The first motion of an axle that is possible; NULL: none. */
+const KcCurve *kc_first(const KcStudy *study, int axle);
+/* Why a motion is not possible (end 0), or ends before the low or the high end; NULL: it does not. */
+const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion, int end);
+/* A number as tables show it; "-" where it has no value, "parallel" where it is infinite. */
+const char *kc_shown(Pool *pool, double value, double scale);
+/* The row at set-up that has an axle's quantity; -1: those of its wheels. */
+const KcRow *kc_zero(const KcStudy *study, int axle, int of_axle);
+/* The unit in which a quantity of an axle is shown, and the factor from SI. */
+const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double *scale);
+/* Does an element move with a wheel of the axle? */
+bool kc_ratio_seen(const Kc *kc, const KcAxle *axle, const KcRow *row, int e);
+/* kc_page.c: the page `path`. */
+void kc_page(Pool *pool, const KcStudy *study, const char *path);
+
+#endif

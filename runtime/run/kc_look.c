@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ * A position of the mechanism, with derivatives by the coordinates of an axle. Poses are differentiated by a coordinate;
+ * velocities, which are linear in the rates, by its rate; and velocities at given rates by a coordinate: that is the
+ * second derivative of the poses. All in dual numbers. */
+#include "gic_runtime.h"
+#include "run/kc.h"
+#include "tape/engine_tape.h"
+
+#include <string.h>
+
+KcLook *kc_look_new(const Kc *kc, const KcAxle *axle)
+{
+    KcLook *look = pool_alloc(kc->pool, sizeof *look);
+    look->outputs = kc->outputs;
+    for (int i = 0; i < axle->wheels; ++i)
+        look->column[look->columns++] = axle->travel[i];
+    if (axle->steer >= 0)
+        look->column[look->columns++] = axle->steer;
+    look->value = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * sizeof(double));
+    look->slope = pool_alloc(kc->pool, ((size_t)kc->outputs * (size_t)look->columns + 1) * sizeof(double));
+    return look;
+}
+
+/* Places and rates of the coordinates into the working instance; the last good position stays where it was found. */
+static void put(const Kc *kc, const double *w, const KcLook *look, const double *along)
+{
+    const gic_model *code = kc->engine->code;
+    double *state = tape_array(kc->work, code->state_offset), *input = tape_array(kc->work, code->input_offset);
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        double *at = code->coordinate_state[c] >= 0 ? state + code->coordinate_state[c] : input + code->coordinate_input[c];
+        double *rate = at + (code->coordinate_state[c] >= 0 ? code->slow_count / 2 : 1);
+        *at = w[c];
+        *rate = 0;
+        if (code->coordinate_input[c] >= 0)
+            rate[1] = 0;
+        for (int k = 0; k < look->columns && along; ++k)
+            if (look->column[k] == c)
+                *rate = along[k];
+    }
+}
+
+static int start(const Kc *kc)
+{
+    const int status = linear_start(kc->linear, kc->work, kc->f);
+    return status == GIC_OK ? kc->engine->code->outputs(kc->work) : status;
+}
+
+/* The number of a coordinate's place, or rate, of its kind. */
+static int number_of(const Kc *kc, int coordinate, bool rate, LinearKind *kind)
+{
+    const gic_model *code = kc->engine->code;
+    if (code->coordinate_state[coordinate] < 0) {
+        *kind = LINEAR_INPUT;
+        return code->coordinate_input[coordinate] + rate;
+    }
+    *kind = LINEAR_MOTION;
+    return code->coordinate_state[coordinate] - code->free_base + (rate ? kc->linear->places : 0);
+}
+
+/* kc->dout: derivatives of all outputs by a coordinate or its rate. */
+static int differentiate(const Kc *kc, int coordinate, bool rate)
+{
+    LinearKind kind;
+    bool jump;
+    const int number = number_of(kc, coordinate, rate, &kind);
+    return linear_column(kc->linear, kc->work, kind, number, kc->df, kc->outputs, kc->dout, &jump);
+}
+
+/* Is an output a velocity, an angular velocity, or the rate of a length or angle? */
+static bool is_rate(const Kc *kc, int at)
+{
+    for (int i = 0; i < kc->elements; ++i)
+        if (kc->element[i].rate == at)
+            return true;
+    for (int i = 0; i < kc->model->outputs; ++i) {
+        const Output *output = &kc->model->output[i];
+        if (at < output->count)
+            return output->type == OUTPUT_VELOCITY || output->type == OUTPUT_ANGULAR_VELOCITY;
+        at -= output->count;
+    }
+    return false;
+}
+
+int kc_look(const Kc *kc, const double *w, KcLook *look)
+{
+    const gic_model *code = kc->engine->code;
+    memcpy(kc->work, kc->self, code->size);
+    put(kc, w, look, NULL);
+    int status = start(kc);
+    if (status == GIC_OK)
+        memcpy(look->value, tape_array(kc->work, code->output_offset), (size_t)kc->outputs * sizeof(double));
+    for (int k = 0; k < look->columns && status == GIC_OK; ++k)
+        for (int rate = 0; rate < 2 && status == GIC_OK; ++rate) {
+            status = differentiate(kc, look->column[k], rate);
+            for (int i = 0; i < kc->outputs; ++i)
+                if (is_rate(kc, i) == rate)
+                    look->slope[k * kc->outputs + i] = kc->dout[i];
+        }
+    return status;
+}
+
+int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const double *along, double *second)
+{
+    memcpy(kc->work, kc->self, kc->engine->code->size);
+    put(kc, w, look, along);
+    int status = start(kc);
+    for (int k = 0; k < look->columns && status == GIC_OK; ++k) {
+        status = differentiate(kc, look->column[k], false);
+        memcpy(second + k * kc->outputs, kc->dout, (size_t)kc->outputs * sizeof(double));
+    }
+    return status;
+}
+
+const char *kc_status(const Kc *kc, int status)
+{
+    return instance_status(kc->pool, kc->engine->code, &kc->work->head, status);
+}

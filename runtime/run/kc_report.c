@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ * --kc: all axles in all motions; a table for people at the position of set-up, or a CSV, or a page; and what can not be
+ * moved, or stops before it is where it was to go. */
+#include "base/file.h"
+#include "base/text.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "run/kc.h"
+
+#include <math.h>
+#include <string.h>
+
+static KcStudy study_of(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
+    study.curve = pool_alloc(pool, (size_t)kc->axles * sizeof *study.curve);
+    study.refusal = pool_alloc(pool, (size_t)kc->axles * sizeof *study.refusal);
+    for (int a = 0; a < kc->axles; ++a)
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+            study.curve[a][m] = kc_sweep(kc, &kc->axle[a], m, study.travel, &study.refusal[a][m]);
+    return study;
+}
+
+const double kc_usual_travel = 0.08;
+
+const KcCurve *kc_first(const KcStudy *study, int axle)
+{
+    for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+        if (study->curve[axle][m])
+            return study->curve[axle][m];
+    return NULL;
+}
+
+/* ---- what stops ----------------------------------------------------------------------------------------- */
+
+const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion, int end)
+{
+    const KcAxle *of = &study->kc->axle[axle];
+    const KcCurve *curve = study->curve[axle][motion];
+    const char *how = kc_motion_name[motion];
+    if (!curve)
+        return end ? NULL : pool_print(pool, "%s, %s: not possible: %s", of->name, how, study->refusal[axle][motion]);
+    if (!curve->stop[end])
+        return NULL;
+    const double at = curve->row[end ? curve->rows - 1 : 0].at;
+    const char *names = "";
+    for (int i = 0; i < of->wheels; ++i)
+        names = pool_print(pool, "%s%s%s", names, i ? ", " : "", of->wheel[i].name);
+    if (motion == KC_STEER)
+        return pool_print(pool, "%s, %s: %s stop at %s = %.6g: %s", of->name, how, names,
+                          study->kc->model->coordinate[of->steer].name, at, curve->stop[end]);
+    return pool_print(pool, "%s, %s: %s stop at a travel of %+.2f mm%s: %s", of->name, how, names, 1e3 * at,
+                      motion == KC_OPPOSITE ? " on the left" : "", curve->stop[end]);
+}
+
+static void tell_stops(Pool *pool, const KcStudy *study, FILE *file, const char *before)
+{
+    for (int a = 0; a < study->kc->axles; ++a)
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+            for (int end = 0; end < 2; ++end) {
+                const char *text = kc_stop(pool, study, a, m, end);
+                if (text)
+                    fprintf(file, "%s%s\n", before, text);
+            }
+}
+
+/* ---- a table for people --------------------------------------------------------------------------------- */
+
+const char *kc_shown(Pool *pool, double value, double scale)
+{
+    if (isnan(value))
+        return "-";
+    if (isinf(value))
+        return "parallel";
+    const char *text = pool_print(pool, "%.4f", value * scale);
+    return strcmp(text, "-0.0000") ? text : "0.0000";
+}
+
+/* The row of a quantity: of travel, or of steering where only that has a value. */
+const KcRow *kc_zero(const KcStudy *study, int axle, int of_axle)
+{
+    const KcCurve *first = kc_first(study, axle), *steer = study->curve[axle][KC_STEER];
+    const bool other = of_axle >= 0 && steer && isnan(first->row[first->zero].axle[of_axle]);
+    return other ? &steer->row[steer->zero] : &first->row[first->zero];
+}
+
+const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double *scale)
+{
+    *scale = kc_of_axle[of_axle].scale;
+    if (of_axle != KC_RATIO || strcmp(kc_unit(kc, axle, of_axle), "m/rad") != 0)
+        return kc_of_axle[of_axle].shown;
+    *scale = 1e3 / kc_of_wheel[KC_CAMBER].scale;
+    return "mm/deg";
+}
+
+static void print_axle(Pool *pool, const KcStudy *study, int a)
+{
+    const Kc *kc = study->kc;
+    const KcAxle *axle = &kc->axle[a];
+    printf("\n%s\n", axle->name);
+    if (!kc_first(study, a))
+        return;
+    const KcRow *row = kc_zero(study, a, -1);
+    printf("  %-50s%-9s", "travel 0", "");
+    for (int i = 0; i < axle->wheels; ++i)
+        printf(" %14s", axle->wheel[i].name);
+    for (int q = 0; q < KC_OF_WHEEL; ++q) {
+        if (isnan(row->wheel[0][q]))
+            continue;
+        printf("\n  %-50s%-9s", kc_of_wheel[q].title, kc_of_wheel[q].shown);
+        for (int i = 0; i < axle->wheels; ++i)
+            printf(" %14s", kc_shown(pool, row->wheel[i][q], kc_of_wheel[q].scale));
+    }
+    for (int e = 0; e < kc->elements; ++e)
+        if (kc_ratio_seen(kc, axle, row, e)) {
+            printf("\n  %-50s%-9s", pool_print(pool, "Motion ratio of %s", kc->element[e].name),
+                   kc->element[e].angle ? "rad/m" : "1");
+            for (int i = 0; i < axle->wheels; ++i)
+                printf(" %14s", kc_shown(pool, row->ratio[i * kc->elements + e], 1));
+        }
+    printf("\n");
+    for (int q = 0; q < KC_OF_AXLE; ++q) {
+        double scale;
+        const char *unit = kc_shown_unit(kc, axle, q, &scale);
+        const double value = kc_zero(study, a, q)->axle[q];
+        if (!isnan(value))
+            printf("  %-50s%-9s %14s\n", kc_of_axle[q].title, unit, kc_shown(pool, value, scale));
+    }
+}
+
+/* ---- CSV ------------------------------------------------------------------------------------------------ */
+
+bool kc_ratio_seen(const Kc *kc, const KcAxle *axle, const KcRow *row, int e)
+{
+    for (int i = 0; i < axle->wheels; ++i)
+        if (fabs(row->ratio[i * kc->elements + e]) > 1e-9)
+            return true;
+    return false;
+}
+
+/* Is the steering coordinate of an axle the same as that of one before? */
+static bool steer_again(const Kc *kc, int axle)
+{
+    for (int a = 0; a < axle; ++a)
+        if (kc->axle[a].steer == kc->axle[axle].steer)
+            return true;
+    return kc->axle[axle].steer < 0;
+}
+
+static void cell(Csv *csv, double value)
+{
+    if (isnan(value))
+        csv_text(csv, NULL);
+    else
+        csv_number(csv, value + 0.0);
+}
+
+static void write_names(Pool *pool, Csv *csv, const Kc *kc)
+{
+    csv_name(csv, "axle", NULL);
+    csv_name(csv, "motion", NULL);
+    csv_name(csv, "travel", "m");
+    const KcAxle *steered = &kc->axle[0];
+    for (int a = 0; a < kc->axles; ++a) {
+        if (steered->steer < 0)
+            steered = &kc->axle[a];
+        if (!steer_again(kc, a)) {
+            const Coordinate *c = &kc->model->coordinate[kc->axle[a].steer];
+            csv_name(csv, c->name, c->type == COORDINATE_ANGLE ? "rad" : "m");
+        }
+    }
+    for (int q = 0; q < KC_OF_AXLE; ++q)
+        csv_name(csv, kc_of_axle[q].name, kc_unit(kc, steered, q));
+    for (int a = 0; a < kc->axles; ++a)
+        for (int i = 0; i < kc->axle[a].wheels; ++i) {
+            const char *name = kc->axle[a].wheel[i].name;
+            for (int q = 0; q < KC_OF_WHEEL; ++q)
+                csv_name(csv, pool_print(pool, "%s.%s", name, kc_of_wheel[q].name), kc_of_wheel[q].unit);
+            for (int e = 0; e < kc->elements; ++e)
+                csv_name(csv, pool_print(pool, "%s.ratio.%s", name, kc->element[e].name),
+                         kc->element[e].angle ? "rad/m" : "1");
+        }
+    csv_end_row(csv);
+}
+
+static void write_row(Csv *csv, const Kc *kc, int axle, KcMotion motion, const KcRow *row)
+{
+    csv_text(csv, kc->axle[axle].name);
+    csv_text(csv, kc_motion_name[motion]);
+    cell(csv, motion == KC_STEER ? 0 : row->at);
+    for (int a = 0; a < kc->axles; ++a)
+        if (!steer_again(kc, a)) {
+            const int steer = kc->axle[a].steer;
+            cell(csv, steer != kc->axle[axle].steer ? NAN : motion == KC_STEER ? row->at : kc->initial[steer]);
+        }
+    for (int q = 0; q < KC_OF_AXLE; ++q)
+        cell(csv, row->axle[q]);
+    for (int a = 0; a < kc->axles; ++a)
+        for (int i = 0; i < kc->axle[a].wheels; ++i) {
+            for (int q = 0; q < KC_OF_WHEEL; ++q)
+                cell(csv, a == axle ? row->wheel[i][q] : NAN);
+            for (int e = 0; e < kc->elements; ++e)
+                cell(csv, a == axle ? row->ratio[i * kc->elements + e] : NAN);
+        }
+    csv_end_row(csv);
+}
+
+static void write_csv(Pool *pool, const KcStudy *study, const char *path)
+{
+    interrupt_hold();
+    Csv csv = csv_open(pool, path);
+    write_names(pool, &csv, study->kc);
+    for (int a = 0; a < study->kc->axles; ++a)
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+            for (int i = 0; study->curve[a][m] && i < study->curve[a][m]->rows; ++i)
+                write_row(&csv, study->kc, a, m, &study->curve[a][m]->row[i]);
+    csv_close(&csv);
+    interrupt_release();
+}
+
+void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const KcStudy study = study_of(pool, model, scene, request);
+    bool moves = false;
+    for (int a = 0; a < study.kc->axles; ++a)
+        moves = moves || kc_first(&study, a);
+    if (!moves)
+        diag_fail((Place){model->source, 0, 0}, "give its wheels suspensions with coordinates",
+                  "no axle of model '%s' can be moved: %s: %s", model->name, study.kc->axle[0].name,
+                  study.refusal[0][KC_PARALLEL]);
+    if (request->results)
+        write_csv(pool, &study, request->results);
+    if (request->report)
+        kc_page(pool, &study, request->report);
+    if (request->results || request->report) {
+        if (!request->quiet)
+            tell_stops(pool, &study, stderr, "gicrun: note: ");
+        return;
+    }
+    printf("kinematics of %s, models/KC.md defines them\n", model->name);
+    for (int a = 0; a < study.kc->axles; ++a)
+        print_axle(pool, &study, a);
+    printf("\n");
+    tell_stops(pool, &study, stdout, "");
+}
