@@ -208,13 +208,15 @@ static Request read_command_line(int count, char **word)
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
-        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
+        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+                   NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
     if (request.with && !request.picture && !request.page)
         usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
-        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
+        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+                   NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
@@ -225,7 +227,8 @@ static Request read_command_line(int count, char **word)
     if (request.driven && !path_ends(request.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
     if (request.recording && !runs)
-        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc", NULL);
+        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+                   NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
     if (!request.results && !request.picture && !request.page && !request.driven &&
@@ -255,8 +258,7 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
 /* Refuse outputs that are inputs of the run, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
-    const char *const output[] = {request->results, request->picture, request->page, request->driven,
-                                  request->report};
+    const char *const output[] = {request->results, request->picture, request->page, request->driven, request->report};
     const Source states = {.path = request->states ? request->states : "-"};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])

@@ -17,21 +17,21 @@
 /* A force element that a coordinate, two points or an axis has; its value x: coordinate, length or angle. */
 typedef struct KcElement {
     const char *name;
-    int coordinate;     /* or -1: */
-    int value, rate;    /* places among the outputs of x and x' */
-    int force;          /* place of the element's Q or T */
-    double sign;        /* of the generalized force: Q acts along x (1), T against it (-1) */
-    bool angle;         /* x is in rad */
+    int coordinate;  /* or -1: */
+    int value, rate; /* places among the outputs of x and x' */
+    int force;       /* place of the element's Q or T */
+    double sign;     /* of the generalized force: Q acts along x (1), T against it (-1) */
+    bool angle;      /* x is in rad */
 } KcElement;
 
 typedef struct KcWheel {
     const Wheel *wheel;
     const char *name;
-    double side;    /* 1: left or in the middle, y >= 0; -1: right */
+    double side; /* 1: left or in the middle, y >= 0; -1: right */
     double radius;
-    bool shaft;     /* the torque of its drive is taken by another body than its carrier */
-    int centre;     /* places among the outputs: position and velocity of the centre, of a point 1 m along the axis, */
-    int velocity;   /* angular velocity of the carrier; three each */
+    bool shaft;   /* the torque of its drive is taken by another body than its carrier */
+    int centre;   /* places among the outputs: position and velocity of the centre, of a point 1 m along the axis, */
+    int velocity; /* angular velocity of the carrier; three each */
     int tip, turn;
 } KcWheel;
 
@@ -43,7 +43,7 @@ typedef struct KcAxle {
     int number;       /* from 1, the foremost */
     int wheels;
     KcWheel wheel[KC_WHEELS];
-    double ahead;     /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
+    double ahead;          /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
     int travel[KC_WHEELS]; /* [wheels] coordinates that move them up and down */
     int steer;             /* coordinate, -1: none */
     const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
@@ -55,16 +55,16 @@ typedef struct Kc {
     const Model *model; /* the user's, with outputs and force elements that measure */
     const Engine *engine;
     const Linear *linear;
-    Instance *self;     /* as set up: the base at the design, coordinates at their initial values */
+    Instance *self; /* as set up: the base at the design, coordinates at their initial values */
     Instance *work;
     int axles, elements, outputs;
     KcAxle *axle;
     KcElement *element;
-    double *initial;    /* [coordinates] */
-    double wheelbase;   /* from the last axle to the first, m; 0: there is one axle */
-    double height;      /* of the centre of mass above the mean of all contacts, m; 0: the base is ground */
-    double fixed_x;     /* of the mean contact of axles without steering; used if `turns` */
-    bool turns;         /* there is an axle with steering, and one without */
+    double *initial;       /* [coordinates] */
+    double wheelbase;      /* from the last axle to the first, m; 0: there is one axle */
+    double height;         /* of the centre of mass above the mean of all contacts, m; 0: the base is ground */
+    double fixed_x;        /* of the mean contact of axles without steering; used if `turns` */
+    bool turns;            /* there is an axle with steering, and one without */
     double *f, *df, *dout; /* work */
 } Kc;
 
@@ -74,8 +74,8 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
 
 /* ---- kc_look.c: a position, with derivatives */
 
-/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, then that
- * of steering. */
+/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, then
+ * that of steering. */
 typedef struct KcLook {
     int columns, outputs;
     int column[KC_WHEELS + 1];
@@ -123,22 +123,23 @@ extern const char *const kc_motion_name[KC_MOTIONS];
 enum { KC_WHEEL_ROOM = 32, KC_AXLE_ROOM = 24 };
 
 typedef struct KcRow {
-    double at;        /* travel, m, of the left wheels; in steering the coordinate */
+    double at;                      /* travel, m, of the left wheels; in steering the coordinate */
     double (*wheel)[KC_WHEEL_ROOM]; /* [wheels]; NAN: has no value here */
-    double (*ratio);  /* [wheels][elements] dx/dz */
+    double(*ratio);                 /* [wheels][elements] dx/dz */
     double axle[KC_AXLE_ROOM];
 } KcRow;
 
 typedef struct KcCurve {
     KcMotion motion;
-    int rows, zero;   /* zero: the row at the position of set-up */
+    int rows, zero; /* zero: the row at the position of set-up */
     KcRow *row;
     const char *stop[2]; /* why it ends at the low and the high end before what was asked for; NULL: it does not */
 } KcCurve;
 
 enum { KC_STEPS = 20 /* to each side */ };
 
-/* Move an axle to `travel`, m, up and down, or its steering through its range. NULL: it can not do that at all, *why. */
+/* Move an axle to `travel`, m, up and down, or its steering through its range. NULL: it can not do that at all, *why.
+ */
 const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, double travel, const char **why);
 
 /* ---- kc_row.c: the quantities of one position */
@@ -146,15 +147,16 @@ const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, doubl
 /* along: rates of the look's columns along the motion, of which `at` moves with the rate 1. Returns a status. */
 int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, const KcLook *look, const double *along,
            KcRow *row);
-/* Rates of travel coordinates that move the wheels' centres, or else their contacts, with the velocities vz [wheels] and
- * the steering with the rate `steer`. along: [columns]. False: they can not. */
+/* Rates of travel coordinates that move the wheels' centres, or else their contacts, with the velocities vz [wheels]
+ * and the steering with the rate `steer`. along: [columns]. False: they can not. */
 bool kc_along(const KcAxle *axle, const KcLook *look, bool contacts, const double *vz, double steer, double *along);
 /* Solve A x = b of n equations in place; false: singular. */
 bool kc_solve(int n, double *A, double *b);
 
 /* ---- kc_force.c: forces of the axle's elements at the contacts */
 
-/* Vertical forces [wheels] of the ground that hold the force elements, and their rates along a motion. Returns a status.
+/* Vertical forces [wheels] of the ground that hold the force elements, and their rates along a motion. Returns a
+ * status.
  */
 int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along, double *force,
               double *rate);
@@ -169,14 +171,49 @@ typedef struct KcQuantity {
 } KcQuantity;
 
 typedef enum KcOfWheel {
-    KC_TRAVEL, KC_CAMBER, KC_TOE, KC_STEER_ANGLE, KC_CAMBER_RATE, KC_TOE_RATE, KC_CENTRE_X, KC_CENTRE_Y, KC_CONTACT_X,
-    KC_CONTACT_Y, KC_CONTACT_Z, KC_FRONT_ARM, KC_FRONT_ANGLE, KC_SIDE_ARM, KC_SIDE_ANGLE, KC_BRAKE_ANGLE, KC_DRIVE_ANGLE,
-    KC_FORCE, KC_RATE, KC_INCLINATION, KC_CASTER, KC_SCRUB, KC_TRAIL, KC_OFFSET, KC_OFFSET_X, KC_OF_WHEEL
+    KC_TRAVEL,
+    KC_CAMBER,
+    KC_TOE,
+    KC_STEER_ANGLE,
+    KC_CAMBER_RATE,
+    KC_TOE_RATE,
+    KC_CENTRE_X,
+    KC_CENTRE_Y,
+    KC_CONTACT_X,
+    KC_CONTACT_Y,
+    KC_CONTACT_Z,
+    KC_FRONT_ARM,
+    KC_FRONT_ANGLE,
+    KC_SIDE_ARM,
+    KC_SIDE_ANGLE,
+    KC_BRAKE_ANGLE,
+    KC_DRIVE_ANGLE,
+    KC_FORCE,
+    KC_RATE,
+    KC_INCLINATION,
+    KC_CASTER,
+    KC_SCRUB,
+    KC_TRAIL,
+    KC_OFFSET,
+    KC_OFFSET_X,
+    KC_OF_WHEEL
 } KcOfWheel;
 
 typedef enum KcOfAxle {
-    KC_TRACK, KC_TRACK_RATE, KC_CENTRE_HEIGHT, KC_CENTRE_SIDE, KC_FORCE_HEIGHT, KC_ROLL_RATE, KC_ANTI_BRAKE,
-    KC_ANTI_DRIVE, KC_MEAN_STEER, KC_RATIO, KC_ACKERMANN_ERROR, KC_ACKERMANN, KC_RADIUS, KC_OF_AXLE
+    KC_TRACK,
+    KC_TRACK_RATE,
+    KC_CENTRE_HEIGHT,
+    KC_CENTRE_SIDE,
+    KC_FORCE_HEIGHT,
+    KC_ROLL_RATE,
+    KC_ANTI_BRAKE,
+    KC_ANTI_DRIVE,
+    KC_MEAN_STEER,
+    KC_RATIO,
+    KC_ACKERMANN_ERROR,
+    KC_ACKERMANN,
+    KC_RADIUS,
+    KC_OF_AXLE
 } KcOfAxle;
 
 extern const KcQuantity kc_of_wheel[KC_OF_WHEEL], kc_of_axle[KC_OF_AXLE];

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Forces of the ground that hold the force elements of an axle, by virtual work. With the heights z_i of the contacts and
- * the values x_e of the elements as functions of the travel coordinates w_a, and Q_e the elements' generalized forces,
- *     sum_i F_i dz_i/dw_a + sum_e Q_e dx_e/dw_a = 0    for all a,
- * and along a motion ' , with the second derivatives of both,
- *     sum_i F_i' dz_i/dw_a = -sum_e (Q_e' dx_e/dw_a + Q_e (dx_e/dw_a)') - sum_i F_i (dz_i/dw_a)'. */
+ * Forces of the ground that hold the force elements of an axle, by virtual work. With the heights z_i of the contacts
+ * and the values x_e of the elements as functions of the travel coordinates w_a, and Q_e the elements' generalized
+ * forces, sum_i F_i dz_i/dw_a + sum_e Q_e dx_e/dw_a = 0    for all a, and along a motion ' , with the second
+ * derivatives of both, sum_i F_i' dz_i/dw_a = -sum_e (Q_e' dx_e/dw_a + Q_e (dx_e/dw_a)') - sum_i F_i (dz_i/dw_a)'. */
 #include "gic_runtime.h"
 #include "run/kc.h"
 
@@ -41,7 +40,8 @@ int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *l
             J[a * n + i] = by[i].contact[2];
         }
         for (int e = 0; e < kc->elements; ++e)
-            force[a] -= kc->element[e].sign * look->value[kc->element[e].force] * element_slope(&kc->element[e], look, a);
+            force[a] -=
+                kc->element[e].sign * look->value[kc->element[e].force] * element_slope(&kc->element[e], look, a);
     }
     memcpy(A, J, sizeof A);
     if (!kc_solve(n, A, force))
@@ -55,8 +55,7 @@ int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *l
             double change = 0;
             for (int k = 0; k < look->columns; ++k)
                 change += along[k] * look->slope[k * kc->outputs + element->force];
-            rate[a] -= element->sign *
-                       (change * element_slope(element, look, a) + look->value[element->force] * bend);
+            rate[a] -= element->sign * (change * element_slope(element, look, a) + look->value[element->force] * bend);
         }
         for (int i = 0; i < n; ++i) {
             const double *by_a = second + a * kc->outputs;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A position of the mechanism, with derivatives by the coordinates of an axle. Poses are differentiated by a coordinate;
- * velocities, which are linear in the rates, by its rate; and velocities at given rates by a coordinate: that is the
- * second derivative of the poses. All in dual numbers. */
+ * A position of the mechanism, with derivatives by the coordinates of an axle. Poses are differentiated by a
+ * coordinate; velocities, which are linear in the rates, by its rate; and velocities at given rates by a coordinate:
+ * that is the second derivative of the poses. All in dual numbers. */
 #include "gic_runtime.h"
 #include "run/kc.h"
 #include "tape/engine_tape.h"
@@ -27,7 +27,8 @@ static void put(const Kc *kc, const double *w, const KcLook *look, const double 
     const gic_model *code = kc->engine->code;
     double *state = tape_array(kc->work, code->state_offset), *input = tape_array(kc->work, code->input_offset);
     for (int c = 0; c < code->coordinate_count; ++c) {
-        double *at = code->coordinate_state[c] >= 0 ? state + code->coordinate_state[c] : input + code->coordinate_input[c];
+        double *at =
+            code->coordinate_state[c] >= 0 ? state + code->coordinate_state[c] : input + code->coordinate_input[c];
         double *rate = at + (code->coordinate_state[c] >= 0 ? code->slow_count / 2 : 1);
         *at = w[c];
         *rate = 0;

@@ -96,18 +96,16 @@ static KcWheel watch_wheel(Kc *kc, Model *model, const Wheel *wheel)
     axis_of(model, wheel, axis);
     add3(wheel->center, axis, tip);
     const double radius = wheel->tire >= 0 ? model->tire[wheel->tire].radius : wheel->radius;
-    return (KcWheel){.wheel = wheel,
-                     .name = wheel->name,
-                     .radius = radius,
-                     .shaft = wheel->tire < 0 || wheel->drive_body != wheel->body,
-                     .centre = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, wheel->center),
-                     .velocity = watch_point(kc->pool, model, OUTPUT_VELOCITY, wheel->body, wheel->center),
-                     .tip = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, tip),
-                     .turn = watch(kc->pool, model,
-                                   (Output){.type = OUTPUT_ANGULAR_VELOCITY,
-                                            .body = wheel->body,
-                                            .in = BODY_GROUND,
-                                            .count = 3})};
+    return (KcWheel){
+        .wheel = wheel,
+        .name = wheel->name,
+        .radius = radius,
+        .shaft = wheel->tire < 0 || wheel->drive_body != wheel->body,
+        .centre = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, wheel->center),
+        .velocity = watch_point(kc->pool, model, OUTPUT_VELOCITY, wheel->body, wheel->center),
+        .tip = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, tip),
+        .turn = watch(kc->pool, model,
+                      (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = wheel->body, .in = BODY_GROUND, .count = 3})};
 }
 
 /* ---- axles ---------------------------------------------------------------------------------------------- */
@@ -150,16 +148,16 @@ static void find_axles(Kc *kc, Model *model)
         axle->wheel[axle->wheels++] = wheel;
     }
     for (int i = 0; i < kc->axles; ++i)
-        kc->axle[i].name = kc->axles == 1        ? "axle"
-                           : i == 0              ? "front"
-                           : i == kc->axles - 1  ? "rear"
-                                                 : pool_print(kc->pool, "axle_%d", i + 1);
+        kc->axle[i].name = kc->axles == 1       ? "axle"
+                           : i == 0             ? "front"
+                           : i == kc->axles - 1 ? "rear"
+                                                : pool_print(kc->pool, "axle_%d", i + 1);
 }
 
 /* ---- what coordinates do -------------------------------------------------------------------------------- */
 
-/* What unit rates of all coordinates do to an axle's wheels: [wheels][coordinates], times the coordinates' ranges. turn:
- * angular velocities. */
+/* What unit rates of all coordinates do to an axle's wheels: [wheels][coordinates], times the coordinates' ranges.
+ * turn: angular velocities. */
 typedef struct Effects {
     double *lift, (*turn)[3];
 } Effects;
@@ -182,8 +180,8 @@ static double width(const Coordinate *coordinate)
     return coordinate->range[1] - coordinate->range[0];
 }
 
-/* The largest number that is left, of rows and columns not yet taken, becomes the next pivot; its row is eliminated from
- * the others. Returns the number of pivots. */
+/* The largest number that is left, of rows and columns not yet taken, becomes the next pivot; its row is eliminated
+ * from the others. Returns the number of pivots. */
 static int choose(const KcAxle *axle, int coordinates, double *lift, int *travel)
 {
     bool row_taken[KC_WHEELS] = {false};
@@ -205,7 +203,8 @@ static int choose(const KcAxle *axle, int coordinates, double *lift, int *travel
         for (int i = 0; i < axle->wheels; ++i) {
             const double share = lift[i * coordinates + column] / lift[row * coordinates + column];
             for (int c = 0; c < coordinates && !row_taken[i]; ++c)
-                lift[i * coordinates + c] = c == column ? 0 : lift[i * coordinates + c] - share * lift[row * coordinates + c];
+                lift[i * coordinates + c] =
+                    c == column ? 0 : lift[i * coordinates + c] - share * lift[row * coordinates + c];
         }
     }
     return rank;
@@ -224,8 +223,8 @@ static int ascending(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
-/* How much a coordinate steers while the heights of the wheels are held: the sum of the wheels' turning about z; 0 where
- * a wheel's axis of turning is more than 60 degrees from the vertical. */
+/* How much a coordinate steers while the heights of the wheels are held: the sum of the wheels' turning about z; 0
+ * where a wheel's axis of turning is more than 60 degrees from the vertical. */
 static double steering_of(const KcAxle *axle, const Effects *effects, int all, int c)
 {
     const int n = axle->wheels;
@@ -290,8 +289,8 @@ static void classify(const Kc *kc, KcAxle *axle)
     if (rank == 0)
         axle->refusal = "no coordinate moves its wheels up and down";
     else if (rank < n)
-        axle->refusal = pool_print(kc->pool, "its %d wheels can't travel each by itself: coordinates move them in %d ways",
-                                   n, rank);
+        axle->refusal = pool_print(
+            kc->pool, "its %d wheels can't travel each by itself: coordinates move them in %d ways", n, rank);
     else
         axle->steer = find_steer(kc, axle, &effects);
     if (axle->steer < 0)

@@ -14,7 +14,8 @@ typedef struct Page {
     const KcStudy *study;
 } Page;
 
-static const char *const color[] = {"#1660a8", "#c03a1b", "#2a8a3c", "#8a5a00", "#7a3a9a", "#0a8a8a", "#555", "#c03a8a"};
+static const char *const color[] = {"#1660a8", "#c03a1b", "#2a8a3c", "#8a5a00",
+                                    "#7a3a9a", "#0a8a8a", "#555",    "#c03a8a"};
 enum { COLORS = sizeof color / sizeof *color };
 
 static const char *const title_of[KC_MOTIONS] = {"Parallel travel", "Opposite travel", "Steering"};
@@ -26,8 +27,7 @@ typedef struct Panel {
     const char *title, *unit, *below;
     int rows, curves;
     const double *x;
-    double *y;         /* [curves][rows]; what is not finite is left out */
-    const char **name; /* [curves]; NULL: one curve without a name */
+    double *y; /* [curves][rows]; what is not finite is left out */
 } Panel;
 
 enum { WIDTH = 280, HEIGHT = 170, LEFT = 48, RIGHT = 8, TOP = 8, BOTTOM = 32 };
@@ -59,21 +59,20 @@ static void range_of(const double *value, int count, double range[2])
 
 static void ticks(Text *out, const double range[2], bool upright)
 {
-    const double step = tick_step(range[1] - range[0], upright ? 5 : 6), size = upright ? HEIGHT - TOP - BOTTOM
-                                                                                       : WIDTH - LEFT - RIGHT;
+    const double step = tick_step(range[1] - range[0], upright ? 5 : 6),
+                 size = upright ? HEIGHT - TOP - BOTTOM : WIDTH - LEFT - RIGHT;
     for (double k = ceil(range[0] / step - 1e-9); k * step <= range[1] + 1e-9 * step; ++k) {
         const double share = (k * step - range[0]) / (range[1] - range[0]);
         const char *class = k == 0 ? "zero" : "grid";
         if (upright)
-            text_print(out,
-                       "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%g</text>\n",
-                       class, LEFT, TOP + size * (1 - share), WIDTH - RIGHT, LEFT - 4, TOP + size * (1 - share) + 3,
-                       k * step);
+            text_print(
+                out, "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%g</text>\n",
+                class, LEFT, TOP + size * (1 - share), WIDTH - RIGHT, LEFT - 4, TOP + size * (1 - share) + 3, k * step);
         else
-            text_print(out,
-                       "<path class=\"%s\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n",
-                       class, LEFT + size * share, TOP, HEIGHT - BOTTOM, LEFT + size * share, HEIGHT - BOTTOM + 12,
-                       k * step);
+            text_print(
+                out,
+                "<path class=\"%s\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n",
+                class, LEFT + size * share, TOP, HEIGHT - BOTTOM, LEFT + size * share, HEIGHT - BOTTOM + 12, k * step);
     }
 }
 
@@ -90,7 +89,8 @@ static void curve(Text *out, const Panel *panel, int c, const double x[2], const
         }
         text_print(out, "%s", open ? " " : "");
         if (!open)
-            text_print(out, "<polyline stroke=\"%s\"%s points=\"", color[c % COLORS], c == 1 ? " stroke-dasharray=\"6 3\"" : "");
+            text_print(out, "<polyline stroke=\"%s\"%s points=\"", color[c % COLORS],
+                       c == 1 ? " stroke-dasharray=\"6 3\"" : "");
         open = true;
         text_print(out, "%.1f,%.1f", LEFT + (WIDTH - LEFT - RIGHT) * (panel->x[i] - x[0]) / (x[1] - x[0]),
                    TOP + (HEIGHT - TOP - BOTTOM) * (y[1] - value) / (y[1] - y[0]));
@@ -109,11 +109,6 @@ static void draw(Text *out, const Panel *panel)
     range_of(panel->x, panel->rows, x);
     range_of(panel->y, panel->rows * panel->curves, y);
     text_print(out, "<figure><figcaption>%s, %s", panel->title, panel->unit);
-    for (int c = 0; c < panel->curves && panel->name; ++c) {
-        text_print(out, " <span style=\"color:%s\">", color[c % COLORS]);
-        text_html(out, panel->name[c]);
-        text_print(out, "</span>");
-    }
     text_print(out, "</figcaption>\n<svg viewBox=\"0 0 %d %d\" role=\"img\">\n", WIDTH, HEIGHT);
     ticks(out, x, false);
     ticks(out, y, true);
@@ -126,6 +121,21 @@ static void draw(Text *out, const Panel *panel)
 
 /* ---- what a motion shows -------------------------------------------------------------------------------- */
 
+/* Left out: what is the abscissa, what another curve shows as well, and places, of which there are changes. */
+static bool is_drawn(int quantity, KcMotion motion)
+{
+    switch (quantity) {
+    case KC_TRAVEL:
+    case KC_CONTACT_X:
+    case KC_CONTACT_Y:
+    case KC_SIDE_ANGLE: return false;
+    case KC_STEER_ANGLE: return motion == KC_STEER;
+    case KC_TOE:
+    case KC_TOE_RATE: return motion != KC_STEER;
+    default: return true;
+    }
+}
+
 static void motion(Page *page, Text *out, int a, const KcCurve *of)
 {
     const Kc *kc = page->study->kc;
@@ -134,25 +144,28 @@ static void motion(Page *page, Text *out, int a, const KcCurve *of)
     const bool turns = steers && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE;
     const size_t n = (size_t)(axle->wheels + 1) * (size_t)of->rows;
     double *x = pool_alloc(page->pool, (size_t)of->rows * sizeof *x), *y = pool_alloc(page->pool, n * sizeof *y);
-    const char *name[KC_WHEELS];
     Panel panel = {.rows = of->rows, .x = x, .y = y};
-    for (int i = 0; i < axle->wheels; ++i)
-        name[i] = axle->wheel[i].name;
     for (int r = 0; r < of->rows; ++r)
         x[r] = of->row[r].at * (turns ? kc_of_wheel[KC_CAMBER].scale : 1e3);
-    panel.below = steers ? pool_print(page->pool, "%s, %s", kc->model->coordinate[axle->steer].name, turns ? "deg" : "mm")
+    panel.below = steers
+                      ? pool_print(page->pool, "%s, %s", kc->model->coordinate[axle->steer].name, turns ? "deg" : "mm")
                   : of->motion == KC_OPPOSITE ? "travel of the left, mm"
                                               : "travel, mm";
-    text_print(out, "<h3>%s</h3>\n<div class=\"curves\">\n", title_of[of->motion]);
+    text_print(out, "<h3>%s", title_of[of->motion]);
+    for (int i = 0; i < axle->wheels; ++i) {
+        text_print(out, " <span style=\"color:%s\">%s", color[i % COLORS], i == 1 ? "&#9476;&#9476; " : "&#8212; ");
+        text_html(out, axle->wheel[i].name);
+        text_print(out, "</span>");
+    }
+    text_print(out, "</h3>\n<div class=\"curves\">\n");
     for (int q = 0; q < KC_OF_WHEEL; ++q) {
         panel.title = kc_of_wheel[q].title;
         panel.unit = kc_of_wheel[q].shown;
         panel.curves = axle->wheels;
-        panel.name = name;
         for (int i = 0; i < axle->wheels; ++i)
             for (int r = 0; r < of->rows; ++r)
                 y[i * of->rows + r] = of->row[r].wheel[i][q] * kc_of_wheel[q].scale;
-        if (q != KC_TRAVEL)
+        if (is_drawn(q, of->motion))
             draw(out, &panel);
     }
     for (int e = 0; e < kc->elements; ++e) {
@@ -170,7 +183,6 @@ static void motion(Page *page, Text *out, int a, const KcCurve *of)
         panel.title = kc_of_axle[q].title;
         panel.unit = kc_shown_unit(kc, axle, q, &scale);
         panel.curves = 1;
-        panel.name = NULL;
         for (int r = 0; r < of->rows; ++r)
             y[r] = of->row[r].axle[q] * scale;
         draw(out, &panel);
@@ -229,7 +241,8 @@ static void table(Page *page, Text *out, int a)
         if (isnan(value))
             continue;
         begin(out, kc_of_axle[q].title, unit);
-        text_print(out, "<td class=\"n\" colspan=\"%d\">%s</td></tr>\n", axle->wheels, kc_shown(page->pool, value, scale));
+        text_print(out, "<td class=\"n\" colspan=\"%d\">%s</td></tr>\n", axle->wheels,
+                   kc_shown(page->pool, value, scale));
     }
     text_print(out, "</tbody>\n</table>\n");
 }
@@ -242,7 +255,8 @@ static void write_axles(void *context, Text *out, int indent)
     (void)indent;
     for (int a = 0; a < page->study->kc->axles; ++a) {
         const KcAxle *axle = &page->study->kc->axle[a];
-        text_print(out, "<h2>%s</h2>\n", strcmp(axle->name, "axle") ? pool_print(page->pool, "Axle: %s", axle->name) : "Axle");
+        text_print(out, "<h2>%s</h2>\n",
+                   strcmp(axle->name, "axle") ? pool_print(page->pool, "Axle: %s", axle->name) : "Axle");
         for (KcMotion m = 0; m < KC_MOTIONS; ++m)
             for (int end = 0; end < 2; ++end) {
                 const char *text = kc_stop(page->pool, page->study, a, m, end);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * --kc: all axles in all motions; a table for people at the position of set-up, or a CSV, or a page; and what can not be
- * moved, or stops before it is where it was to go. */
+ * --kc: all axles in all motions; a table for people at the position of set-up, or a CSV, or a page; and what can not
+ * be moved, or stops before it is where it was to go. */
 #include "base/file.h"
 #include "base/text.h"
 #include "gic_runtime.h"
@@ -186,8 +186,8 @@ static void write_names(Pool *pool, Csv *csv, const Kc *kc)
 
 static void write_row(Csv *csv, const Kc *kc, int axle, KcMotion motion, const KcRow *row)
 {
-    csv_text(csv, kc->axle[axle].name);
-    csv_text(csv, kc_motion_name[motion]);
+    csv_name(csv, kc->axle[axle].name, NULL);
+    csv_name(csv, kc_motion_name[motion], NULL);
     cell(csv, motion == KC_STEER ? 0 : row->at);
     for (int a = 0; a < kc->axles; ++a)
         if (!steer_again(kc, a)) {

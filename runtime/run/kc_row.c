@@ -74,7 +74,8 @@ static void steering_axis(const KcWheel *wheel, const KcPose *pose, const KcPose
 {
     const double *s = pose->axis, square = dot3(rate->turn, rate->turn);
     double u[3], on[3], forward[2], left[2], ground[2], level[2];
-    if (!(sqrt(square) * wheel->radius > rounding * norm3(rate->centre)) || !(fabs(rate->turn[2]) > slight * sqrt(square)))
+    if (!(sqrt(square) * wheel->radius > rounding * norm3(rate->centre)) ||
+        !(fabs(rate->turn[2]) > slight * sqrt(square)))
         return;
     for (int i = 0; i < 3; ++i)
         u[i] = rate->turn[i] / (rate->turn[2] < 0 ? -sqrt(square) : sqrt(square));
@@ -110,8 +111,8 @@ static void swing_arms(const KcAxle *axle, const KcWheel *wheel, const KcPose *r
     out[KC_FRONT_ANGLE] = wheel->side * atan(rate->contact[1] / rate->contact[2]);
     out[KC_SIDE_ARM] = -axle->ahead * arm_of(rate->locked[2], rate->turn[1], wheel->radius);
     out[KC_SIDE_ANGLE] = out[KC_BRAKE_ANGLE] = axle->ahead * atan(rate->locked[0] / rate->locked[2]);
-    out[KC_DRIVE_ANGLE] = axle->ahead * atan(wheel->shaft ? rate->centre[0] / rate->centre[2]
-                                                          : rate->locked[0] / rate->locked[2]);
+    out[KC_DRIVE_ANGLE] =
+        axle->ahead * atan(wheel->shaft ? rate->centre[0] / rate->centre[2] : rate->locked[0] / rate->locked[2]);
 }
 
 static void of_wheel(const KcAxle *axle, KcMotion motion, const KcLook *look, const double *zero, const double *along,
@@ -163,8 +164,8 @@ static bool ratios(const Kc *kc, const KcAxle *axle, const KcLook *look, double 
 
 /* Track, roll centres: `left` and `right` are the first wheel of each side. roll: motion in which contacts rise with y
  * times the unit of the roll angle. */
-static void of_sides(const KcAxle *axle, const KcLook *look, const double *along, const double *roll, int left, int right,
-                     double *out)
+static void of_sides(const KcAxle *axle, const KcLook *look, const double *along, const double *roll, int left,
+                     int right, double *out)
 {
     KcPose pose[2], rate[2], rolled[2];
     double slope[2], sideways = 0;

@@ -159,10 +159,10 @@ const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, doubl
     Way way = {.kc = kc, .axle = axle, .motion = motion, .look = kc_look_new(kc, axle)};
     KcCurve *curve = pool_alloc(kc->pool, sizeof *curve), up = {.motion = motion};
     *curve = up;
-    *why = axle->refusal                              ? axle->refusal
-           : motion == KC_STEER                       ? axle->unsteered
+    *why = axle->refusal                               ? axle->refusal
+           : motion == KC_STEER                        ? axle->unsteered
            : motion == KC_OPPOSITE && !has_sides(axle) ? "it has wheels on one side only"
-                                                      : NULL;
+                                                       : NULL;
     if (*why)
         return NULL;
     way.w = pool_alloc(kc->pool, bytes(&way) + 1);

@@ -1,0 +1,101 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_kc.sh GICGEN GICRUN: kinematics of axles, `gicrun --kc`. Double wishbones, five links, a solid axle and an axle
+# with other hard points on one side against an independent solution (tests/vehicle/kinematics.py, to 1e-12); planar
+# mechanisms and sliding pillars against constructions by hand (planar_axles.py); a vehicle against its mirror image;
+# steering in nice numbers; what can't be moved; the page.
+gicgen=$1
+gicrun=$2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$root/tests/lib/checking.sh"
+models=$root/models
+python() { /usr/bin/python3 -B "$@" >"$work/said" 2>&1; }
+
+# other hard points on one side
+one_sided() {
+    printf 'gicgen: 1\nmodel: one_sided\ninclude: %s/hmmwv.veh\npoints:\n' "$models"
+    case $1 in
+    left)
+        echo '  tierod_u_f_l: [1.42, 0.7, 0.51]'
+        echo '  upper_u_f_l: [1.60, 0.73, 0.69]'
+        echo '  tierod_u_f_r: [1.5131462, -0.8211058, 0.4576678]' # those of chassis.veh
+        echo '  upper_u_f_r: [1.6359298, -0.715518, 0.6894936]'
+        ;;
+    right)
+        echo '  tierod_u_f_r: [1.42, -0.7, 0.51]'
+        echo '  upper_u_f_r: [1.60, -0.73, 0.69]'
+        ;;
+    esac
+}
+one_sided left >"$work/left.veh"
+one_sided right >"$work/right.veh"
+
+for axle in "$models/hmmwv.veh front" "$models/hmmwv14.veh front" "$models/hmmwv14.veh rear" "$models/five_link.veh rear" \
+    "$models/solid_axle.veh rear" "$work/left.veh front"; do
+    # shellcheck disable=SC2086  # a model and an axle
+    check "the independent solution of $axle" python "$root/tests/vehicle/kinematics.py" "$gicgen" "$gicrun" $axle
+done
+check 'planar axles by hand' python "$root/tests/vehicle/planar_axles.py" "$gicrun" "$work"
+
+for side in left right; do
+    run --kc "$work/$side.veh" -q -o "$work/$side.csv"
+    check "other hard points on the $side" exits 0
+done
+check 'the mirror image' python "$root/tests/vehicle/mirrored_axles.py" "$work/left.csv" "$work/right.csv"
+
+# a vertical kingpin through the wheel's centre, a lever of 0.12 m behind it: the rack moves 0.12 m a radian
+cell() { awk -F, -v want="$1" -v motion="$2" -v at="$3" 'NR == 1 {for (i = 1; i <= NF; ++i) {sub(/ \[.*/, "", $i); c[$i] = i}}
+    $1 == "front" && $2 == motion && $c["rack"] == at && $c["travel"] == 0 {print $c[want]; exit}' "$work/steering.csv"; }
+run --kc "$models/tutorial/6_steering.veh" -q -o "$work/steering.csv"
+check 'steering runs' exits 0
+near() { awk -v x="$(cell "$1" "$2" "$3")" -v y="$4" 'BEGIN {d = x - y; exit !(x != "" && d * d < 1e-24)}'; }
+check 'steering ratio' near steering_ratio steer 0 -0.12
+for name in kingpin_inclination caster scrub_radius caster_trail kingpin_offset caster_offset camber toe steer; do
+    check "$name of the vertical kingpin" near "front_tire_l.$name" steer 0 0
+done
+
+# without steering, without wheels, without suspension; wrong words
+run --kc --axle rear "$models/hmmwv.veh"
+check 'an axle without steering is told' prints 'rear, steer: not possible: no coordinate turns its wheels'
+check 'and the rest is there' prints 'Roll rate'
+run --kc --axle rear "$models/solid_axle.veh"
+check 'where wheels stop, by name' prints 'tire_r_l, tire_r_r stop at a travel of -74.55 mm: coordinate .spring_r_l.'
+run --kc --axle 2 "$models/hmmwv.veh" -o "$work/two.csv"
+run --kc --axle rear "$models/hmmwv.veh" -o "$work/rear.csv"
+check 'axles by number' cmp "$work/two.csv" "$work/rear.csv"
+run --kc --axle middle "$models/hmmwv.veh"
+check 'no such axle' exits 1
+check 'its axles are named' says 'its axles are: front, rear'
+run --kc "$models/pendulum.veh"
+check 'no wheels' exits 1
+check 'no wheels, said' says 'has no wheels, and so no axles'
+printf '%s\n' 'gicgen: 1' 'model: cart' 'base: cart' 'bodies:' '  cart: {mass: 9, com: [0, 0, 1], inertia: [1, 1, 1]}' \
+    'wheels:' '  wheel: {body: cart, center: [0, 0, 0.3], radius: 0.3, stiffness: 1000}' >"$work/cart.veh"
+run --kc "$work/cart.veh" -o "$work/cart.csv"
+check 'no suspension' exits 1
+check 'no suspension, said' says 'no coordinate moves its wheels up and down'
+check 'and no file' [ ! -e "$work/cart.csv" ]
+for words in '--axle front' '--travel 0.1' '--report x.html'; do
+    # shellcheck disable=SC2086  # words
+    run $words "$models/hmmwv.veh" "$models/scenes/paper_run.scene"
+    check "$words without --kc" exits 2
+done
+for words in '--travel 0' '--travel x' '--report x.pdf' '--modes'; do
+    # shellcheck disable=SC2086
+    run --kc $words "$models/hmmwv.veh"
+    check "--kc $words" exits 2
+done
+
+# the page is complete in itself, has curves and no number that is none, and is the same each time
+run --kc "$models/five_link.veh" --report "$work/kc.html"
+check 'the page' exits 0
+run --kc "$models/five_link.veh" --report "$work/again.html"
+check 'the same page again' cmp "$work/kc.html" "$work/again.html"
+check 'nothing is loaded' sh -c "! grep -qE 'https?:|src=|@import|url\(' '$work/kc.html'"
+check 'no curve has something else than numbers' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/kc.html'"
+check 'curves' [ "$(grep -c '<polyline' "$work/kc.html")" -gt 150 ]
+check 'what stops is on the page' grep -q 'stop at a travel of -58.97 mm' "$work/kc.html"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -ge 45 ]
