@@ -434,7 +434,7 @@ static void stop_wheels(const Search *s)
         stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
 }
 
-const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool locked)
 {
     Equilibrium *found = pool_alloc(pool, sizeof *found);
     found->model = watched(pool, model);
@@ -444,7 +444,7 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
     const size_t count = (size_t)found->linear->count, square = (count * count + 1) * sizeof(double);
     const Place at = {scene ? scene->source : model->source, 0, 0};
     Search s = {.pool = pool, .found = found, .unknowns = (int)count - found->linear->places, .h = first};
-    found->locked = scene && !equilibrium_stands(model, scene);
+    found->locked = locked;
     s.settled = !found->linear->of_wheels;
     s.trial = (Instance *)(void *)instance_new(pool, found->engine);
     found->f = pool_alloc(pool, (count + 1) * sizeof(double));
@@ -480,6 +480,16 @@ const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene 
                   instance_status(pool, found->engine->code, &found->self->head, status));
     found->residual = fabs(found->f[largest(&s, found->f)]);
     return found;
+}
+
+const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+{
+    return find(pool, model, scene, solve, scene && !equilibrium_stands(model, scene));
+}
+
+const Equilibrium *equilibrium_find_locked(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+{
+    return find(pool, model, scene, solve, true);
 }
 
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found)

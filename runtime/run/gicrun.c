@@ -11,6 +11,7 @@
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/run.h"
+#include "run/sheet.h"
 #include "run/stability_watch.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
@@ -29,19 +30,18 @@ static const char help[] =
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
     "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
-    "states: accelerations, poses of all bodies, outputs; or finds where it rests, and how it\n"
-    "moves about there.\n"
+    "states; or finds where it rests, and how it moves about there.\n"
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
     "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
     "      --with FILE    draw other results too, in dots\n"
-    "      --animate FILE write a page for a browser, complete in itself, in which the model\n"
-    "                     moves along its road\n"
+    "      --animate FILE write a page for a browser in which the model moves along its road\n"
     "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
-    "      --replay FILE  repeat what such a page recorded, CSV\n"
+    "      --replay FILE  repeat what it recorded\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
     "                     a scene gives the road only\n"
     "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
@@ -51,12 +51,13 @@ static const char help[] =
     "                     the scene's velocities; -o: the same as CSV\n"
     "      --linearize    the linear model about the same state: A, B, C, D and derivatives by\n"
     "                     tunable parameters, with names and units; -o: as CSV, or for NumPy\n"
-    "                     (.npz) or MATLAB (.mat)\n"
+    "                     or MATLAB\n"
     "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
     "      --kc           kinematics of axles over travel and steering, models/KC.md; -o: as CSV\n"
     "      --axle NAME    of --kc: front, rear or a number from the front\n"
     "      --travel M     of --kc: wheel travel up and down, m (0.08)\n"
     "      --report FILE  of --kc: a page of curves\n"
+    "      --sheet        the vehicle on a page, models/SHEET.md\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
@@ -79,7 +80,7 @@ static const char help[] =
     "  -h, --help         this text\n"
     "      --version      version\n"
     "\n"
-    "Of the environment: CC, GICGEN_CACHE, GICGEN_CACHE_SIZE, XDG_CACHE_HOME, TMPDIR; gicrun(1).\n"
+    "gicrun(1): $CC, $GICGEN_CACHE, $GICGEN_CACHE_SIZE, $XDG_CACHE_HOME and $TMPDIR.\n"
     "\n"
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
     "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
@@ -148,7 +149,8 @@ static void read_lanes(void *request, char *word)
 /* False: something else than to run a scene is asked for. */
 static bool is_run(const Request *request)
 {
-    return !request->states && !request->rests && !request->modes && !request->linear && !request->kinematics;
+    return !request->states && !request->rests && !request->modes && !request->linear && !request->kinematics &&
+           !request->sheet;
 }
 
 static Request read_command_line(int count, char **word)
@@ -167,6 +169,7 @@ static Request read_command_line(int count, char **word)
         {"linearize", .on = &request.linear},
         {"at", .read = read_at},
         {"kc", .on = &request.kinematics},
+        {"sheet", .on = &request.sheet},
         {"axle", .text = &request.axle},
         {"travel", .read = read_travel},
         {"report", .text = &request.report},
@@ -186,8 +189,9 @@ static Request read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (request.rests + request.modes + request.linear + request.kinematics + (request.states != NULL) > 1)
-        usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize and --kc, please", NULL);
+    if (request.rests + request.modes + request.linear + request.kinematics + request.sheet + (request.states != NULL) >
+        1)
+        usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize, --kc and --sheet, please", NULL);
     if (!request.kinematics && (request.axle || request.travel > 0 || request.report))
         usage_fail("gicrun", "--axle, --travel and --report go with --kc", NULL);
     if (request.report && !path_ends(request.report, ".html"))
@@ -208,26 +212,29 @@ static Request read_command_line(int count, char **word)
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
-        usage_fail("gicrun", "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+        usage_fail("gicrun",
+                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
                    NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
     if (request.with && !request.picture && !request.page)
         usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
-        usage_fail("gicrun", "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+        usage_fail("gicrun",
+                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
                    NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
         usage_fail("gicrun",
                    "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                   "nor with --eval, --equilibrium, --modes, --linearize and --kc",
+                   "nor with --eval, --equilibrium, --modes, --linearize, --kc and --sheet",
                    NULL);
     if (request.driven && !path_ends(request.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
     if (request.recording && !runs)
-        usage_fail("gicrun", "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize or --kc",
+        usage_fail("gicrun",
+                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
                    NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
@@ -301,8 +308,8 @@ int main(int count, char **word)
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);
-    if (request.kinematics) {
-        kc_report(pool, model, scene, &request);
+    if (request.kinematics || request.sheet) {
+        (request.kinematics ? kc_report : sheet_report)(pool, model, scene, &request);
         pool_free(pool);
         return 0;
     }

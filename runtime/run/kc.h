@@ -147,6 +147,8 @@ const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, doubl
 /* along: rates of the look's columns along the motion, of which `at` moves with the rate 1. Returns a status. */
 int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, const KcLook *look, const double *along,
            KcRow *row);
+/* The row of a position, in parallel travel, of an axle that can be moved. w: [coordinates]. Returns a status. */
+int kc_position(const Kc *kc, const KcAxle *axle, const double *w, KcRow *row);
 /* Rates of travel coordinates that move the wheels' centres, or else their contacts, with the velocities vz [wheels]
  * and the steering with the rate `steer`. along: [columns]. False: they can not. */
 bool kc_along(const KcAxle *axle, const KcLook *look, bool contacts, const double *vz, double steer, double *along);

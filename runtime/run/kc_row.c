@@ -289,3 +289,20 @@ int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, c
         ackermann(kc, axle, look, along, left, right, row->axle);
     return status;
 }
+
+int kc_position(const Kc *kc, const KcAxle *axle, const double *w, KcRow *row)
+{
+    KcLook *look = kc_look_new(kc, axle);
+    double vz[KC_WHEELS], along[KC_WHEELS + 1];
+    *row =
+        (KcRow){.wheel = pool_alloc(kc->pool, (size_t)axle->wheels * sizeof *row->wheel),
+                .ratio = pool_alloc(kc->pool, ((size_t)axle->wheels * (size_t)kc->elements + 1) * sizeof *row->ratio)};
+    for (int i = 0; i < axle->wheels; ++i)
+        vz[i] = 1;
+    const int status = kc_look(kc, w, look);
+    if (status != GIC_OK)
+        return status;
+    if (!kc_along(axle, look, false, vz, 0, along))
+        return GIC_ERROR_SINGULAR;
+    return kc_row(kc, axle, KC_PARALLEL, w, look, along, row);
+}

@@ -79,6 +79,8 @@ typedef struct Equilibrium {
  * road of the scene at time 0. Wheels are locked where the scene starts in motion, since the forces that would hold
  * them at rest then do not matter. Ends in diag_fail if none is found. */
 const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+/* The same on locked wheels. */
+const Equilibrium *equilibrium_find_locked(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* True if a scene starts at rest: all velocities at most 1e-9 m/s or rad/s. */
 bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */

@@ -17,7 +17,7 @@ typedef struct Request {
     const char *model, *scene;    /* paths; scene may be NULL with `states` */
     const char *states;           /* --eval, or NULL */
     bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
-    bool kinematics;              /* --kc */
+    bool kinematics, sheet;       /* --kc, --sheet */
     const char *axle;             /* --axle, or NULL: all */
     const char *report;           /* --report, or NULL */
     double travel;                /* --travel, m; 0: as usual */

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT
+ * Steady response to steering: about straight motion at a speed, dz/dt = A z + b u with the speed held and x, y and yaw
+ * left out, the steady z of a unit of the steering coordinate u. */
+#include "base/vec3.h"
+#include "gic_runtime.h"
+#include "run/sheet.h"
+#include "tape/engine_tape.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double speeds[] = {10, 20, 30}; /* m/s */
+
+enum { X = 0, Y = 1, ROLL = 3, YAW = 5 };
+
+/* Motions that are left out: places along which nothing changes, and the speed. */
+static bool is_left_out(const Linear *linear, int i)
+{
+    return i == X || i == Y || i == YAW || i == linear->places + X;
+}
+
+int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
+{
+    const gic_model *code = sheet->found->engine->code;
+    double *state = tape_array(self, code->state_offset), A[9];
+    mat_from_euler(state + 3, A);
+    for (int i = 0; i < 3; ++i)
+        state[sheet->found->linear->places + 1 + i] = speed * A[3 * i];
+    return scene_set_fast(code, NULL, &self->head);
+}
+
+/* False for a state that nothing changes, or that changes nothing, such as the windup of a brake that is not applied.
+ */
+static bool matters(int n, const double *A, const double *b, int i)
+{
+    bool changes = false, changed = b[i] != 0;
+    for (int j = 0; j < n; ++j) {
+        changes = changes || A[j * n + i] != 0;
+        changed = changed || A[i * n + j] != 0;
+    }
+    return changes && changed;
+}
+
+/* z [count] of a unit of the steering. Returns a status. */
+static int respond(const Sheet *sheet, int steer, double speed, double *z)
+{
+    const Linear *linear = sheet->found->linear;
+    const gic_model *code = sheet->found->engine->code;
+    const int all = linear->count;
+    Instance *self = (Instance *)(void *)instance_new(sheet->pool, sheet->found->engine);
+    double *f = pool_alloc(sheet->pool, (size_t)all * sizeof *f), *b = pool_alloc(sheet->pool, (size_t)all * sizeof *b);
+    double *A = pool_alloc(sheet->pool, (size_t)all * (size_t)all * sizeof *A);
+    int *kept = pool_alloc(sheet->pool, (size_t)all * sizeof *kept), n = 0;
+    bool jump;
+    memcpy(self, sheet->found->self, code->size);
+    int status = sheet_set_in_motion(sheet, self, speed);
+    if (status == GIC_OK)
+        status = linearize(linear, self, f, A);
+    if (status == GIC_OK)
+        status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer], b, 0, NULL, &jump);
+    if (status != GIC_OK)
+        return status;
+    for (int i = 0; i < all; ++i)
+        if (!is_left_out(linear, i) && matters(all, A, b, i))
+            kept[n++] = i;
+    for (int i = 0; i < n; ++i) { /* towards the front of A: row i comes from one at or after it */
+        for (int j = 0; j < n; ++j)
+            A[i * n + j] = A[kept[i] * all + kept[j]];
+        b[i] = -b[kept[i]];
+    }
+    memset(z, 0, (size_t)all * sizeof *z);
+    if (!kc_solve(n, A, b) || !gic_finite(b, n))
+        return GIC_ERROR_SINGULAR;
+    for (int i = 0; i < n; ++i)
+        z[kept[i]] = b[i];
+    return GIC_OK;
+}
+
+/* The axle that is steered, by a driven coordinate; NULL: there is none, *why. */
+static const KcAxle *steered(const Sheet *sheet, const char **why)
+{
+    const Model *model = sheet->model;
+    const double *e = model->body[BODY_BASE].euler;
+    *why = "no axle is steered by a driven coordinate";
+    for (int w = 0; w < model->wheels; ++w)
+        if (model->wheel[w].tire < 0)
+            *why = "a wheel has no tire";
+    if (fabs(e[0]) < 1 - 1e-12)
+        *why = "the axes of the base are not those of the drawing";
+    if (strncmp(*why, "no axle", 7) != 0)
+        return NULL;
+    for (int a = 0; a < sheet->kc->axles; ++a) {
+        const KcAxle *axle = &sheet->kc->axle[a];
+        if (!axle->refusal && axle->steer >= 0 && model->coordinate[axle->steer].driven)
+            return axle;
+    }
+    return NULL;
+}
+
+/* Road-wheel angle a unit of the steering at rest: the mean of the first wheels of both sides. */
+static double wheel_angle(const Sheet *sheet, const KcAxle *axle)
+{
+    KcLook *look = kc_look_new(sheet->kc, axle);
+    double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1], sum = 0;
+    if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || !kc_along(axle, look, false, still, 1, along))
+        return 0;
+    for (int i = 0; i < axle->wheels; ++i) {
+        KcPose pose, rate;
+        kc_pose(&axle->wheel[i], look, &pose);
+        kc_rate(&axle->wheel[i], look, &pose, along, &rate);
+        sum += kc_steer_rate(&pose, &rate) / axle->wheels;
+    }
+    return sum;
+}
+
+void sheet_cornering(Sheet *sheet)
+{
+    const char *why;
+    const Linear *linear = sheet->found->linear;
+    const KcAxle *axle = steered(sheet, &why);
+    const double angle = axle ? wheel_angle(sheet, axle) : 0;
+    double *z = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *z);
+    if (angle == 0 || !(sheet->wheelbase > 0)) {
+        sheet_note(sheet, pool_print(sheet->pool, "cornering: %s", axle ? "there is one axle" : why));
+        return;
+    }
+    for (size_t k = 0; k < sizeof speeds / sizeof *speeds; ++k) {
+        const double v = speeds[k];
+        const char *section = pool_print(sheet->pool, "Cornering at %g m/s", v);
+        const char *name = pool_print(sheet->pool, "at_%g", v);
+        const int status = respond(sheet, axle->steer, v, z);
+        if (status != GIC_OK) {
+            sheet_note(sheet, pool_print(sheet->pool, "cornering at %g m/s: no steady response", v));
+            continue;
+        }
+        const double yaw = z[linear->places + YAW], lateral = v * yaw;
+        const double lever = sheet->com[0] - sheet->model->body[BODY_BASE].position[0];
+        const double slip = (z[linear->places + Y] + yaw * lever) / v;
+        sheet_add(sheet, section, pool_print(sheet->pool, "%s.yaw_gain", name), "Yaw rate by the steer angle", "1/s",
+                  yaw / angle);
+        sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.understeer", name), "Understeer gradient", "rad s^2/m",
+                  angle / lateral - sheet->wheelbase / (v * v));
+        sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.roll_gradient", name), "Roll gradient", "rad s^2/m",
+                  z[ROLL] / lateral);
+        sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.sideslip_gradient", name), "Side-slip gradient", "rad s^2/m",
+                  slip / lateral);
+    }
+}

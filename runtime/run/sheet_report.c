@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT
+ * --sheet: all of it in order; a table for people, CSV or a page. */
+#include "base/file.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "run/sheet.h"
+#include "tape/engine_tape.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Units and those in which people read them. */
+static const struct {
+    const char *unit, *shown;
+    double scale;
+} of_unit[] = {{"rad", "deg", 57.29577951308232},
+               {"rad/m", "deg/m", 57.29577951308232},
+               {"rad s^2/m", "deg/g", 57.29577951308232 * 9.80665},
+               {"m", "mm", 1e3},
+               {"N/m", "N/mm", 1e-3},
+               {"N m/rad", "N m/deg", 0.017453292519943295}};
+
+void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value)
+{
+    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0};
+    for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; ++i)
+        if (!strcmp(unit, of_unit[i].unit)) {
+            row.shown = of_unit[i].shown;
+            row.scale = of_unit[i].scale;
+        }
+    *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = row;
+}
+
+void sheet_note(Sheet *sheet, const char *note)
+{
+    *POOL_PUSH(sheet->pool, sheet->note, sheet->notes) = note;
+}
+
+/* In motion where wheels have tires, whose grip at rest is another one. */
+static const double of_modes = 20; /* m/s */
+
+static void find_modes(Sheet *sheet)
+{
+    const Equilibrium *found = sheet->found;
+    const size_t count = (size_t)found->linear->count;
+    Instance *self = (Instance *)(void *)instance_new(sheet->pool, found->engine);
+    double *f = pool_alloc(sheet->pool, count * sizeof *f), *A = pool_alloc(sheet->pool, count * count * sizeof *A);
+    sheet->speed = found->linear->of_wheels ? of_modes : 0;
+    memcpy(self, found->self, found->engine->code->size);
+    int status = sheet->speed > 0 ? sheet_set_in_motion(sheet, self, sheet->speed) : GIC_OK;
+    if (status == GIC_OK)
+        status = linearize(found->linear, self, f, A);
+    if (status == GIC_OK)
+        sheet->modes = modes_try(sheet->pool, found->linear, A);
+    if (!sheet->modes)
+        sheet_note(sheet, "small motions: no eigenvalues were found");
+}
+
+/* Eigenvalues, as numbers with names. */
+static void add_modes(Sheet *sheet)
+{
+    for (int k = 0; sheet->modes && k < sheet->modes->count; ++k) {
+        const Mode *mode = &sheet->modes->mode[k];
+        const double size = hypot(mode->real, mode->imaginary);
+        const char *name = pool_print(sheet->pool, "mode_%d", k + 1);
+        const char *section = k ? NULL : pool_print(sheet->pool, "Small motions at %g m/s", sheet->speed);
+        if (mode->imaginary > 0) {
+            sheet_add(sheet, section, pool_print(sheet->pool, "%s.frequency", name),
+                      pool_print(sheet->pool, "Frequency %d", k + 1), "Hz", size / (2 * 3.141592653589793));
+            sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.damping", name),
+                      pool_print(sheet->pool, "Damping %d", k + 1), "1", -mode->real / size);
+        } else {
+            sheet_add(sheet, section, pool_print(sheet->pool, "%s.eigenvalue", name),
+                      pool_print(sheet->pool, "Eigenvalue %d", k + 1), "1/s", mode->real);
+        }
+    }
+}
+
+static void write_csv(const Sheet *sheet, const char *path)
+{
+    interrupt_hold();
+    Csv csv = csv_open(sheet->pool, path);
+    csv_name(&csv, "quantity", NULL);
+    csv_name(&csv, "value", NULL);
+    csv_name(&csv, "unit", NULL);
+    csv_end_row(&csv);
+    for (int i = 0; i < sheet->rows; ++i) {
+        csv_name(&csv, sheet->row[i].name, NULL);
+        csv_number(&csv, sheet->row[i].value);
+        csv_name(&csv, sheet->row[i].unit, NULL);
+        csv_end_row(&csv);
+    }
+    csv_close(&csv);
+    interrupt_release();
+}
+
+static void print(const Sheet *sheet)
+{
+    printf("%s, models/SHEET.md defines these\n", sheet->model->name);
+    for (int i = 0; i < sheet->rows; ++i) {
+        const SheetRow *row = &sheet->row[i];
+        if (row->section)
+            printf("\n%s\n", row->section);
+        printf("  %-60s%-9s %14s\n", row->title, row->shown, kc_shown(sheet->pool, row->value, row->scale));
+    }
+    for (int i = 0; i < sheet->notes; ++i)
+        printf("%snot there: %s\n", i ? "" : "\n", sheet->note[i]);
+}
+
+void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const Place at = {model->source, 0, 0};
+    if (!model->free_base || !model->wheels)
+        diag_fail(at, "name a vehicle: a model with a free base and wheels", "model '%s' has no %s", model->name,
+                  model->wheels ? "free base" : "wheels");
+    Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, request->solve, NULL)};
+    sheet.found = equilibrium_find_locked(pool, model, scene, request->solve);
+    const gic_model *code = sheet.found->engine->code;
+    sheet.w = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof *sheet.w);
+    for (int c = 0; c < model->coordinates; ++c)
+        sheet.w[c] = code->coordinate_state[c] >= 0
+                         ? tape_array(sheet.found->self, code->state_offset)[code->coordinate_state[c]]
+                         : tape_array(sheet.found->self, code->input_offset)[code->coordinate_input[c]];
+    sheet_rest(&sheet);
+    find_modes(&sheet);
+    add_modes(&sheet);
+    sheet_cornering(&sheet);
+    if (request->results && path_ends(request->results, ".html"))
+        sheet_page(&sheet, request->results);
+    else if (request->results)
+        write_csv(&sheet, request->results);
+    else
+        print(&sheet);
+    for (int i = 0; i < sheet.notes && request->results && !request->quiet; ++i)
+        fprintf(stderr, "gicrun: note: not there: %s\n", sheet.note[i]);
+}

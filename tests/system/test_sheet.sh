@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_sheet.sh GICGEN GICRUN: the vehicle on one page, `gicrun --sheet`. Its numbers found again from what --dump-model,
+# --eval, --equilibrium, --modes and --linearize say (tests/vehicle/sheet.py); what it can't say; the page.
+gicgen=$1
+gicrun=$2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$root/tests/lib/checking.sh"
+models=$root/models
+for name in hmmwv_vehicle hmmwv_tmeasy hmmwv five_link; do
+    /usr/bin/python3 -B "$root/tests/vehicle/sheet.py" "$gicgen" "$gicrun" "$models/$name.veh" "$work" >"$work/said" 2>&1
+    verdict $? "the sheet of $name"
+done
+
+run --sheet "$models/hmmwv.veh"
+check 'without tires there is no cornering' prints 'not there: cornering: a wheel has no tire'
+check 'and all the rest' prints 'Load of axle rear'
+run --sheet "$models/quarter_car.veh"
+check 'a rig is no vehicle' exits 1
+check 'a rig is no vehicle, said' says "has no free base"
+run --sheet --kc "$models/hmmwv.veh"
+check 'one at a time' exits 2
+run --sheet "$models/hmmwv_vehicle.veh" -o "$work/sheet.html"
+check 'the page' exits 0
+run --sheet "$models/hmmwv_vehicle.veh" -o "$work/again.html"
+check 'the same page again' cmp "$work/sheet.html" "$work/again.html"
+check 'nothing is loaded' sh -c "! grep -qE 'https?:|src=|@import|url\(' '$work/sheet.html'"
+check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/sheet.html'"
+check 'cornering is there' grep -q 'Understeer gradient' "$work/sheet.html"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -ge 14 ]
