@@ -360,8 +360,8 @@ static const char *remedy_of(int status)
                "itself is unstable: gicrun --modes shows its eigenvalues";
     case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
     case GIC_ERROR_EVENTS:
-        return "try a shorter step, or a longer `duration` of the transmission's shifts; `locate: false` goes over "
-               "contacts";
+        return "try a shorter step, or a longer `duration` of the transmission's shifts; `locate: false` with "
+               "constant ones goes over contacts";
     case GIC_ERROR_RESIDUAL:
         return "results so far are suspect too; --engine gic shares no formulas with this code: please report model "
                "and scene";

@@ -3,13 +3,18 @@
  *
  * All four Euler parameters of the base are integrated. The right-hand side recovers the dependent one from the other
  * three and the stepper never sees the recovered value, so that a change of the dependent parameter, settled between
- * steps, leaves the history of all four as smooth as it was. What the instance shows is the settled state. */
+ * steps, leaves the history of all four as smooth as it was. What the instance shows is the settled state.
+ *
+ * No step goes over the beginning or the end of a contact: one that meets it is taken back, and shorter ones by
+ * Runge-Kutta go near; the last bit, too short for a force that begins in it to count, goes across. */
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
+#include "run/contact_watch.h"
 #include "run/road_resolution.h"
 #include "run/variable_step.h"
 #include "scene/scene.h"
 
+#include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
@@ -27,11 +32,17 @@ struct Variable {
     double tolerance;
     bool fresh; /* the history is empty: continue from the instance's state */
     gsl_odeiv2_system system;
-    gsl_odeiv2_driver *driver;
+    gsl_odeiv2_driver *driver, *towards; /* of all other steps; of those towards contacts */
+    ContactWatch *contacts;
+    double hunted;                /* s, up to where a contact changes that has been met */
+    double since;                 /* s, when contacts began to be crossed one soon after the other */
+    int32_t crossings;            /* since then */
     double *integrated, *settled; /* states */
     void *before;                 /* the instance at the start of the stepper's step */
+    void *whole;                  /* the instance at the start of all tries of a step */
     void *start, *trial;          /* the instance at the start of a step, and within it, while a change is located */
     Probe *probe;                 /* records where the road is evaluated */
+    const gic_road *road;         /* behind the probe, during a step */
     bool begun;                   /* a step has been made */
 };
 
@@ -62,13 +73,28 @@ static void find_back(const Variable *variable)
     variable->self->subset = done.subset;
 }
 
+/* Look at the contacts where a right-hand side was evaluated. */
+static int look_at_contacts(const Variable *variable, double time, const double *state)
+{
+    gic_head *self = variable->self;
+    const gic_road *const probe = self->road;
+    if (!variable->model->contact_count)
+        return GIC_OK;
+    self->road = variable->road;
+    const int status = contact_watch_look(variable->contacts, variable->model, self, time, state);
+    self->road = probe;
+    return status;
+}
+
 /* On failure the stepper tries half the step. */
 static int right_hand_side(double time, const double *state, double *rate, void *user)
 {
     Variable *variable = user;
     refresh_inputs(variable->model, variable->self, time);
     probe_begin(variable->probe, time);
-    const int status = variable->model->rhs(variable->self, time, state, rate);
+    int status = variable->model->rhs(variable->self, time, state, rate);
+    if (status == GIC_OK)
+        status = look_at_contacts(variable, time, state);
     if (status == GIC_OK)
         return GSL_SUCCESS;
     variable->status = status;
@@ -91,14 +117,18 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     variable->integrated = calloc(states(model), sizeof(double));
     variable->settled = calloc(states(model), sizeof(double));
     variable->before = malloc(model->size);
+    variable->whole = malloc(model->size);
     variable->start = malloc(model->size);
     variable->trial = malloc(model->size);
     variable->probe = probe_new();
+    variable->contacts = contact_watch_new();
     variable->driver =
         gsl_odeiv2_driver_alloc_standard_new(&variable->system, type, variable->first_step, tolerance, tolerance, 1, 0);
+    variable->towards = gsl_odeiv2_driver_alloc_standard_new(&variable->system, gsl_odeiv2_step_rkck,
+                                                             variable->first_step, tolerance, tolerance, 1, 0);
     variable_restart(variable);
-    if (variable->integrated && variable->settled && variable->before && variable->start && variable->trial &&
-        variable->probe && variable->driver)
+    if (variable->integrated && variable->settled && variable->before && variable->whole && variable->start &&
+        variable->trial && variable->probe && variable->contacts && variable->driver && variable->towards)
         return variable;
     variable_close(variable);
     return NULL;
@@ -110,9 +140,13 @@ void variable_close(Variable *variable)
         return;
     if (variable->driver)
         gsl_odeiv2_driver_free(variable->driver);
+    if (variable->towards)
+        gsl_odeiv2_driver_free(variable->towards);
+    contact_watch_free(variable->contacts);
     free(variable->integrated);
     free(variable->settled);
     free(variable->before);
+    free(variable->whole);
     free(variable->start);
     free(variable->trial);
     probe_free(variable->probe);
@@ -127,6 +161,7 @@ void variable_change(Variable *variable, const gic_model *model)
 void variable_restart(Variable *variable)
 {
     variable->fresh = true;
+    variable->hunted = -INFINITY;
 }
 
 /* True if an integrated number that the right-hand side did not use has drifted from the recovered one by more than the
@@ -140,12 +175,12 @@ static bool jumps(const Variable *variable)
     return false;
 }
 
-/* One step of the stepper from the instance's time to *time. */
-static int advance(Variable *variable, double *time, double end)
+/* One step of a stepper from the instance's time to *time. */
+static int advance(Variable *variable, gsl_odeiv2_driver *driver, double *time, double end)
 {
-    gsl_odeiv2_driver *driver = variable->driver;
     variable->status = GIC_OK;
     variable->self->ahead = variable->step;
+    contact_watch_try(variable->contacts);
     const int result = gsl_odeiv2_evolve_apply(driver->e, driver->c, driver->s, &variable->system, time, end,
                                                &variable->step, variable->integrated);
     if (result != GSL_SUCCESS)
@@ -165,28 +200,25 @@ static double longest(const Variable *variable)
     return variable->begun && !probe_asked(variable->probe) ? INFINITY : probe_longest(variable->probe);
 }
 
-/* variable_step() without changes of discrete states. */
-static int step(Variable *variable, gic_head *self, double end)
+/* One step by `driver` that does not care for contacts or discrete states; without a history it tries `first` s. */
+static int smooth_step(Variable *variable, gic_head *self, gsl_odeiv2_driver *driver, double first, double end)
 {
     const gic_model *model = variable->model;
     const size_t size = sizeof(double) * states(model);
     double time = gic_time(self), *state = array_of(self, model->state_offset);
     if (variable->fresh) {
         memcpy(variable->integrated, state, size);
-        gsl_odeiv2_step_reset(variable->driver->s);
-        gsl_odeiv2_evolve_reset(variable->driver->e); /* which keeps the rate at the end of the last step */
-        variable->step = variable->first_step;
+        gsl_odeiv2_step_reset(driver->s);
+        gsl_odeiv2_evolve_reset(driver->e); /* which keeps the rate at the end of the last step */
+        variable->step = first;
     }
-    const gic_road *const road = self->road;
+    const gic_road *const road = variable->road = self->road;
     self->road = probe_road(variable->probe, road);
     variable->self = self;
     memcpy(variable->before, self, model->size);
-    const int status = advance(variable, &time, road ? fmin(end, time + longest(variable)) : end);
+    const int status = advance(variable, driver, &time, road ? fmin(end, time + longest(variable)) : end);
     self->road = road;
     self->status = status;
-    if (status == GIC_OK)
-        probe_end(variable->probe);
-    variable->begun = variable->begun || status == GIC_OK;
     variable->fresh = status != GIC_OK || variable->jumped;
     if (status == GIC_OK) {
         memcpy(state, variable->settled, size);
@@ -196,8 +228,6 @@ static int step(Variable *variable, gic_head *self, double end)
     return status;
 }
 
-/* ---- changes of discrete states ----------------------------------------------------------------------------- */
-
 /* What an instance has counted. */
 static void carry_counts(const gic_head *from, gic_head *to)
 {
@@ -206,13 +236,113 @@ static void carry_counts(const gic_head *from, gic_head *to)
     to->correction_count = from->correction_count;
 }
 
+/* ---- contacts ------------------------------------------------------------------------------------------------ */
+
+/* So short (s) that a force that begins or ends within it does not count: stiffness over mass, times speed, times its
+ * square. */
+static double crossing(double time)
+{
+    return fmax(1e-11, 16 * DBL_EPSILON * fabs(time));
+}
+
+/* The longest step that stays on this side of all contacts. */
+static double longest_towards(const Variable *variable, double time)
+{
+    const double ahead = contact_watch_ahead(variable->contacts), least = crossing(time);
+    /* the less that is left, the better it is known */
+    return fmax(fmin(0.999 * ahead - 0.5 * least, variable->hunted - time), 2 * least);
+}
+
+/* A step across a change has been made: another number of them within a microsecond than contacts can have would not
+ * end. */
+static int count_crossing(Variable *variable, gic_head *self, double time)
+{
+    const double soon = 1e-6;
+    if (!(time - variable->since < soon && time >= variable->since)) {
+        variable->since = time;
+        variable->crossings = 0;
+    }
+    ++self->contact_count;
+    variable->fresh = true;
+    variable->hunted = -INFINITY;
+    return ++variable->crossings > GIC_CHANGES * (1 + variable->model->contact_count) ? GIC_ERROR_EVENTS : GIC_OK;
+}
+
+/* A step that meets the beginning or end of no contact, or goes across one. On a failure `self` is anywhere in it. */
+static int careful_step(Variable *variable, gic_head *self, double end)
+{
+    const gic_model *model = variable->model;
+    const double start = gic_time(self);
+    int status = variable->fresh ? contact_watch_start(variable->contacts, model, self) : GIC_OK;
+    bool towards = variable->hunted > start;
+    double most = towards ? longest_towards(variable, start) : INFINITY;
+    while (status == GIC_OK) {
+        ContactFinding finding;
+        gsl_odeiv2_driver *driver = towards ? variable->towards : variable->driver;
+        status = smooth_step(variable, self, driver, fmin(most, towards ? most : variable->first_step),
+                             fmin(end, start + most));
+        if (status != GIC_OK)
+            break;
+        const double now = gic_time(self), length = now - start;
+        const bool fresh = variable->fresh;
+        const ContactStep done = {length, array_of(variable->whole, model->state_offset), driver->e->dydt_in,
+                                  driver->e->dydt_out};
+        status = contact_watch_end(variable->contacts, model, self, &done, &finding);
+        if (status != GIC_OK)
+            break;
+        if (finding == CONTACTS_KEPT) {
+            contact_watch_keep(variable->contacts, length);
+            /* the steps towards have come by: no change after all */
+            variable->fresh = fresh || (towards && now >= variable->hunted);
+            return GIC_OK;
+        }
+        if (finding == CONTACTS_REACHED || length <= 2.5 * crossing(start))
+            return count_crossing(variable, self, start);
+        const gic_head counted = *self;
+        memcpy(self, variable->whole, model->size);
+        carry_counts(&counted, self);
+        variable->fresh = true;
+        variable->hunted = now;
+        const double known = longest_towards(variable, start);
+        most = fmax(finding == CONTACTS_CHANGE && !towards && known < 0.9 * length ? known : 0.5 * length,
+                    2 * crossing(start));
+        towards = true;
+    }
+    return status;
+}
+
+/* variable_step() without changes of discrete states. On a failure `self` is as it was. */
+static int step(Variable *variable, gic_head *self, double end)
+{
+    memcpy(variable->whole, self, variable->model->size);
+    const int status = variable->model->contact_count
+                           ? careful_step(variable, self, end)
+                           : smooth_step(variable, self, variable->driver, variable->first_step, end);
+    if (status == GIC_OK) {
+        probe_end(variable->probe);
+        variable->begun = true;
+        return GIC_OK;
+    }
+    const gic_head failed = *self;
+    memcpy(self, variable->whole, variable->model->size);
+    carry_counts(&failed, self);
+    self->status = status;
+    self->subset = failed.subset;
+    self->grown = failed.grown;
+    self->condition = failed.condition;
+    variable_restart(variable);
+    return status;
+}
+
+/* ---- changes of discrete states ----------------------------------------------------------------------------- */
+
 /* Continue `self` from the start of the step, without a history, to `time` within it. */
 static int repeat_until(Variable *variable, gic_head *self, double time)
 {
     int status = GIC_OK;
     gic_head *start = variable->start;
     memcpy(self, start, variable->model->size);
-    variable->fresh = true;
+    variable_restart(variable);
     while (status == GIC_OK && gic_time(self) < time)
         status = step(variable, self, time);
     carry_counts(self, start);
@@ -238,7 +368,7 @@ static int return_to_change(Variable *variable, gic_head *self)
     }
     if (status == GIC_OK)
         status = repeat_until(variable, self, high);
-    variable->fresh = true;
+    variable_restart(variable);
     if (status == GIC_OK) {
         (void)variable->model->shift(self); /* 0: rounding; then it is due in the next step */
         return GIC_OK;

@@ -16,7 +16,8 @@ void variable_close(Variable *variable);
 
 /* One step, as long as the tolerance and the detail of the road allow (road_resolution.h), that ends at `end` exactly
  * where it would pass it; end > time of `self`. A change of gear ends it as well, at the time at which it is due, to
- * tolerance / 100 s. On GIC_OK state, time and input[] have moved; otherwise they are
+ * tolerance / 100 s, and the beginning or end of a contact of gic_model.contacts (contact_watch.h); GIC_ERROR_EVENTS:
+ * these come without end. On GIC_OK state, time and input[] have moved; otherwise they are
  * untouched, and the status is that of the last evaluation that failed, or GIC_ERROR_ARGUMENT where rounding alone
  * exceeds the tolerance. */
 int variable_step(Variable *variable, void *self, double end);

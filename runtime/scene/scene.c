@@ -471,10 +471,10 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
             diag_fail(steady->at, "add `ratio: 6`", "steady is about fast steps, of which there are none");
     }
     const Item *locate = doc_find(root, "locate");
-    scene->locate = locate && doc_bool(locate, "locate") && scene->method < METHOD_ADAMS;
-    if (locate && scene->method >= METHOD_ADAMS && !replaced)
-        diag_fail(locate->at, "write `integrator: ab3` and a step",
-                  "only constant steps are made in parts at contacts");
+    const bool located = locate && doc_bool(locate, "locate");
+    scene->locate = located && scene->method < METHOD_ADAMS;
+    if (locate && !located && scene->method >= METHOD_ADAMS)
+        diag_fail(locate->at, "leave it out, or take constant steps", "variable steps always end at contacts");
     if (sleep && scene->method >= METHOD_ADAMS && !replaced)
         diag_fail(sleep->at, "write `integrator: ab3` and a step", "only constant steps can be slept through");
     if (sleep && scene->method < METHOD_ADAMS)
