@@ -429,7 +429,9 @@ typedef struct Model {
     Signal *signal;
     Controller *controller;
     struct Tuning *tuning; /* tunable.h; NULL: only numbers of force laws are tunable */
-    const Body *drawn;     /* [bodies] poses in the drawing; those of `body` are assembled */
+    struct Limit *limit;   /* limits.h: of force elements' numbers that follow tunable parameters */
+    int limits;
+    const Body *drawn; /* [bodies] poses in the drawing; those of `body` are assembled */
 } Model;
 
 /* How many states are held, the last ones. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Numbers that follow tunable parameters: their formulas, found by the numbers' addresses in the model. */
+#include "base/table.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "model/tunable.h"
@@ -64,6 +65,39 @@ void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text)
 {
     if (tuning->dag->node[value].level == LEVEL_VARIABLE)
         *POOL_PUSH(tuning->dag->pool, tuning->condition, tuning->conditions) = (Condition){value, zero, text};
+}
+
+double tuned_value(const Model *model, Ex formula, const double *parameter)
+{
+    const Dag *dag = model->tuning->dag;
+    const bool *needed = dag_needed(dag, &formula, 1);
+    double *value = pool_alloc(dag->pool, sizeof *value * ((size_t)formula + 1));
+    for (Ex e = 0; e <= formula; ++e) {
+        const Node *node = &dag->node[e];
+        value[e] = 0;
+        if (!needed[e])
+            continue;
+        if (node->op == OP_INPUT)
+            value[e] = node->element->array == ARRAY_p ? parameter[node->element->index] : 0; /* `rest` */
+        else if (node->level == LEVEL_LITERAL)
+            value[e] = ex_value(dag, e, 0);
+        else if (node->op == OP_TABLE)
+            value[e] = table_value(&model->table[node->arg[1]], value[node->arg[0]]);
+        else
+            value[e] = op_value((Op)node->op, value[node->arg[0]], value[node->arg[1]], value[node->arg[2]]);
+    }
+    return value[formula];
+}
+
+bool tuned_follows(const Model *model, Ex formula, int index)
+{
+    const Dag *dag = model->tuning->dag;
+    const bool *needed = dag_needed(dag, &formula, 1);
+    for (Ex e = 0; e <= formula; ++e)
+        if (needed[e] && dag->node[e].op == OP_INPUT && dag->node[e].element->array == ARRAY_p &&
+            dag->node[e].element->index == index)
+            return true;
+    return false;
 }
 
 static const char *const late_text[LATE_CONDITIONS] = {

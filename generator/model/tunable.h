@@ -56,6 +56,10 @@ void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
 /* Give `count` copies of numbers the formulas of the originals. */
 void tuning_copy(const Model *model, const double *to, const double *from, int count);
 void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);
+/* The value of a formula of the model's Tuning for values of its tunable parameters, at the given lengths; and whether
+ * it follows the one with this index. */
+double tuned_value(const Model *model, Ex formula, const double *parameter);
+bool tuned_follows(const Model *model, Ex formula, int index);
 /* Call after reading: determines which parameters are geometric. A model without geometric ones gets no tuning. */
 void tuning_close(Model *model);
 

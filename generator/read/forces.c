@@ -4,6 +4,7 @@
 #include "base/vec3.h"
 #include "base/yaml.h"
 #include "expression/expression.h"
+#include "model/limits.h"
 #include "model/model.h"
 #include "model/tunable.h"
 #include "read/reader.h"
@@ -240,6 +241,9 @@ static const Law *constant_law(Reader *reader, const Item *item, const char *wha
         diag_fail(item->at, "look for a division by zero or a root of a negative number", "%s is not a finite number",
                   what);
     bound_check(key, item, what, number);
+    if (key->bound != BOUND_NONE)
+        limit_add(reader->pool, reader->model,
+                  &(Limit){law, NULL, key->bound == BOUND_NOT_NEGATIVE, bound_text(reader->pool, key, what)});
     return law;
 }
 
@@ -280,6 +284,10 @@ static void read_stop(Reader *reader, const Entry *entry, const Value *value, Fo
     if (low && high && !(law_number(force->low, model) < law_number(force->high, model)))
         diag_fail(high->at, "write the lower end as `low`", "high of %s is not above low: it would push both ways",
                   entry->what);
+    if (low && high)
+        limit_add(reader->pool, reader->model,
+                  &(Limit){force->high, force->low, false,
+                           pool_print(reader->pool, "high of %s must be above low", entry->what)});
     if (table && table_value(&model->table[force->table], 0) != 0)
         diag_fail(table->at, "begin the table with 0 at 0",
                   "table of %s: '%s' is %.9g at 0, a jump where contact begins", entry->what, table->text,

@@ -192,6 +192,8 @@ void vector_read(Reader *reader, const Item *item, const char *what, double *out
 /* Check a number against the bound of its key, and a point against the largest distance from the origin (FORMAT.md
  * section 14). */
 void bound_check(const Key *key, const Item *item, const char *what, double number);
+/* What the key asks of `what`, for values of tunable parameters: "fade of force 'stop' must be greater than zero". */
+const char *bound_text(Pool *pool, const Key *key, const char *what);
 void point_check(const Item *item, const char *what, const double x[3]);
 /* The prefix of generated names must be an identifier that C, C++ and their libraries do not use. */
 void model_name_check(const char *name, Place at);

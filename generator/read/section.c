@@ -323,14 +323,19 @@ void bound_check(const Key *key, const Item *item, const char *what, double numb
                   what, item->text, smallest_number, largest_number);
 }
 
+const char *bound_text(Pool *pool, const Key *key, const char *what)
+{
+    return pool_print(pool, "%s must %s", what,
+                      key->bound == BOUND_POSITIVE ? "be greater than zero" : "not be negative");
+}
+
 static void read_number(Reader *reader, const Key *key, const Item *item, const char *what, Value *value)
 {
     value->number[0] = number_read(reader, item, what, key->kind == KEY_NUMBER ? NULL : value->tuned);
     bound_check(key, item, what, value->number[0]);
     if (value->tuned[0] && key->bound != BOUND_NONE)
         tuning_require(reader->model->tuning, value->tuned[0], key->bound == BOUND_NOT_NEGATIVE,
-                       pool_print(reader->pool, "%s must %s", what,
-                                  key->bound == BOUND_POSITIVE ? "be greater than zero" : "not be negative"));
+                       bound_text(reader->pool, key, what));
 }
 
 /* One of two words; true for the second. */

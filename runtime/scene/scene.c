@@ -5,6 +5,7 @@
 #include "base/yaml.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
+#include "model/limits.h"
 #include "model/model.h"
 #include "scene/action.h"
 #include "scene/driver.h"
@@ -387,6 +388,22 @@ static void read_inputs(Reader *reader, const Item *map, const Item *file)
         scene_read_input_file(reader->pool, file, model, name, scene);
 }
 
+/* What the model's file would refuse is refused here, at the value that it follows. */
+static void check_limits(const Model *model, const Scene *scene, const Item *map)
+{
+    BrokenLimit broken;
+    const Item *key = map;
+    if (!limit_broken(model, scene->parameter, &broken))
+        return;
+    for (int k = map->count - 1; k >= 0; --k)
+        for (int i = 0; i < model->parameters; ++i)
+            if (model->parameter[i].tunable && !strcmp(model->parameter[i].name, map->key[k]->text) &&
+                limit_follows(model, &broken, model->parameter[i].index))
+                key = map->value[k];
+    diag_fail(key->at, "choose other values of the parameters", "with these parameters the model is impossible: %s",
+              broken.text);
+}
+
 /* Values of tunable parameters for this scene. */
 static void read_parameters(Reader *reader, const Item *map)
 {
@@ -408,6 +425,7 @@ static void read_parameters(Reader *reader, const Item *map)
         reader->scene->parameter[parameter->index] =
             doc_number(map->value[k], pool_print(reader->pool, "parameter '%s'", parameter->name));
     }
+    check_limits(model, reader->scene, map);
 }
 
 void scene_inputs(void *user, int32_t lane, double time, double *input)

@@ -6,6 +6,7 @@
 #include "gic_batch.h"
 #include "gic_runtime.h"
 #include "host/host.h"
+#include "model/limits.h"
 #include "model/model.h"
 #include "run/knot.h"
 #include "run/run.h"
@@ -178,6 +179,18 @@ static void set_status(const Runner *r, Slot *slot, int status, const gic_head *
                                   instance_status(r->pool, r->sweep->engine->code, self, status));
 }
 
+/* A run begins, unless its parameters are such as the model's file may not have. */
+static void start(const Runner *r, Slot *slot)
+{
+    BrokenLimit broken;
+    if (!limit_broken(r->sweep->model, slot->scene.parameter, &broken)) {
+        set_status(r, slot, begin(r->sweep, slot, r->one), r->one);
+        return;
+    }
+    slot->status = GIC_ERROR_GEOMETRY;
+    slot->reason = pool_print(r->pool, "with these parameters the model is impossible: %s", broken.text);
+}
+
 /* Judge a watched run: one that is unstable within bounds gets the status of unstable runs. */
 static void judge(const Runner *r, Slot *slot)
 {
@@ -285,7 +298,7 @@ static void run_lanes(Runner *r)
     const Scene *scene = sweep->scene;
     sweep->many->setup(r->batch);
     for (int i = 0; i < r->used; ++i) {
-        set_status(r, &r->slot[i], begin(sweep, &r->slot[i], r->one), r->one);
+        start(r, &r->slot[i]);
         if (r->slot[i].status == GIC_OK)
             sweep->many->load(r->batch, i, r->one);
     }
@@ -321,7 +334,7 @@ static void run_one(Runner *r)
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
     Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
-    set_status(r, slot, begin(sweep, slot, r->one), r->one);
+    start(r, slot);
     if (slot->status == GIC_OK)
         look_at_one(r);
     for (int64_t k = 0; k < scene->outputs && slot->status == GIC_OK && !r->stopped; ++k) {
