@@ -1,8 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_control_models.sh GICRUN: models/controllers with their scenes: each control does what it is for, against the same run
-# with it switched off, and code for the scene, general code and the tape have the same numbers.
-gicrun=$(realpath "$1")
+# test_control_models.sh GICGEN GICRUN STATES AGREE REFERENCE_LONG: models/controllers with their scenes: each control does what
+# it is for, against the same run with it switched off; general code and the tape have the same digits; and with random held
+# values accelerations, reactions and wheels are those of the independent reference.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+states=$(realpath "$3")
+agree=$(realpath "$4")
+reference_long=$(realpath "$5")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
@@ -63,6 +68,16 @@ done
 awk 'NR == 1 { on = $1 } NR == 2 { off = $1 } END { exit !(on > 0 && on < 10 && off > 45) }' on off
 verdict $? "largest sideslip, degrees: $(cat on) with, $(cat off) without"
 alike esc 2.5
+
+# ---- the reference
+for model in abs skyhook esc; do
+    file=$folder/$model.veh
+    { "$gicgen" --dump-model "$file" >dump && sh "$root/tests/lib/reactions.sh" dump "$file" && sh "$root/tests/lib/wheels.sh" dump; } >variant.veh 2>err
+    "$states" dump --count 40 --seed 1 -o states 2>err && "$reference_long" dump states -o accelerations 2>err &&
+        "$gicrun" --engine tape --eval states variant.veh -o results 2>err &&
+        "$agree" dump accelerations results --reactions --wheels --tolerance 2e-12 >said 2>&1
+    verdict $? "$model: the reference"
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
