@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Run time against error of complete vehicles with their scenes: constant and variable steps, single and dual rate,
- * changes of gear within steps and at their ends. */
+ * changes of gear within steps and at their ends, contacts within steps and gone over. */
 #include "base/file.h"
 #include "base/message.h"
 #include "bench/bench.h"
@@ -109,21 +109,30 @@ static void add_row(Study *study, const char *way, int group, Ride ride)
     row->second = pool_alloc(study->bench->pool, sizeof *row->second * (size_t)study->bench->repetitions);
 }
 
-/* Constant steps; if the gear changes in the scene, also with these changes at steps' ends. */
+/* The scene's step and its parts. `ride` without its setting; `what` is told after the way's name. */
+static void add_parts(Study *study, const char *way, const char *what, int group, int32_t method, Ride ride)
+{
+    for (int i = 0; i < PARTS; ++i) {
+        ride.setting = (Setting){method, study->scene->step / (1 << i)};
+        add_row(study, pool_print(study->bench->pool, "%s%s", way, what), group, ride);
+    }
+}
+
+/* Constant steps; if the gear changes in the scene, also with these changes at steps' ends; if contacts do, also with
+ * them located. */
 static void add_constant(Study *study, const char *way, int group, int32_t method, int32_t ratio)
 {
-    for (int change = GEAR_BY_RUNTIME; change <= (study->reference.shifts ? GEAR_AT_END : GEAR_BY_RUNTIME); ++change)
-        for (int i = 0; i < PARTS; ++i) {
-            const Setting setting = {method, study->scene->step / (1 << i)};
-            add_row(study, change ? pool_print(study->bench->pool, "%s, late gears", way) : way, group,
-                    (Ride){setting, ratio, (GearChange)change});
-        }
+    add_parts(study, way, "", group, method, (Ride){.ratio = ratio});
+    if (study->reference.touches)
+        add_parts(study, way, ", contacts located", group, method, (Ride){.ratio = ratio, .locate = true});
+    if (study->reference.shifts)
+        add_parts(study, way, ", late gears", group, method, (Ride){.ratio = ratio, .change = GEAR_AT_END});
 }
 
 static void add_variable(Study *study, const char *way, int group, int32_t method)
 {
     for (int i = 0; i < TOLERANCES; i += study->bench->quick ? 2 : 1)
-        add_row(study, way, group, (Ride){{method, tolerance[i]}, 1, GEAR_BY_RUNTIME});
+        add_row(study, way, group, (Ride){.setting = {method, tolerance[i]}, .ratio = 1});
 }
 
 static void add_all(Study *study)
@@ -308,7 +317,8 @@ static void tell_begin(const Bench *bench, const char *engine)
         bench->report,
         "Ways: constant steps find the time of a change of gear within the step and go on from there; "
         "`late gears`, for scenes in which the gear changes, leaves it to the end of the step in which it is due. "
-        "Variable steps end where a change is due. No other event is located.");
+        "`contacts located`, for scenes in which wheels or stops get or lose their load, makes steps in parts there "
+        "(`locate: true`). Variable steps end at both.");
 }
 
 /* ---- files of their own ------------------------------------------------------------------------------------- */

@@ -19,6 +19,7 @@ typedef struct Ride {
     Setting setting;
     int32_t ratio; /* AB3: fast steps in a step */
     GearChange change;
+    bool locate; /* constant steps are made in parts at contacts */
 } Ride;
 
 /* Positions at output times: of the base, or of all bodies where the base is fixed. */
@@ -34,6 +35,7 @@ typedef struct RideEnd {
     double second;     /* CPU time, s */
     int64_t rhs, fast; /* right-hand sides; evaluations of the fast rates alone */
     int changes;       /* of gear, 0 with GEAR_BY_RUNTIME */
+    int64_t contacts;  /* made or lost, that were looked for */
 } RideEnd;
 
 /* A solution that others are compared with, and two by other methods. */
@@ -41,7 +43,7 @@ typedef struct Reference {
     Track track;
     const char *name, *check[2]; /* how they are computed */
     double distance[2];          /* m, of check[] from the reference; INFINITY: that run ends early */
-    bool shifts;                 /* the gear changes on the way */
+    bool shifts, touches;        /* the gear changes on the way; contacts do */
     double uncertainty;          /* m, the smaller one: the nearest solution by another method */
 } Reference;
 

@@ -140,6 +140,7 @@ static Going going_begin(Pool *pool, const Engine *engine, gic_head *self, const
         going.code.shift = NULL;
     going.scene = bench_scene(scene, ride->setting);
     going.scene.ratio = ride->ratio;
+    going.scene.locate = ride->locate;
     going.scene.rest = NULL;
     going.scene.steady = 0;
     gic_head **const place[] = {&going.copy, &going.before, &going.trial};
@@ -170,7 +171,8 @@ RideEnd ride_run(const Engine *engine, gic_head *self, const Scene *scene, const
                          .second = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before,
                          .rhs = self->rhs_count,
                          .fast = self->fast_count,
-                         .changes = going.changes};
+                         .changes = going.changes,
+                         .contacts = self->contact_count};
     variable_close(going.variable);
     self->user = (void *)(uintptr_t)scene; /* the other one ends here */
     pool_free(pool);
@@ -185,7 +187,7 @@ static double tightest(const Bench *bench, const Engine *engine, gic_head *self,
 {
     static const double tolerance[] = {1e-13, 1e-12, 1e-11, 1e-10, 1e-9};
     for (size_t i = 0; i < sizeof tolerance / sizeof *tolerance; ++i) {
-        const Ride ride = {{method, tolerance[i]}, 1, GEAR_BISECTED};
+        const Ride ride = {{method, tolerance[i]}, 1, GEAR_BISECTED, false};
         bench_progress(bench, "reference with %s, tolerance %g", integrator_name(method), tolerance[i]);
         *end = ride_run(engine, self, scene, &ride, track);
         if (end->status == GIC_OK)
@@ -202,10 +204,12 @@ Reference precision_reference(const Bench *bench, const Engine *engine, gic_head
     Track track[3];
     RideEnd end;
     int changes = 0;
+    int64_t contacts = 0;
     for (int i = 0; i < 2; ++i) {
         track[i] = track_new(pool, scene, engine->code);
         const double tolerance = tightest(bench, engine, self, scene, method[i], &track[i], &end);
         changes += end.changes;
+        contacts += end.contacts;
         name[i] = pool_print(pool, "%s with a tolerance of %g", integrator_name(method[i]), tolerance);
         if (!(tolerance > 0))
             diag_fail((Place){scene->source, 0, 0}, "a benchmark needs a scene that runs to its end",
@@ -213,13 +217,14 @@ Reference precision_reference(const Bench *bench, const Engine *engine, gic_head
                       instance_status(pool, engine->code, self, end.status));
     }
     bench_progress(bench, "reference with rk4, a sixteenth of the step");
-    const Ride fine = {{GIC_RK4, scene->step / 16}, 1, GEAR_BY_RUNTIME};
+    const Ride fine = {{GIC_RK4, scene->step / 16}, 1, GEAR_BY_RUNTIME, true};
     track[2] = track_new(pool, scene, engine->code);
     ride_run(engine, self, scene, &fine, &track[2]);
     Reference reference = {.track = track[0],
                            .name = name[0],
                            .check = {name[1], "rk4 with a sixteenth of the step"},
-                           .shifts = changes > 0};
+                           .shifts = changes > 0,
+                           .touches = contacts > 0};
     for (int i = 0; i < 2; ++i)
         reference.distance[i] = track_distance(&track[0], &track[1 + i]);
     reference.uncertainty = fmin(reference.distance[0], reference.distance[1]);

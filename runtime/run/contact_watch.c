@@ -26,6 +26,7 @@ struct ContactWatch {
     double start;                                          /* s, of the step */
     bool known;                                            /* bend[] is */
     int side[GIC_CONTACTS];                                /* 1: with a load, -1: without, 0: at 0 and to stay there */
+    int last[GIC_CONTACTS];                                /* the last one that was not 0; 0: none yet */
     double here[GIC_CONTACTS], slope[GIC_CONTACTS];        /* at the start of the step */
     double there[GIC_CONTACTS], slope_there[GIC_CONTACTS]; /* at its end */
     double bend[GIC_CONTACTS];                             /* change of the slope over time in the step before */
@@ -93,6 +94,11 @@ static void note_sizes(ContactWatch *watch)
     }
 }
 
+void contact_watch_forget(ContactWatch *watch)
+{
+    memset(watch->last, 0, sizeof watch->last);
+}
+
 int contact_watch_start(ContactWatch *watch, const gic_model *model, gic_head *self)
 {
     const int n = model->slow_count + model->fast_count;
@@ -117,6 +123,10 @@ int contact_watch_start(ContactWatch *watch, const gic_model *model, gic_head *s
         watch->side[i] = sign_of(watch, i, watch->here[i]);
         if (!watch->side[i] && fabs(slope) * span > 4 * watch->rounding)
             watch->side[i] = slope > 0 ? 1 : -1;
+        if (watch->side[i]) {
+            self->contact_count += watch->last[i] == -watch->side[i];
+            watch->last[i] = watch->side[i];
+        }
     }
     return status;
 }

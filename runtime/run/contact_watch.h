@@ -16,7 +16,9 @@ ContactWatch *contact_watch_new(void);
 void contact_watch_free(ContactWatch *watch);
 
 /* A step begins at `self`, and nothing is known of the one before: find on which side each contact is. A number that
- * is 0 but for rounding is where its slope leads. Returns a status. */
+ * is 0 but for rounding is where its slope leads. Contacts on the other side than at the last start are counted in
+ * contact_count, unless all has been forgotten since. Returns a status. */
+void contact_watch_forget(ContactWatch *watch);
 int contact_watch_start(ContactWatch *watch, const gic_model *model, gic_head *self);
 
 /* A try of a step begins, or one at `state` and `time` evaluated its right-hand side. Returns a status. */

@@ -126,7 +126,8 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
         gsl_odeiv2_driver_alloc_standard_new(&variable->system, type, variable->first_step, tolerance, tolerance, 1, 0);
     variable->towards = gsl_odeiv2_driver_alloc_standard_new(&variable->system, gsl_odeiv2_step_rkck,
                                                              variable->first_step, tolerance, tolerance, 1, 0);
-    variable_restart(variable);
+    variable->fresh = true;
+    variable->hunted = -INFINITY;
     if (variable->integrated && variable->settled && variable->before && variable->whole && variable->start &&
         variable->trial && variable->probe && variable->contacts && variable->driver && variable->towards)
         return variable;
@@ -162,6 +163,7 @@ void variable_restart(Variable *variable)
 {
     variable->fresh = true;
     variable->hunted = -INFINITY;
+    contact_watch_forget(variable->contacts);
 }
 
 /* True if an integrated number that the right-hand side did not use has drifted from the recovered one by more than the
@@ -255,14 +257,13 @@ static double longest_towards(const Variable *variable, double time)
 
 /* A step across a change has been made: another number of them within a microsecond than contacts can have would not
  * end. */
-static int count_crossing(Variable *variable, gic_head *self, double time)
+static int count_crossing(Variable *variable, double time)
 {
     const double soon = 1e-6;
     if (!(time - variable->since < soon && time >= variable->since)) {
         variable->since = time;
         variable->crossings = 0;
     }
-    ++self->contact_count;
     variable->fresh = true;
     variable->hunted = -INFINITY;
     return ++variable->crossings > GIC_CHANGES * (1 + variable->model->contact_count) ? GIC_ERROR_EVENTS : GIC_OK;
@@ -297,10 +298,11 @@ static int careful_step(Variable *variable, gic_head *self, double end)
             return GIC_OK;
         }
         if (finding == CONTACTS_REACHED || length <= 2.5 * crossing(start))
-            return count_crossing(variable, self, start);
+            return count_crossing(variable, start);
         const gic_head counted = *self;
         memcpy(self, variable->whole, model->size);
         carry_counts(&counted, self);
+        self->contact_count = counted.contact_count; /* of its start */
         variable->fresh = true;
         variable->hunted = now;
         const double known = longest_towards(variable, start);

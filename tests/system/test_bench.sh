@@ -359,6 +359,19 @@ check 'gears within steps leave a tenth of the error of late ones' awk -F, '
         exit bad || n != 3}' "$work/rows.csv"
 check 'the reference says how uncertain it is' [ 2 -eq "$(grep -c 'Reference: rkck .* differs by .* from adams .* from rk4' "$work/out")" ]
 
+# a wheel that hops and a load between stops: with and without location, side by side
+printf 'gicscene: 1\nduration: 1\nstep: 0.002\noutput_step: 0.02\n' >"$work/hop.scene"
+echo 'initial: {coordinates: {z: 0.05}, rates: {s: 0.8}}' >>"$work/hop.scene"
+precision -o "$work/hop.csv" "$(dirname "$0")/../data/contact/hop.veh" "$work/hop.scene"
+check 'contacts located and gone over' [ $? -eq 0 ]
+check 'RK4 has a hundredth of the error with them' awk -F '"?,"?' '
+    /rk4,/ || /"rk4, contacts/ {
+        located = /contacts located/
+        error[located] = $(located ? 6 : 5)
+        ++n
+    }
+    END {exit !(n == 8 && error[1] > 0 && error[1] < error[0] / 100)}' "$work/hop.csv"
+
 # ---- in the browser
 
 /usr/bin/python3 -B "$(dirname "$0")/../bench/width.py" "$work/profile" "$work/page/index.html" "$work/box/index.html" \
