@@ -37,7 +37,7 @@ static const char help[] =
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
-    "      --plot FILE    draw what the scene's `plot` names, with gnuplot\n"
+    "      --plot FILE    draw the scene's `plot`, with gnuplot\n"
     "      --with FILE    draw other results too, in dots\n"
     "      --animate FILE write a page for a browser in which the model moves along its road\n"
     "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
@@ -57,12 +57,12 @@ static const char help[] =
     "      --axle NAME    of --kc: front, rear or a number from the front\n"
     "      --travel M     of --kc: wheel travel up and down, m (0.08)\n"
     "      --report FILE  of --kc: a page of curves\n"
+    "      --loads        with --kc: compliance instead\n"
     "      --sheet        the vehicle on a page, models/SHEET.md\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
-    "      --tolerance NUMBER\n"
-    "                     of variable steps instead of the scene's\n"
+    "      --tolerance NUMBER of variable steps\n"
     "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
     "                     compiled in this process, in a run of more than a moment by\n"
     "                     the C compiler too; tcc, the first of them; cc, the second; tape,\n"
@@ -170,6 +170,7 @@ static Request read_command_line(int count, char **word)
         {"at", .read = read_at},
         {"kc", .on = &request.kinematics},
         {"sheet", .on = &request.sheet},
+        {"loads", .on = &request.loads},
         {"axle", .text = &request.axle},
         {"travel", .read = read_travel},
         {"report", .text = &request.report},
@@ -192,8 +193,10 @@ static Request read_command_line(int count, char **word)
     if (request.rests + request.modes + request.linear + request.kinematics + request.sheet + (request.states != NULL) >
         1)
         usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize, --kc and --sheet, please", NULL);
-    if (!request.kinematics && (request.axle || request.travel > 0 || request.report))
-        usage_fail("gicrun", "--axle, --travel and --report go with --kc", NULL);
+    if (!request.kinematics && (request.axle || request.travel > 0 || request.report || request.loads))
+        usage_fail("gicrun", "--axle, --travel, --report and --loads go with --kc", NULL);
+    if (request.loads && (request.report || request.travel > 0))
+        usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (request.report && !path_ends(request.report, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.report);
     const bool runs = is_run(&request), at = !isnan(request.at);

@@ -35,7 +35,8 @@ typedef struct KcWheel {
     int tip, turn;
 } KcWheel;
 
-enum { KC_WHEELS = 8 /* the most of an axle */ };
+/* The most of an axle, and of coordinates that move them. */
+enum { KC_WHEELS = 8, KC_COLUMNS = 2 * KC_WHEELS };
 
 /* Wheels of nearly the same x. */
 typedef struct KcAxle {
@@ -78,7 +79,7 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
  * that of steering. */
 typedef struct KcLook {
     int columns, outputs;
-    int column[KC_WHEELS + 1];
+    int column[KC_COLUMNS];
     double *value; /* [outputs] at rest */
     double *slope; /* [columns][outputs] derivative by a coordinate, of places; of the rates x' and v: by its rate */
 } KcLook;
@@ -221,6 +222,24 @@ typedef enum KcOfAxle {
 extern const KcQuantity kc_of_wheel[KC_OF_WHEEL], kc_of_axle[KC_OF_AXLE];
 /* The unit of the steering ratio and of the steering coordinate, whose type differs. */
 const char *kc_unit(const Kc *kc, const KcAxle *axle, int of_axle);
+
+/* ---- kc_loads.c: compliance */
+
+/* Loads of 1 N or 1 N m on each wheel: at the contact of the locked wheel along y and along x, about z, and at the
+ * wheel's centre along x. */
+typedef enum KcLoad { KC_LATERAL, KC_LONGITUDINAL, KC_ALIGNING, KC_HUB_LONGITUDINAL, KC_LOADS } KcLoad;
+extern const char *const kc_load_name[KC_LOADS];
+
+/* What a wheel does for it: rad, m, and N of the vertical force that holds its height. */
+typedef struct KcGive {
+    double steer, toe, camber, contact[3], centre[3], force;
+} KcGive;
+
+/* give: [wheels]. opposed: the other way on the right. Returns NULL, or why there is none. */
+const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool opposed, KcGive *give);
+/* All loads of all axles as CSV; those of an axle for people. */
+void kc_loads_csv(Pool *pool, const Kc *kc, const char *path);
+void kc_loads_print(Pool *pool, const Kc *kc, int axle);
 
 /* ---- kc_report.c: --kc */
 

@@ -219,8 +219,27 @@ static void write_csv(Pool *pool, const KcStudy *study, const char *path)
     interrupt_release();
 }
 
+/* --loads: compliance alone. */
+static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    if (request->results) {
+        kc_loads_csv(pool, kc, request->results);
+        return;
+    }
+    printf("compliance of %s, models/KC.md defines it\n", model->name);
+    for (int a = 0; a < kc->axles; ++a) {
+        printf("\n%s\n", kc->axle[a].name);
+        kc_loads_print(pool, kc, a);
+    }
+}
+
 void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
+    if (request->loads) {
+        report_loads(pool, model, scene, request);
+        return;
+    }
     const KcStudy study = study_of(pool, model, scene, request);
     bool moves = false;
     for (int a = 0; a < study.kc->axles; ++a)

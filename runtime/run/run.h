@@ -18,6 +18,7 @@ typedef struct Request {
     const char *states;           /* --eval, or NULL */
     bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
     bool kinematics, sheet;       /* --kc, --sheet */
+    bool loads;                   /* --loads */
     const char *axle;             /* --axle, or NULL: all */
     const char *report;           /* --report, or NULL */
     double travel;                /* --travel, m; 0: as usual */
