@@ -32,8 +32,7 @@ static const char help[] =
     "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
     "\n"
-    "Generates C for a vehicle model, compiles it and runs a scene, or evaluates rows of\n"
-    "states; or finds where it rests, and how it moves about there.\n"
+    "Generates C for a vehicle model, compiles it and runs a scene; or studies the model.\n"
     "\n"
     "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
     "                     picture or a page is asked for)\n"
@@ -59,6 +58,7 @@ static const char help[] =
     "      --report FILE  of --kc: a page of curves\n"
     "      --loads        with --kc: compliance instead\n"
     "      --sheet        the vehicle on a page, models/SHEET.md\n"
+    "      --compare FILE with --sheet: another model beside it\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
@@ -68,8 +68,8 @@ static const char help[] =
     "                     the C compiler too; tcc, the first of them; cc, the second; tape,\n"
     "                     formulas interpreted; gic, gcp1, gcp2: the paper's methods\n"
     "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
-    "      --recovery WAY of dependent coordinates: newton; closed, in closed form wherever there\n"
-    "                     is one; auto (default), whichever takes fewer operations\n"
+    "      --recovery WAY of dependent coordinates: newton; closed, wherever there is a closed\n"
+    "                     form; auto (default), whichever takes less\n"
     "      --general      generated code as for any scene; without it a run has code for its scene\n"
     "                     alone, which leaves out what that doesn't need\n"
     "      --lanes W      with --engine cc, by gcc or clang: wheels, and other parts that are\n"
@@ -174,6 +174,7 @@ static Request read_command_line(int count, char **word)
         {"axle", .text = &request.axle},
         {"travel", .read = read_travel},
         {"report", .text = &request.report},
+        {"compare", .text = &request.compare},
         {"integrator", .text = &request.integrator},
         {"tolerance", .read = read_tolerance},
         {"engine", .read = read_engine},
@@ -195,6 +196,8 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize, --kc and --sheet, please", NULL);
     if (!request.kinematics && (request.axle || request.travel > 0 || request.report || request.loads))
         usage_fail("gicrun", "--axle, --travel, --report and --loads go with --kc", NULL);
+    if (request.compare && !request.sheet)
+        usage_fail("gicrun", "--compare goes with --sheet", NULL);
     if (request.loads && (request.report || request.travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (request.report && !path_ends(request.report, ".html"))

@@ -21,6 +21,7 @@ typedef struct Request {
     bool loads;                   /* --loads */
     const char *axle;             /* --axle, or NULL: all */
     const char *report;           /* --report, or NULL */
+    const char *compare;          /* --compare, or NULL */
     double travel;                /* --travel, m; 0: as usual */
     double at;                    /* --at, s; NAN: not given */
     const char *results;          /* "-": standard output; NULL: none */

@@ -17,6 +17,7 @@ typedef struct SheetRow {
     const char *section, *name, *title;
     const char *unit, *shown; /* "rad", "deg" */
     double scale, value;      /* scale: from unit to shown */
+    double other;             /* of the vehicle to compare with; NAN: it has no such number */
 } SheetRow;
 
 typedef struct Sheet {
@@ -31,6 +32,7 @@ typedef struct Sheet {
     double wheelbase;    /* distance of the first axle's contacts from the last one's, at rest */
     int rows, notes;
     SheetRow *row;
+    const char *other; /* the name of the vehicle to compare with; NULL: none */
     const char **note; /* what could not be found, and why */
 } Sheet;
 
@@ -46,6 +48,8 @@ void sheet_cornering(Sheet *sheet);
 int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+/* True if a number is another one for the other vehicle, or not there: by more than rounding. */
+bool sheet_differs(const SheetRow *row);
 /* sheet_page.c */
 void sheet_page(const Sheet *sheet, const char *path);
 

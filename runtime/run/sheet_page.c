@@ -33,11 +33,20 @@ static void write_tables(void *context, Text *out, int indent)
             text_print(out, "%s<table>\n<caption>", open ? "</table>\n" : "");
             text_html(out, row->section);
             text_print(out, "</caption>\n");
+            if (sheet->other) {
+                text_print(out, "<tr><th></th><th class=\"n\">");
+                text_html(out, sheet->model->name);
+                text_print(out, "</th><th class=\"n\">");
+                text_html(out, sheet->other);
+                text_print(out, "</th><th></th></tr>\n");
+            }
             open = true;
         }
-        text_print(out, "<tr>");
+        text_print(out, sheet->other && sheet_differs(row) ? "<tr class=\"differs\">" : "<tr>");
         cell(out, row->title, false);
         cell(out, kc_shown(sheet->pool, row->value, row->scale), true);
+        if (sheet->other)
+            cell(out, kc_shown(sheet->pool, row->other, row->scale), true);
         cell(out, row->shown, false);
         text_print(out, "</tr>\n");
     }

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "gic_runtime.h"
 #include "host/host.h"
+#include "read/read.h"
 #include "run/sheet.h"
 #include "tape/engine_tape.h"
 
@@ -23,7 +24,7 @@ static const struct {
 
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value)
 {
-    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0};
+    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0, NAN};
     for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; ++i)
         if (!strcmp(unit, of_unit[i].unit)) {
             row.shown = of_unit[i].shown;
@@ -84,11 +85,22 @@ static void write_csv(const Sheet *sheet, const char *path)
     csv_name(&csv, "quantity", NULL);
     csv_name(&csv, "value", NULL);
     csv_name(&csv, "unit", NULL);
+    if (sheet->other) {
+        csv_name(&csv, "other", NULL);
+        csv_name(&csv, "difference", NULL);
+    }
     csv_end_row(&csv);
     for (int i = 0; i < sheet->rows; ++i) {
         csv_name(&csv, sheet->row[i].name, NULL);
         csv_number(&csv, sheet->row[i].value);
         csv_name(&csv, sheet->row[i].unit, NULL);
+        if (sheet->other && isnan(sheet->row[i].other)) {
+            csv_text(&csv, NULL);
+            csv_text(&csv, NULL);
+        } else if (sheet->other) {
+            csv_number(&csv, sheet->row[i].other);
+            csv_number(&csv, sheet->row[i].other - sheet->row[i].value);
+        }
         csv_end_row(&csv);
     }
     csv_close(&csv);
@@ -97,25 +109,28 @@ static void write_csv(const Sheet *sheet, const char *path)
 
 static void print(const Sheet *sheet)
 {
-    printf("%s, models/SHEET.md defines these\n", sheet->model->name);
+    printf("%s%s%s, models/SHEET.md defines these\n", sheet->model->name, sheet->other ? " and " : "",
+           sheet->other ? sheet->other : "");
     for (int i = 0; i < sheet->rows; ++i) {
         const SheetRow *row = &sheet->row[i];
         if (row->section)
             printf("\n%s\n", row->section);
-        printf("  %-60s%-9s %14s\n", row->title, row->shown, kc_shown(sheet->pool, row->value, row->scale));
+        printf("  %-60s%-9s %14s", row->title, row->shown, kc_shown(sheet->pool, row->value, row->scale));
+        if (sheet->other)
+            printf(" %14s%s", kc_shown(sheet->pool, row->other, row->scale), sheet_differs(row) ? " *" : "");
+        printf("\n");
     }
     for (int i = 0; i < sheet->notes; ++i)
         printf("%snot there: %s\n", i ? "" : "\n", sheet->note[i]);
 }
 
-void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
-    const Place at = {model->source, 0, 0};
     if (!model->free_base || !model->wheels)
-        diag_fail(at, "name a vehicle: a model with a free base and wheels", "model '%s' has no %s", model->name,
-                  model->wheels ? "free base" : "wheels");
-    Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, request->solve, NULL)};
-    sheet.found = equilibrium_find_locked(pool, model, scene, request->solve);
+        diag_fail((Place){model->source, 0, 0}, "name a vehicle: a model with a free base and wheels",
+                  "model '%s' has no %s", model->name, model->wheels ? "free base" : "wheels");
+    Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, solve, NULL)};
+    sheet.found = equilibrium_find_locked(pool, model, scene, solve);
     const gic_model *code = sheet.found->engine->code;
     sheet.w = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof *sheet.w);
     for (int c = 0; c < model->coordinates; ++c)
@@ -126,6 +141,31 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
     find_modes(&sheet);
     add_modes(&sheet);
     sheet_cornering(&sheet);
+    return sheet;
+}
+
+bool sheet_differs(const SheetRow *row)
+{
+    return !(fabs(row->other - row->value) <= 1e-9 * fmax(1, fabs(row->value)));
+}
+
+/* Numbers of another vehicle beside those of the same name. */
+static void compare(Sheet *sheet, const Sheet *other)
+{
+    sheet->other = other->model->name;
+    for (int i = 0; i < sheet->rows; ++i)
+        for (int k = 0; k < other->rows; ++k)
+            if (!strcmp(sheet->row[i].name, other->row[k].name))
+                sheet->row[i].other = other->row[k].value;
+}
+
+void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    Sheet sheet = sheet_of(pool, model, scene, request->solve);
+    if (request->compare) {
+        const Sheet other = sheet_of(pool, model_read(pool, request->compare), NULL, request->solve);
+        compare(&sheet, &other);
+    }
     if (request->results && path_ends(request->results, ".html"))
         sheet_page(&sheet, request->results);
     else if (request->results)

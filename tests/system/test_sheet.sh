@@ -29,5 +29,19 @@ check 'nothing is loaded' sh -c "! grep -qE 'https?:|src=|@import|url\(' '$work/
 check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/sheet.html'"
 check 'cornering is there' grep -q 'Understeer gradient' "$work/sheet.html"
 
+# two vehicles: numbers are those of either alone; one beside itself has no differences
+run --sheet -q "$models/five_link.veh" -o "$work/other.csv"
+run --sheet -q --compare "$models/five_link.veh" "$models/hmmwv.veh" -o "$work/both.csv"
+check 'two vehicles' exits 0
+both() { awk -F, 'NR == FNR {if (FNR > 1) other[$1] = $2; next} FNR > 1 {n += ($1 in other); d += other[$1] != $4
+    e += ($1 in other) && ($4 - $2 - $5) ^ 2 > 1e-18 * (1 + $2 ^ 2)} END {exit !(n > 50 && !d && !e)}' "$work/other.csv" "$work/both.csv"; }
+check 'the other one has its numbers' both
+run --sheet --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
+check 'a vehicle beside itself' sh -c "! grep -q '\*$' '$work/out'"
+run --sheet --compare "$models/five_link.veh" "$models/hmmwv.veh"
+check 'what differs is marked' grep -q 'Mass  .*\*$' "$work/out"
+run --compare "$models/hmmwv.veh" --modes "$models/hmmwv.veh"
+check '--compare without --sheet' exits 2
+
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 14 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 19 ]
