@@ -74,19 +74,33 @@ bool wheel_is_driven(const Model *model, int wheel)
 }
 
 const char *const joint_type_name[JOINT_TYPES] = {
-    [JOINT_REVOLUTE] = "revolute",           [JOINT_SPHERICAL] = "spherical",
-    [JOINT_PRISMATIC] = "prismatic",         [JOINT_CYLINDRICAL] = "cylindrical",
-    [JOINT_UNIVERSAL] = "universal",         [JOINT_FIXED] = "fixed",
-    [JOINT_DISTANCE] = "distance",           [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
-    [JOINT_POINT_ON_LINE] = "point_on_line", [JOINT_POINT_IN_PLANE] = "point_in_plane",
-    [JOINT_PARALLEL] = "parallel",           [JOINT_PERPENDICULAR] = "perpendicular",
+    [JOINT_REVOLUTE] = "revolute",
+    [JOINT_SPHERICAL] = "spherical",
+    [JOINT_PRISMATIC] = "prismatic",
+    [JOINT_CYLINDRICAL] = "cylindrical",
+    [JOINT_UNIVERSAL] = "universal",
+    [JOINT_FIXED] = "fixed",
+    [JOINT_DISTANCE] = "distance",
+    [JOINT_REVOLUTE_SPHERICAL] = "revolute_spherical",
+    [JOINT_POINT_ON_LINE] = "point_on_line",
+    [JOINT_POINT_IN_PLANE] = "point_in_plane",
+    [JOINT_PARALLEL] = "parallel",
+    [JOINT_PERPENDICULAR] = "perpendicular",
+    [JOINT_SCREW] = "screw",
+    [JOINT_RACK_AND_PINION] = "rack_and_pinion",
 };
 
 const int joint_equations[JOINT_TYPES] = {
-    [JOINT_REVOLUTE] = 5,      [JOINT_SPHERICAL] = 3,      [JOINT_PRISMATIC] = 5, [JOINT_CYLINDRICAL] = 4,
-    [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 6,          [JOINT_DISTANCE] = 1,  [JOINT_REVOLUTE_SPHERICAL] = 2,
-    [JOINT_POINT_ON_LINE] = 2, [JOINT_POINT_IN_PLANE] = 1, [JOINT_PARALLEL] = 2,  [JOINT_PERPENDICULAR] = 1,
+    [JOINT_REVOLUTE] = 5,      [JOINT_SPHERICAL] = 3,       [JOINT_PRISMATIC] = 5, [JOINT_CYLINDRICAL] = 4,
+    [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 6,           [JOINT_DISTANCE] = 1,  [JOINT_REVOLUTE_SPHERICAL] = 2,
+    [JOINT_POINT_ON_LINE] = 2, [JOINT_POINT_IN_PLANE] = 1,  [JOINT_PARALLEL] = 2,  [JOINT_PERPENDICULAR] = 1,
+    [JOINT_SCREW] = 1,         [JOINT_RACK_AND_PINION] = 1,
 };
+
+bool joint_is_geared(JointType type)
+{
+    return type == JOINT_SCREW || type == JOINT_RACK_AND_PINION;
+}
 
 const char *const coordinate_type_name[COORDINATE_TYPES] = {
     [COORDINATE_LENGTH] = "length",

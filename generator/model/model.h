@@ -121,6 +121,8 @@ typedef enum JointType {
     JOINT_POINT_IN_PLANE,
     JOINT_PARALLEL,
     JOINT_PERPENDICULAR,
+    JOINT_SCREW,
+    JOINT_RACK_AND_PINION,
     JOINT_TYPES
 } JointType;
 
@@ -130,10 +132,15 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
-    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies */
-    double length, offset; /* as in the joint's equations, if the type has them */
+    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies; of a rack
+                            * the one that it moves along */
+    double length, offset; /* as in the joint's equations, if the type has them; of a screw, and of a rack with the
+                            * other sign, the way that a turn by 1 rad makes */
     bool drawn;            /* length and offset are those of the drawing, so that the joint fits without assembly */
 } Joint;
+
+/* True for joints that tie a way to a turn, of which whole turns count. */
+bool joint_is_geared(JointType type);
 
 typedef enum CoordinateType {
     COORDINATE_LENGTH,

@@ -16,14 +16,26 @@
 #define LINKS (FORM(JOINT_DISTANCE) | FORM(JOINT_REVOLUTE_SPHERICAL))
 #define ONE_AXIS \
     (FORM(JOINT_REVOLUTE) | FORM(JOINT_PRISMATIC) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_REVOLUTE_SPHERICAL) | \
-     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | FORM(JOINT_PARALLEL))
-#define TWO_AXES (FORM(JOINT_UNIVERSAL) | FORM(JOINT_PERPENDICULAR))
+     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | FORM(JOINT_PARALLEL) | FORM(JOINT_SCREW))
+#define TWO_AXES (FORM(JOINT_UNIVERSAL) | FORM(JOINT_PERPENDICULAR) | FORM(JOINT_RACK_AND_PINION))
+#define GEARED (FORM(JOINT_SCREW) | FORM(JOINT_RACK_AND_PINION))
 #define ONE_POINT \
     (FORM(JOINT_REVOLUTE) | FORM(JOINT_SPHERICAL) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_UNIVERSAL) | \
-     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE))
+     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | GEARED)
 #define MAYBE_POINT (FORM(JOINT_PRISMATIC) | FORM(JOINT_FIXED))
 
-enum { LINK_TYPE, LINK_BODIES, LINK_POINT, LINK_POINTS, LINK_AXIS, LINK_AXES, LINK_LENGTH, LINK_OFFSET, LINK_KEYS };
+enum {
+    LINK_TYPE,
+    LINK_BODIES,
+    LINK_POINT,
+    LINK_POINTS,
+    LINK_AXIS,
+    LINK_AXES,
+    LINK_LENGTH,
+    LINK_OFFSET,
+    LINK_RATIO,
+    LINK_KEYS
+};
 
 static const Key joint_key[LINK_KEYS] = {
     [LINK_TYPE] = {"type", KEY_TYPE, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
@@ -34,6 +46,7 @@ static const Key joint_key[LINK_KEYS] = {
     [LINK_AXES] = {"axes", KEY_AXES, TWO_AXES, TWO_AXES, BOUND_NONE, 0},
     [LINK_LENGTH] = {"length", KEY_MEASURE, LINKS, 0, BOUND_POSITIVE, 0},
     [LINK_OFFSET] = {"offset", KEY_MEASURE, FORM(JOINT_REVOLUTE_SPHERICAL), 0, BOUND_NONE, 0},
+    [LINK_RATIO] = {"ratio", KEY_ODD, GEARED, GEARED, BOUND_NONE, 0},
 };
 
 /* Given lengths and offsets that differ from the drawing's by less than this share of the length count as equal. */
@@ -47,9 +60,12 @@ static const char *const joint_about[LINK_KEYS] = {
     [LINK_POINT] = "the common point at design, m, model frame; default, where optional: origin of the frame of b",
     [LINK_POINTS] = "the point of a and the point of b at design, m, model frame",
     [LINK_AXIS] = "direction at design, model frame",
-    [LINK_AXES] = "direction of a and direction of b at design, perpendicular",
+    [LINK_AXES] =
+        "direction of a and direction of b at design, perpendicular; of a rack: about which b turns, and along "
+        "which a moves",
     [LINK_LENGTH] = "distance of the points, m; default: in the drawing",
     [LINK_OFFSET] = "part of the distance along the axis, m; default: in the drawing",
+    [LINK_RATIO] = "way for a turn by 1 rad, m",
 };
 
 const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL, joint_about};
@@ -145,11 +161,12 @@ static void joint_axes_set(const Reader *reader, Value *value, const Entry *entr
     static const double x[3] = {1, 0, 0};
     const double *axis[2] = {x, x};
     const Ex *tuned[2] = {value[LINK_AXIS].tuned, value[LINK_AXIS].tuned};
+    const bool rack = joint->type == JOINT_RACK_AND_PINION;
     if (FORM(joint->type) & TWO_AXES) {
         axes_square(reader, value + LINK_AXES, entry);
         for (int i = 0; i < 2; ++i) {
-            axis[i] = value[LINK_AXES].number + 3 * i;
-            tuned[i] = value[LINK_AXES].tuned + 3 * i;
+            axis[i] = value[LINK_AXES].number + (rack ? 0 : 3 * i);
+            tuned[i] = value[LINK_AXES].tuned + (rack ? 0 : 3 * i);
         }
     } else if (FORM(joint->type) & ONE_AXIS)
         axis[0] = axis[1] = value[LINK_AXIS].number;
@@ -159,8 +176,13 @@ static void joint_axes_set(const Reader *reader, Value *value, const Entry *entr
         body_direction(reader, joint->body[i], axis[i], tuned[i], joint->axis[i]);
     double side[3];
     Ex tuned_side[3];
-    perpendicular(axis[0], side);
-    side_tune(reader, axis[0], tuned[0], side, entry->what, tuned_side);
+    if (rack) {
+        memcpy(side, value[LINK_AXES].number + 3, sizeof side);
+        memcpy(tuned_side, value[LINK_AXES].tuned + 3, sizeof tuned_side);
+    } else {
+        perpendicular(axis[0], side);
+        side_tune(reader, axis[0], tuned[0], side, entry->what, tuned_side);
+    }
     for (int i = 0; i < 2; ++i)
         body_direction(reader, joint->body[i], side, tuned_side, joint->side[i]);
 }
@@ -203,6 +225,21 @@ static void link_set(const Reader *reader, const Value *value, const Entry *entr
               "%s: the link lies along its own axis, so turning about it moves nothing", entry->what);
 }
 
+/* The ratio of a screw, or of a rack with the other sign. */
+static void ratio_set(const Reader *reader, const Value *ratio, const Entry *entry, Joint *joint)
+{
+    Dag *dag = reader->model->tuning->dag;
+    const bool rack = joint->type == JOINT_RACK_AND_PINION;
+    Ex tuned = ratio->tuned[0];
+    if (ratio->number[0] == 0)
+        diag_fail(ratio->item->at, "write the way for a turn by 1 rad, m, or hold it by another joint",
+                  "ratio of %s is 0: nothing would move", entry->what);
+    joint->offset = rack ? -ratio->number[0] : ratio->number[0];
+    if (rack && tuned)
+        tuned = ex_neg(dag, tuned);
+    tuning_set(reader->model->tuning, &joint->offset, &tuned, 1);
+}
+
 /* The origin of a body frame as a point. */
 static Value origin_value(const Reader *reader, int body)
 {
@@ -234,6 +271,8 @@ static void joint_read(Reader *reader, const Entry *entry, Joint *joint)
             body_point(reader, body[i], x->number, x->tuned, point->item ? point->item->at : entry->at,
                        joint->point[i]);
     }
+    if (FORM(type) & GEARED)
+        ratio_set(reader, value + LINK_RATIO, entry, joint);
 }
 
 void joints_read(Reader *reader, const Item *map)

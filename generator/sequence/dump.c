@@ -121,7 +121,7 @@ static bool has_points(JointType type)
 static bool has_axis_b(JointType type)
 {
     return type == JOINT_REVOLUTE || type == JOINT_PRISMATIC || type == JOINT_CYLINDRICAL || type == JOINT_UNIVERSAL ||
-           type == JOINT_PARALLEL || type == JOINT_PERPENDICULAR;
+           type == JOINT_PARALLEL || type == JOINT_PERPENDICULAR || joint_is_geared(type);
 }
 
 static bool has_axis_a(JointType type)
@@ -144,7 +144,9 @@ static void joints(Text *out, const Model *model)
         number_pair(out, "axis_a", joint->axis[0], 3, has_axis_a(joint->type));
         number_pair(out, "axis_b", joint->axis[1], 3, has_axis_b(joint->type));
         number_pair(out, "length", &joint->length, 0, hinged || joint->type == JOINT_DISTANCE);
-        number_pair(out, "offset", &joint->offset, 0, hinged);
+        number_pair(out, "offset", &joint->offset, 0, hinged || joint_is_geared(joint->type));
+        for (int k = 0; k < 2 && joint_is_geared(joint->type); ++k)
+            number_pair(out, k ? "side_b" : "side_a", joint->side[k], 3, true);
         add(out, "}");
     }
 }

@@ -57,6 +57,8 @@ static Link link_of(const Model *model, const int *local, int edge)
         Link link = link_new(model, local, j->body, j->point, plain ? z : j->axis[0],
                              plain || norm3(j->axis[1]) < 0.5 ? (plain ? z : j->axis[0]) : j->axis[1]);
         link.type = j->type;
+        if (j->type == JOINT_RACK_AND_PINION)
+            to_model(model, j->body[0], j->side[0], false, link.axis[1]);
         link.length = j->length;
         link.offset = j->offset;
         return link;

@@ -136,6 +136,15 @@ static Rows rows_of(const Relax *relax, const Link *link, const Pose3 *place)
         add_force(&rows, u[0], x[1], dot3(u[0], d) - (link->type == JOINT_REVOLUTE_SPHERICAL ? link->offset : 0));
     if (screws_have(link->type, "el"))
         add_couple(&rows, u[0], u[1]);
+    if (joint_is_geared(link->type)) {
+        double way[3]; /* along u, or along the rack, which the first body has */
+        turned(pa, link->axis[1], way);
+        turned(pb, n[0], n[0]);
+        const double angle = atan2(dot3(na[1], n[0]), dot3(na[0], n[0]));
+        add_force(&rows, way, x[1], dot3(way, d) - link->offset * angle);
+        for (int i = 0; i < 3; ++i)
+            rows.screw[rows.count - 1][3 + i] -= link->offset / relax->size * u[0][i];
+    }
     return rows;
 }
 

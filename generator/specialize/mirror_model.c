@@ -166,7 +166,9 @@ static bool sides_fit(const Joint *a, const Joint *b, bool swapped)
 static bool joint_fits(const Search *s, const Joint *a, const Joint *b, bool swapped)
 {
     double sign = 0;
-    bool fits = a->type == b->type && a->length == b->length && (!swapped || has_equal_ends(a));
+    /* a way and a turn: their signs in the mirror are not looked into */
+    bool fits =
+        a->type == b->type && !joint_is_geared(a->type) && a->length == b->length && (!swapped || has_equal_ends(a));
     for (int end = 0; end < 2 && fits; ++end) {
         const int other = swapped ? 1 - end : end;
         fits = b->body[other] == body_image(s, a->body[end]) && point_fits(a, end, b, other);

@@ -36,7 +36,12 @@ const int joint_parts[JOINT_TYPES] = {
     [JOINT_POINT_IN_PLANE] = PART_ALONG,
     [JOINT_PARALLEL] = PART_PARALLEL,
     [JOINT_PERPENDICULAR] = PART_CROSS,
+    [JOINT_SCREW] = PART_GEAR,
+    [JOINT_RACK_AND_PINION] = PART_GEAR,
 };
+
+/* Parts that need points. */
+static const int parts_with_points = PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG | PART_GEAR;
 
 /* Differences and unit vectors carry the rounding of their computation: values this near to 0 or 1 are taken as 0 or 1.
  */
@@ -68,7 +73,7 @@ static void relative_points(const int body[2], const double point[2][3], const d
 void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS])
 {
     memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
-    if (joint_parts[joint->type] & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
+    if (joint_parts[joint->type] & parts_with_points)
         relative_points(joint->body, joint->point, origin, number);
     memcpy(number + NUMBER_AXIS, joint->axis, sizeof joint->axis);
     for (int end = 0; end < 2; ++end) {
@@ -148,7 +153,7 @@ void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*
     formula[NUMBER_SQUARE] = ex_mul(dag, length, length);
     formula[NUMBER_OFFSET] = tuned_or_fixed(model, &joint->offset);
     drop_fixed(dag, formula, FIXTURE_NUMBERS);
-    if (joint_parts[joint->type] & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
+    if (joint_parts[joint->type] & parts_with_points)
         tuned_points(model, joint->body, joint->point, origin, formula);
 }
 
@@ -249,6 +254,43 @@ static Row row_length(Dag *dag, const Link *link, Ex square)
     return row;
 }
 
+/* cos(w) e_2 . f_1 - sin(w) e_1 . f_1 = 0; its other root, half a turn away, has the guard's sign reversed. */
+static Row row_turn(Dag *dag, const Fixture *fixture, const Motion *const end[2], Ex angle, Ex rate)
+{
+    Vector e1 = vector_axis(dag, end[0], fixture->side[0][0]), e2 = vector_axis(dag, end[0], fixture->side[1][0]);
+    Vector f1 = vector_axis(dag, end[1], fixture->side[0][1]);
+    Row x = row_angle(dag, &e1, &f1), y = row_angle(dag, &e2, &f1), row = {0};
+    Ex s = ex_op(dag, OP_SIN, angle, 0, 0), c = ex_op(dag, OP_COS, angle, 0, 0);
+    row.value = ex_sub(dag, ex_mul(dag, c, y.value), ex_mul(dag, s, x.value));
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 6; ++j)
+            row.J[i][j] = ex_sub(dag, ex_mul(dag, c, y.J[i][j]), ex_mul(dag, s, x.J[i][j]));
+    row.guard = ex_add(dag, ex_mul(dag, s, y.value), ex_mul(dag, c, x.value));
+    row.dual = ex_neg(dag, row.guard);
+    /* -2 w' (s y' + c x'), the rates of the products e . f_1 */
+    Ex y_rate = ex_add(dag, ex_dot(dag, e2.rate, f1.v), ex_dot(dag, e2.v, f1.rate));
+    Ex x_rate = ex_add(dag, ex_dot(dag, e1.rate, f1.v), ex_dot(dag, e1.v, f1.rate));
+    Ex cross = ex_mul(dag, rate, ex_add(dag, ex_mul(dag, s, y_rate), ex_mul(dag, c, x_rate)));
+    row.bias = ex_sub(dag, ex_sub(dag, ex_mul(dag, c, y.bias), ex_mul(dag, s, x.bias)), ex_add(dag, cross, cross));
+    return row;
+}
+
+/* The turn by row_turn() for the angle s / offset, s = v . link: v the axis, or its side. */
+static Row row_gear(Dag *dag, const Fixture *fixture, const Motion *const end[2], const Link *link, const Vector *v)
+{
+    const Ex share = ex_div(dag, ex_literal(dag, 1), fixture->offset);
+    const Row way = row_along(dag, link, 0, v);
+    const Ex speed = ex_add(dag, ex_dot(dag, v->rate, link->d), ex_dot(dag, v->v, link->rate));
+    Row row = row_turn(dag, fixture, end, ex_mul(dag, share, way.value), ex_mul(dag, share, speed));
+    const Ex slope = ex_mul(dag, row.dual, share);
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 6; ++j)
+            row.J[i][j] = ex_add(dag, row.J[i][j], ex_mul(dag, slope, way.J[i][j]));
+    row.bias = ex_add(dag, row.bias, ex_mul(dag, slope, way.bias));
+    row.dual = 0;
+    return row;
+}
+
 /* The same joint with first and second body exchanged. */
 static int exchanged_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2],
                           Row row[ROWS_MAX])
@@ -306,28 +348,9 @@ int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *c
     }
     if (parts & PART_CROSS)
         row[rows++] = row_angle(dag, &axis[0], &axis[1]);
+    if (parts & PART_GEAR)
+        row[rows++] = row_gear(dag, fixture, end, &link, type == JOINT_SCREW ? &axis[0] : &side[0]);
     return rows;
-}
-
-/* cos(w) e_2 . f_1 - sin(w) e_1 . f_1 = 0; its other root, half a turn away, has the guard's sign reversed. */
-static Row row_turn(Dag *dag, const Fixture *fixture, const Motion *const end[2], Ex angle, Ex rate)
-{
-    Vector e1 = vector_axis(dag, end[0], fixture->side[0][0]), e2 = vector_axis(dag, end[0], fixture->side[1][0]);
-    Vector f1 = vector_axis(dag, end[1], fixture->side[0][1]);
-    Row x = row_angle(dag, &e1, &f1), y = row_angle(dag, &e2, &f1), row = {0};
-    Ex s = ex_op(dag, OP_SIN, angle, 0, 0), c = ex_op(dag, OP_COS, angle, 0, 0);
-    row.value = ex_sub(dag, ex_mul(dag, c, y.value), ex_mul(dag, s, x.value));
-    for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 6; ++j)
-            row.J[i][j] = ex_sub(dag, ex_mul(dag, c, y.J[i][j]), ex_mul(dag, s, x.J[i][j]));
-    row.guard = ex_add(dag, ex_mul(dag, s, y.value), ex_mul(dag, c, x.value));
-    row.dual = ex_neg(dag, row.guard);
-    /* -2 w' (s y' + c x'), the rates of the products e . f_1 */
-    Ex y_rate = ex_add(dag, ex_dot(dag, e2.rate, f1.v), ex_dot(dag, e2.v, f1.rate));
-    Ex x_rate = ex_add(dag, ex_dot(dag, e1.rate, f1.v), ex_dot(dag, e1.v, f1.rate));
-    Ex cross = ex_mul(dag, rate, ex_add(dag, ex_mul(dag, s, y_rate), ex_mul(dag, c, x_rate)));
-    row.bias = ex_sub(dag, ex_sub(dag, ex_mul(dag, c, y.bias), ex_mul(dag, s, x.bias)), ex_add(dag, cross, cross));
-    return row;
 }
 
 Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate)

@@ -14,7 +14,8 @@ enum {
     PART_LINE = 8,     /* x_b - x_a parallel to u_a: 2 */
     PART_LENGTH = 16,  /* norm(x_b - x_a): 1 */
     PART_ALONG = 32,   /* u_a . (x_b - x_a): 1 */
-    PART_CROSS = 64    /* u_a perpendicular to u_b: 1 */
+    PART_CROSS = 64,   /* u_a perpendicular to u_b: 1 */
+    PART_GEAR = 128    /* a turn about u_a goes with u_a . (x_b - x_a), or with a side of it: 1 */
 };
 
 extern const int joint_parts[JOINT_TYPES];

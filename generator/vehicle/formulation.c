@@ -216,6 +216,9 @@ double coordinate_piece(const Formulation *f, int coordinate)
 
 bool coordinate_unwinds(const Formulation *f, int coordinate)
 {
+    for (int i = 0; i < f->model->joints; ++i)
+        if (joint_is_geared(f->model->joint[i].type))
+            return false;
     return f->model->coordinate[coordinate].type == COORDINATE_ANGLE && coordinate_piece(f, coordinate) < 3;
 }
 

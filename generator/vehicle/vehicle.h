@@ -359,7 +359,8 @@ StateNumber state_number(Pool *pool, const Formulation *f, int index);
 /* The largest change of a coordinate that is followed in one piece: no body turns by more than about a tenth of a
  * radian. */
 double coordinate_piece(const Formulation *f, int coordinate);
-/* True for an angle whose pieces are less than half a turn: adding 2 pi changes no pose. */
+/* True for an angle whose pieces are less than half a turn, in a model without screws and racks: adding 2 pi changes no
+ * pose. */
 bool coordinate_unwinds(const Formulation *f, int coordinate);
 /* Design pose of a body relative to the base, as in a Newton start: reference point, Euler parameters; for a model with
  * a tuning the drawn pose, where set-up begins. */

@@ -20,8 +20,13 @@ enum {
     PART_LENGTH = 16,  /* norm(x_b - x_a): 1 */
     PART_ALONG = 32,   /* u_a . (x_b - x_a): 1 */
     PART_CROSS = 64,   /* u_a perpendicular to u_b: 1 */
-    PART_TURN = 128    /* angle of f_1 about u_a: 1 */
+    PART_TURN = 128,   /* angle of f_1 about u_a: 1 */
+    PART_SCREW = 256,  /* the same, with the angle a share of u_a . (x_b - x_a) */
+    PART_RACK = 512    /* or of the first side . (x_b - x_a) */
 };
+
+static const int parts_geared = PART_SCREW | PART_RACK,
+                 parts_with_points = PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG | PART_SCREW | PART_RACK;
 
 static const int parts_of_joint[JOINT_TYPES] = {
     [JOINT_REVOLUTE] = PART_POINT | PART_PARALLEL,
@@ -36,6 +41,8 @@ static const int parts_of_joint[JOINT_TYPES] = {
     [JOINT_POINT_IN_PLANE] = PART_ALONG,
     [JOINT_PARALLEL] = PART_PARALLEL,
     [JOINT_PERPENDICULAR] = PART_CROSS,
+    [JOINT_SCREW] = PART_SCREW,
+    [JOINT_RACK_AND_PINION] = PART_RACK,
 };
 
 static const int parts_of_coordinate[COORDINATE_TYPES] = {
@@ -59,12 +66,14 @@ static Tie tie_of_joint(const Model *model, int index)
                .parts = parts_of_joint[joint->type],
                .length = joint->length,
                .offset = joint->offset};
-    if (tie.parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG))
+    if (tie.parts & parts_with_points)
         set_arms(model, &tie, joint->point);
     memcpy(tie.axis, joint->axis, sizeof tie.axis);
     copy3(joint->side[0], tie.side[0]);
     cross3(joint->axis[0], joint->side[0], tie.side[1]);
     cross3(joint->axis[1], joint->side[1], tie.other);
+    if (tie.parts & parts_geared)
+        copy3(joint->side[1], tie.other);
     return tie;
 }
 
@@ -277,20 +286,20 @@ static inline void find_vectors(const World *world, const Tie *tie, TieVectors *
 {
     const double *a = world->q[tie->body[0]], *b = world->q[tie->body[1]];
     const double *Aa = world->A[tie->body[0]], *Ab = world->A[tie->body[1]];
-    if (tie->parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG)) {
+    if (tie->parts & parts_with_points) {
         apply3(Aa, tie->arm[0], v->arm[0]);
         apply3(Ab, tie->arm[1], v->arm[1]);
         for (int i = 0; i < 3; ++i)
             v->d[i] = (b[i] - a[i]) + (v->arm[1][i] - v->arm[0][i]);
     }
-    if (tie->parts & (PART_PARALLEL | PART_CROSS | PART_ALONG))
+    if (tie->parts & (PART_PARALLEL | PART_CROSS | PART_ALONG | PART_SCREW))
         apply3(Aa, tie->axis[0], v->axis[0]);
     if (tie->parts & (PART_PARALLEL | PART_CROSS))
         apply3(Ab, tie->axis[1], v->axis[1]);
-    if (tie->parts & (PART_PARALLEL | PART_LOCK | PART_LINE | PART_TURN))
+    if (tie->parts & (PART_PARALLEL | PART_LOCK | PART_LINE | PART_TURN | parts_geared))
         for (int i = 0; i < 2; ++i)
             apply3(Aa, tie->side[i], v->side[i]);
-    if (tie->parts & (PART_LOCK | PART_TURN))
+    if (tie->parts & (PART_LOCK | PART_TURN | parts_geared))
         apply3(Ab, tie->other, v->other);
 }
 
@@ -305,11 +314,19 @@ static inline double wanted_offset(const World *world, const Tie *tie)
     return tie->coordinate >= 0 ? world->x[tie->coordinate] - tie->offset : tie->offset;
 }
 
+/* Direction of the way that goes with a turn. */
+static inline const double *way_of(const Tie *tie, const TieVectors *v)
+{
+    return tie->parts & PART_SCREW ? v->axis[0] : v->side[0];
+}
+
 /* Of PART_TURN: the direction that f_1 is meant to have, and the one a quarter turn before it has, of which the product
  * with f_1 vanishes: -sin(w) e_1 + cos(w) e_2. */
 static inline void turned(const World *world, const Tie *tie, const TieVectors *v, double along[3], double across[3])
 {
-    const double angle = world->x[tie->coordinate] - tie->offset, c = cos(angle), s = sin(angle);
+    const double angle =
+        tie->parts & parts_geared ? dot3(way_of(tie, v), v->d) / tie->offset : world->x[tie->coordinate] - tie->offset;
+    const double c = cos(angle), s = sin(angle);
     for (int i = 0; i < 3; ++i) {
         along[i] = c * v->side[0][i] + s * v->side[1][i];
         across[i] = c * v->side[1][i] - s * v->side[0][i];
@@ -340,7 +357,7 @@ static inline void find_values(const World *world, const Tie *tie, const TieVect
         *value++ = dot3(v->axis[0], v->d) - wanted_offset(world, tie);
     if (tie->parts & PART_CROSS)
         *value++ = dot3(v->axis[0], v->axis[1]);
-    if (tie->parts & PART_TURN) {
+    if (tie->parts & (PART_TURN | parts_geared)) {
         double along[3], across[3];
         turned(world, tie, v, along, across);
         *value++ = dot3(across, v->other);
@@ -454,12 +471,18 @@ bool world_rows(World *world, int index)
     if (tie->parts & PART_CROSS)
         row_angle(v->axis[0], v->axis[1], *J++);
     double dual = tie->parts & PART_LENGTH ? -wanted_length(world, tie) : -1;
-    if (tie->parts & PART_TURN) {
+    if (tie->parts & (PART_TURN | parts_geared)) {
         double along[3], across[3];
         turned(world, tie, v, along, across);
         row_angle(across, v->other, *J++);
         dual = -dot3(along, v->other);
         right = dual < 0;
+    }
+    if (tie->parts & parts_geared) {
+        double way[TWISTS];
+        row_along(way_of(tie, v), v, way);
+        for (int i = 0; i < TWISTS; ++i)
+            J[-1][i] += dual / tie->offset * way[i];
     }
     by_q(world, tie, (const double(*)[TWISTS])twist);
     if (tie->coordinate >= 0)
@@ -494,7 +517,7 @@ void world_gamma(World *world, int index)
     const double *wa = world->omega[tie->body[0]], *wb = world->omega[tie->body[1]];
     double *gamma = world->gamma + tie->first;
     Swing d = {{0}, {0}}, axis = d, other, side[2];
-    if (tie->parts & (PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG)) {
+    if (tie->parts & parts_with_points) {
         const Swing a = swing(wa, v->arm[0]), b = swing(wb, v->arm[1]);
         for (int i = 0; i < 3; ++i) {
             d.rate[i] = (vb[i] - va[i]) + (b.rate[i] - a.rate[i]);
@@ -533,13 +556,22 @@ void world_gamma(World *world, int index)
         other = swing(wb, v->axis[1]);
         *gamma++ = -bias_of(v->axis[0], &axis, v->axis[1], &other);
     }
-    if (tie->parts & PART_TURN) {
+    if (tie->parts & (PART_TURN | parts_geared)) {
         double along[3], across[3];
         turned(world, tie, v, along, across);
         const Swing a = swing(wa, along), c = swing(wa, across);
         other = swing(wb, v->other);
         const double rate = dot3(a.rate, v->other) + dot3(along, other.rate);
-        *gamma++ = 2 * world->xd[tie->coordinate] * rate - bias_of(across, &c, v->other, &other);
+        double turn_rate = tie->coordinate >= 0 ? world->xd[tie->coordinate] : 0;
+        if (tie->parts & parts_geared) {
+            const double *way = way_of(tie, v), share = dot3(along, v->other) / tie->offset;
+            axis = swing(wa, way);
+            turn_rate = (dot3(axis.rate, v->d) + dot3(way, d.rate)) / tie->offset;
+            *gamma = share * bias_of(way, &axis, v->d, &d);
+        } else {
+            *gamma = 0;
+        }
+        *gamma++ += 2 * turn_rate * rate - bias_of(across, &c, v->other, &other);
     }
 }
 

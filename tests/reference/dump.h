@@ -27,6 +27,8 @@ typedef enum JointType {
     POINT_IN_PLANE,
     PARALLEL,
     PERPENDICULAR,
+    SCREW,
+    RACK_AND_PINION,
     JOINT_TYPES
 } JointType;
 
@@ -34,6 +36,7 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3], length, offset;
+    double side[2][3]; /* of a screw or rack */
     char *name;
 } Joint;
 

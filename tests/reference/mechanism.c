@@ -186,6 +186,40 @@ static Row *no_rotation(Row *row, const Model *model, const Configuration *confi
     return row;
 }
 
+/* row = c row + s other, of two rows that concern the same bodies */
+static void combine(Row *row, quad c, quad s, const Row *other)
+{
+    row->value = c * row->value + s * other->value;
+    row->rate = c * row->rate + s * other->rate;
+    row->bias = c * row->bias + s * other->bias;
+    for (int side = 0; side < 2; ++side)
+        for (int j = 0; j < BODY_COORDINATES; ++j)
+            row->slope[side][j] = c * row->slope[side][j] + s * other->slope[side][j];
+}
+
+/* The turn about the axis is `way` over the ratio, way = v . d: e_2.f_1 cos - e_1.f_1 sin of that angle vanishes. */
+static Row geared(const Configuration *configuration, const Joint *joint, const Arrow *v, const Arrow *d)
+{
+    quad axis[3], side[2][3], third[3];
+    widen(joint->axis[0], axis, 3);
+    widen(joint->side[0], side[0], 3);
+    widen(joint->side[1], side[1], 3);
+    quad_cross(axis, side[0], third);
+    const Arrow e_1 = fixed_vector(configuration, joint->body[0], 0, side[0]),
+                e_2 = fixed_vector(configuration, joint->body[0], 0, third),
+                f_1 = fixed_vector(configuration, joint->body[1], 1, side[1]);
+    const Row x = dot(&e_1, &f_1), y = dot(&e_2, &f_1), way = dot(v, d);
+    const quad angle = way.value / joint->offset, rate = way.rate / joint->offset;
+    const quad c = cosq(angle), s = sinq(angle);
+    Row row = y;
+    combine(&row, c, -s, &x);
+    const quad value = row.value;
+    combine(&row, 1, -(s * y.value + c * x.value) / joint->offset, &way);
+    row.value = value;
+    row.bias -= 2 * (s * y.rate + c * x.rate) * rate; /* and -value rate^2, where the value is zero */
+    return row;
+}
+
 static void joint_evaluate(const Model *model, const Configuration *configuration, const Joint *joint, Row *row)
 {
     int a = joint->body[0];
@@ -230,21 +264,16 @@ static void joint_evaluate(const Model *model, const Configuration *configuratio
     case POINT_IN_PLANE: *row++ = dot(&u[0], &d); break;
     case PARALLEL: row = along_axis(row, configuration, a, axis[0], &u[1]); break;
     case PERPENDICULAR: *row++ = dot(&u[0], &u[1]); break;
+    case SCREW: *row++ = geared(configuration, joint, &u[0], &d); break;
+    case RACK_AND_PINION:
+        widen(joint->side[0], axis[1], 3);
+        u[1] = fixed_vector(configuration, a, 0, axis[1]);
+        *row++ = geared(configuration, joint, &u[1], &d);
+        break;
     case JOINT_TYPES: break;
     }
     for (Row *r = start; r < row; ++r)
         memcpy(r->body, joint->body, sizeof r->body);
-}
-
-/* row = c row + s other, of two rows that concern the same bodies */
-static void combine(Row *row, quad c, quad s, const Row *other)
-{
-    row->value = c * row->value + s * other->value;
-    row->rate = c * row->rate + s * other->rate;
-    row->bias = c * row->bias + s * other->bias;
-    for (int side = 0; side < 2; ++side)
-        for (int j = 0; j < BODY_COORDINATES; ++j)
-            row->slope[side][j] = c * row->slope[side][j] + s * other->slope[side][j];
 }
 
 /* e_2.f_1 cos(theta) - e_1.f_1 sin(theta) = 0: the angle of FORMAT.md section 5 without a branch cut, so that it goes
