@@ -118,6 +118,8 @@ static void report(Place at, const char *kind, const char *remedy, const char *f
         print_line(at);
     if (at.source && at.source->mirrored)
         fprintf(stderr, "  note: mirrored from '%s'\n", at.source->mirrored);
+    for (const Source *s = at.source; s && s->named_at.source; s = s->named_at.source)
+        fprintf(stderr, "  included at %s:%d:%d\n", s->named_at.source->path, s->named_at.line, s->named_at.column);
     if (remedy) {
         fputs("  remedy: ", stderr);
         print_clean(remedy);

@@ -26,11 +26,13 @@ typedef struct Source {
                            * entry itself */
     bool hidden;          /* messages show no text of this file: it is not yet known to be a file of the expected kind
                            */
+    Place named_at;       /* where another file names it; no source: the user does */
     struct Named *named;  /* the files that this file names: source.c */
 } Source;
 
 /* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
- * `  note: mirrored from '<entry>'`, and `  remedy: <remedy>` (remedy may be NULL), all to stderr; exit with status 1.
+ * `  note: mirrored from '<entry>'`, in a file that others include where they do, and `  remedy: <remedy>` (remedy may
+ * be NULL), all to stderr; exit with status 1.
  */
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */

@@ -309,6 +309,7 @@ const Item *doc_read(Pool *pool, const char *path)
 const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key)
 {
     Source *source = source_read(pool, path, TEXT_MOST, by->at.source);
+    source->named_at = by->at;
     /* true if the document has only blanks and comments */
     bool empty = true;
     for (const char *s = source->bytes; *s && empty; s += strcspn(s, "\n"), s += *s == '\n')

@@ -13,18 +13,20 @@
 
 enum { FORMAT_VERSION = 1, DEPTH = 16 /* nesting */, PARTS_MOST = 1000 /* files of one model */ };
 
-enum { PART_FILE, PART_AT, PART_PREFIX, PART_KEYS };
+enum { PART_FILE, PART_AT, PART_PREFIX, PART_WITH, PART_KEYS };
 
 static const Key part_key[PART_KEYS] = {
     [PART_FILE] = {"file", KEY_TEXT, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [PART_AT] = {"at", KEY_VECTOR, ALL_FORMS, 0, BOUND_NONE, 0},
     [PART_PREFIX] = {"prefix", KEY_NAME, ALL_FORMS, 0, BOUND_NONE, 0},
+    [PART_WITH] = {"with", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
 };
 
 static const char *const part_about[PART_KEYS] = {
     [PART_FILE] = "path, from the folder of the file that it stands in",
     [PART_AT] = "m, added to every point that is written in the file",
     [PART_PREFIX] = "goes in front of every name that the file defines",
+    [PART_WITH] = "values of the arguments of the file, by their names",
 };
 
 const Section part_section = {part_key, PART_KEYS, NULL, 0, NULL, NULL, part_about};
@@ -127,11 +129,12 @@ static void put_over(Pool *pool, Item *out, const Item *file, const Item *part)
 
 /* The part of an included file that the including one takes over: the moved and renamed maps, `base` and `gravity`, and
  * keys that are unknown. */
-static const Item *part_placed(Pool *pool, const Item *file, const Value *value)
+static const Item *part_placed(Pool *pool, const Item *file, const Arguments *arguments, const Value *value)
 {
-    static const char *const own[] = {"gicgen", "include", "model", "description"};
+    static const char *const own[] = {"gicgen", "include", "model", "description", "arguments"};
     Rewrite rewrite = {.pool = pool, .file = file, .prefix = value[PART_PREFIX].item ? value[PART_PREFIX].text : ""};
     memcpy(rewrite.shift, value[PART_AT].number, sizeof rewrite.shift);
+    rewrite.arguments = arguments;
     Item *out = map_new(pool, file->at);
     for (int i = 0; i < file->count; ++i) {
         Item *key = file->key[i], *from = file->value[i];
@@ -147,9 +150,13 @@ static const Item *part_placed(Pool *pool, const Item *file, const Value *value)
             to = map_rewrite(&rewrite, &powertrain_section, from);
         else if (is_named_group(key, from)) {
             to = map_new(pool, from->at);
-            for (int k = 0; k < from->count; ++k)
-                add(pool, to, name_rewrite(&rewrite, key->text, from->key[k]),
-                    entry_rewrite(&rewrite, key->text, from->value[k]));
+            for (int k = 0; k < from->count; ++k) {
+                const Argument *given = argument_find(arguments, key->text, from->key[k]->text);
+                Item *entry = entry_rewrite(&rewrite, key->text, from->value[k]);
+                if (given && given->value) /* it belongs to the including file */
+                    entry = from->value[k];
+                add(pool, to, name_rewrite(&rewrite, key->text, from->key[k]), entry);
+            }
         }
         add(pool, out, key, to);
     }
@@ -216,7 +223,10 @@ static const Item *part_read(Pool *pool, const Item *item, const Open *from)
     if (value[PART_PREFIX].item)
         name_check(value[PART_PREFIX].text, "a prefix", value[PART_PREFIX].item->at);
     Open open = part_open(pool, file, doc_word(file, "include"), from);
-    return part_placed(pool, file_read_whole(pool, &open, file), value);
+    Arguments arguments;
+    const Item *whole = file_read_whole(pool, &open, file);
+    whole = arguments_bind(&reader, whole, value[PART_WITH].item, item->at, &arguments);
+    return part_placed(pool, whole, &arguments, value);
 }
 
 static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
@@ -246,5 +256,9 @@ const Item *file_included(Pool *pool, const char *path)
     Open open = {.path = path, .taken = &(Taken){0}};
     if (strcmp(path, "-"))
         stat(path, &open.identity); /* if the path can't be read, doc_read reports it */
-    return file_read_whole(pool, &open, NULL);
+    const Item *file = file_read_whole(pool, &open, NULL), *asked = doc_find(file, "arguments");
+    if (asked)
+        diag_fail(asked->at, "include the file from another one",
+                  "a file with arguments has no values for them by itself");
+    return file;
 }

@@ -12,6 +12,7 @@
 enum {
     FILE_GICGEN,
     FILE_INCLUDE,
+    FILE_ARGUMENTS,
     FILE_MODEL,
     FILE_DESCRIPTION,
     FILE_GRAVITY,
@@ -38,6 +39,7 @@ enum {
 static const Key file_key[FILE_KEYS] = {
     [FILE_GICGEN] = {"gicgen", KEY_NUMBER, ALL_FORMS, ALL_FORMS, BOUND_POSITIVE, 0},
     [FILE_INCLUDE] = {"include", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
+    [FILE_ARGUMENTS] = {"arguments", KEY_ITEM, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_MODEL] = {"model", KEY_NAME, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [FILE_DESCRIPTION] = {"description", KEY_TEXT, ALL_FORMS, 0, BOUND_NONE, 0},
     [FILE_GRAVITY] = {"gravity", KEY_VECTOR, ALL_FORMS, 0, BOUND_NONE, 0},
@@ -63,6 +65,7 @@ static const Key file_key[FILE_KEYS] = {
 static const char *const file_about[FILE_KEYS] = {
     [FILE_GICGEN] = "version of the format: 1",
     [FILE_INCLUDE] = "other files whose contents belong to this one: paths or maps",
+    [FILE_ARGUMENTS] = "numbers, points and bodies that a file which includes this one gives: a type each",
     [FILE_MODEL] = "name of the model, a C identifier: prefix of all generated names",
     [FILE_DESCRIPTION] = "one line of text for the header of the generated code",
     [FILE_GRAVITY] = "acceleration of gravity, m/s^2, world frame; default [0, 0, -9.81]",

@@ -126,6 +126,7 @@ typedef struct Entry {
 extern const Section file_section, part_section;
 extern const Section parameter_section, table_section, port_section;
 extern const Section body_section, shape_section, inertia_section, orientation_section, joint_section;
+extern const Section argument_section;
 extern const Section coordinate_section;
 extern const Section input_section, force_section, tire_section, wheel_section, output_section, signal_section,
     state_section, controller_section, rule_section;
@@ -140,14 +141,35 @@ const Section *group_section(const char *group);
 
 /* ---- rewrite.c: entries written anew ---- */
 
+/* ---- arguments.c ---- */
+
+/* A name by which an included file refers to what the including one gives it. */
+typedef struct Argument {
+    const char *group, *name; /* of an entry ("points") */
+    const char *to;           /* the name of the including file that it stands for; NULL: it is an entry itself */
+    const Item *value;        /* of that entry, as the including file has it; NULL: the default */
+} Argument;
+
+typedef struct Arguments {
+    int count;
+    Argument *argument;
+} Arguments;
+
+/* NULL: there is none of that name. */
+const Argument *argument_find(const Arguments *arguments, const char *group, const char *name);
+/* The file with entries for arguments that are not names, once `with` (NULL: nothing is given) has been checked against
+ * what it asks for; at: of the inclusion. */
+const Item *arguments_bind(Reader *reader, const Item *file, const Item *with, Place at, Arguments *arguments);
+
 /* A change of the entries of a file and of the names in them: mirror image, move, prefix. */
 typedef struct Rewrite {
     Pool *pool;
-    const Item *file;     /* names of this file's entries change, and references to them */
-    const char *prefix;   /* in front of every name; "": none */
-    bool mirror;          /* y becomes -y, and names change their side */
-    double shift[3];      /* added to every point, before the mirror */
-    const Source *source; /* the place of rewritten entries in messages; NULL: the place of the original */
+    const Item *file;           /* names of this file's entries change, and references to them */
+    const char *prefix;         /* in front of every name; "": none */
+    bool mirror;                /* y becomes -y, and names change their side */
+    double shift[3];            /* added to every point, before the mirror */
+    const Arguments *arguments; /* names that stand for others, NULL: none */
+    const Source *source;       /* the place of rewritten entries in messages; NULL: the place of the original */
 } Rewrite;
 
 /* True if a key of a file holds a map of named entries that a Rewrite changes. */

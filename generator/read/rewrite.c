@@ -142,6 +142,9 @@ static bool has(const Rewrite *rewrite, const char *group, const char *name)
 /* The new name of an entry. Every entry `*_l` has an image by then, so that the name on the other side exists. */
 static const char *renamed(const Rewrite *rewrite, const char *group, const char *name)
 {
+    const Argument *argument = argument_find(rewrite->arguments, group, name);
+    if (argument && argument->to)
+        return argument->to;
     const char *other = name_mirrored(rewrite->pool, name);
     bool both = other && has(rewrite, group, strcmp(name, other) < 0 ? name : other);
     if (rewrite->mirror)

@@ -215,7 +215,8 @@ static void inclusion(Text *out)
 static void group(Text *out, const Section *section)
 {
     /* `name: value` will do */
-    const bool bare = section == &parameter_section || section == &signal_section || section == &rule_section;
+    const bool bare = section == &parameter_section || section == &signal_section || section == &rule_section ||
+                      section == &argument_section;
     entries_begin(out, 6);
     if (bare)
         text_print(out, "{\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, ");
@@ -244,6 +245,8 @@ void schema_print(Text *out)
             text_print(&schema, "{\"const\": 1}");
         else if (!strcmp(key->name, "include"))
             inclusion(&schema);
+        else if (!strcmp(key->name, "arguments"))
+            group(&schema, &argument_section);
         else if (!section && strcmp(key->name, "points"))
             value(&schema, key, 4);
         else
@@ -313,6 +316,7 @@ void keys_print(Text *out)
     section_keys(out, "transmission", &transmission_section);
     section_keys(out, "an entry of differentials", &differential_section);
     section_keys(out, "an entry of include", &part_section);
+    section_keys(out, "an entry of arguments", &argument_section);
     section_keys(out, "inertia as a map", &inertia_section);
     section_keys(out, "orientation (one of the three ways)", &orientation_section);
     section_keys(out, "shape as a map", &shape_section);

@@ -318,9 +318,29 @@ def in_scene(folder, row, code):
     return run(f"build/gicrun --engine tape {row['model']} frame.scene -q -o frame.csv", folder)
 
 
-def block_works(page, text, folder):
-    """A piece of several lines, indented on a page."""
-    if text.startswith("include:"):
+TRUCK = """gicgen: 1
+model: frame
+base: frame
+points: {rear_hub: [-1, 0, 0.5]}
+parameters: {soft: 1e5}
+bodies:
+  frame: {mass: 9, com: [0, 0, 1], inertia: [1, 2, 2]}
+  bogie: {mass: 9, com: [0, 0, 1], inertia: [1, 2, 2]}
+joints: {pivot: {type: revolute, bodies: [frame, bogie], point: [0, 0, 1], axis: [0, 1, 0]}}
+coordinates:
+  nod: {type: angle, bodies: [frame, bogie], axis: [0, 1, 0]}
+  front: {type: translation, bodies: [frame, front_beam], axis: [0, 0, 1]}
+  rear: {type: translation, bodies: [bogie, rear_beam], axis: [0, 0, 1]}
+"""
+
+
+def block_works(page, text, before, folder):
+    """A piece of several lines, indented on a page, and the one before it."""
+    if text.startswith("include:") and "with:" in text:
+        with open(os.path.join(folder, "axle.veh"), "w", encoding="utf-8") as file:
+            file.write(before)
+        text = TRUCK + text + "\n"
+    elif text.startswith("include:"):
         lines = {"gicgen": "1", "model": "frame", "base": "chassis"}
         text = "".join(f"{k}: {v}\n" for k, v in lines.items()) + text + "\nbodies:\n" + \
             "  chassis: {mass: 9, com: [0, 0, 1], inertia: [1, 2, 2]}\n"
@@ -390,12 +410,14 @@ def main():
                 elif is_piece(code):
                     report(False, f"{page}: `{code}`", "no row of snippets.py says how to try it")
                 seen[key] = True
+        before = ""
         for block in re.findall(r"(?:^    (?:[a-z]+:|  +\S).*\n)+", outside, flags=re.M):
             if re.match(r"    [a-z]+:( |$)", block.split("\n", maxsplit=1)[0]) and ":" in block:
                 lines = "\n".join(line[4:] for line in block.rstrip("\n").split("\n"))
+                block, before = before, lines
                 if not re.match(r"(include|powertrain|base):", lines):
                     continue
-                status, said = block_works(page, lines, folder)
+                status, said = block_works(page, lines, block, folder)
                 report(status == 0, f"{page}: {lines.splitlines()[0]} ...", said)
     shutil.rmtree(folder)
 
