@@ -52,6 +52,7 @@ typedef struct Gic {
     double *piece;  /* [coordinates] change that is followed in one piece */
     double *b;      /* [largest n] */
     double *design; /* a start at the design */
+    bool geared;    /* whole turns of angles move something */
 } Gic;
 
 static double *start_q(const World *world, double *start)
@@ -317,7 +318,8 @@ static int recover(const Interpreted *context, Instance *self, bool cold)
         last[c] = world->x[c];
         way[c] = last[c] - from[c];
         /* whole turns out of an angle that is out of reach with them */
-        if (world->model->coordinate[c].type == COORDINATE_ANGLE && !(fabs(way[c]) < (int)PIECES * gic->piece[c]))
+        if (world->model->coordinate[c].type == COORDINATE_ANGLE && !gic->geared &&
+            !(fabs(way[c]) < (int)PIECES * gic->piece[c]))
             way[c] = gic_unwound(way[c]);
         const double parts = fabs(way[c]) / gic->piece[c];
         if (!(parts < (int)PIECES))
@@ -482,6 +484,8 @@ const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *op
             at += factors_size(gic->part[s].n);
         }
     gic->piece = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(double));
+    for (int j = 0; j < model->joints; ++j)
+        gic->geared = gic->geared || joint_is_geared(model->joint[j].type);
     gic->b = pool_alloc(pool, ((size_t)most + 1) * sizeof(double));
     gic->design = pool_alloc(pool, (size_t)gic->start_size * sizeof(double));
     context->engine = gic;

@@ -422,10 +422,40 @@ static void add_bushing(Vehicle *v)
         say(element, "%s", law[pick(v, 4)]);
 }
 
+/* A turn that goes with a way: a bolt in a nut, or a pinion and a rack on one carrier. */
+static void gearing(Vehicle *v)
+{
+    const double size = nice_size(v, 0.2, 1), ratio = chance(v, 0.5) ? size : -size;
+    int a = any_body(v);
+    Vec p = any_point(v), u = nice_axis(v), s = nice_across(v, u);
+    int b = body_at(v, "pinion", p), way = b;
+    Entry *joint;
+    if (chance(v, 0.4)) {
+        join(v, "sleeve", "cylindrical", a, b, &(Geometry){.point = &p, .axis = &u});
+        joint = join(v, "thread", "screw", a, b, &(Geometry){.point = &p, .axis = &u, .ordered = true});
+        s = u;
+    } else {
+        way = body_at(v, "rack", any_point(v));
+        turn_on(v, a, b, p, u);
+        slide_on(v, a, way, p, s);
+        joint =
+            join(v, "teeth", "rack_and_pinion", way, b, &(Geometry){.point = &p, .axes = {&u, &s}, .ordered = true});
+    }
+    say_number(v, joint, ", ratio: ", ratio);
+    if (chance(v, 0.6))
+        turning(v, a, b, u);
+    else
+        slide(v, a, way, p, s);
+}
+
 /* ---- the whole ---- */
 
 static void add_unit(Vehicle *v)
 {
+    if (!v->halves && chance(v, 0.12)) {
+        gearing(v);
+        return;
+    }
     switch (pick(v, 8)) {
     case 0:
     case 1: linkage(v); break;

@@ -112,7 +112,16 @@ static void write_nice_base(FILE *out, const Model *model, uint64_t *random, int
         fprintf(out, "%.17g,", nice_rate(random, row, 1, i < 3 ? uniform(random, -20, 20) : uniform(random, -2, 2)));
 }
 
-static double nice_value(uint64_t *random, const Coordinate *coordinate, int row)
+/* True for models in which whole turns move something: not many are gone at once. */
+static bool is_geared(const Model *model)
+{
+    bool geared = false;
+    for (int j = 0; j < model->joints; ++j)
+        geared = geared || model->joint[j].type == SCREW || model->joint[j].type == RACK_AND_PINION;
+    return geared;
+}
+
+static double nice_value(uint64_t *random, const Coordinate *coordinate, int row, bool geared)
 {
     static const double quarters[] = {0, 1, 2, 3, -1, -2}, far[] = {0, 0, 0, 0, 10, -10, 1000, -1000};
     const double at[] = {coordinate->design, coordinate->range[0], coordinate->range[1]};
@@ -125,7 +134,7 @@ static double nice_value(uint64_t *random, const Coordinate *coordinate, int row
         return is_nice(random, row) ? any_of(random, at, 3) : w;
     if (is_nice(random, row))
         w = coordinate->design + any_of(random, quarters, 6) * full_turn / 4;
-    return w + full_turn * any_of(random, far, row % 2 ? 8 : 4);
+    return geared ? w : w + full_turn * any_of(random, far, row % 2 ? 8 : 4);
 }
 
 static void write_base(FILE *out, const Model *model, uint64_t *random, int row)
@@ -252,7 +261,7 @@ static void write_states(FILE *out, const Model *model, int count, bool nice, ui
             double w = uniform(random, coordinate->range[0], coordinate->range[1]);
             double rate = motion_of(model, row) == STILL_ROW ? 0 : uniform(random, -1, 1);
             if (nice) {
-                w = nice_value(random, coordinate, row);
+                w = nice_value(random, coordinate, row, is_geared(model));
                 rate = nice_rate(random, row, 1, rate);
             }
             fprintf(out, "%s%.17g,%.17g", c ? "," : "", w, rate);
