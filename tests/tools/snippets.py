@@ -129,6 +129,9 @@ PIECES = {
                               "  stay: {type: distance, bodies: [arm, weight], points: [[0, 0, 1], [0.5, 0.3, 0]]}\n"
                               "  stop: {type: distance, bodies: [arm, weight], points: [[0, 1, 0], [0.5, 0, 0.3]]}",
                               ("u_a", "[1, 0, 0]"), ("u_b", "[0, 1, 0]")),
+    "axes: [u, v]": place("weld", "  pin: {type: revolute, bodies: [ground, weight], point: p, axis: [0, 1, 0]}\n"
+                          "  teeth: {type: rack_and_pinion, bodies: [slide, weight], point: p, @, ratio: 0.01}",
+                          ("u, v", "[0, 1, 0], [1, 0, 0]")),
     "base: ground": place("base", "@"),
     "gicgen: 1": place("head", "@\nmodel: frame"),
     "bodies: [a, b]": place("force", BETWEEN.replace("bodies: [ground, arm]", "@"), ENDS),
