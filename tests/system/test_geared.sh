@@ -134,8 +134,7 @@ every_way 'a screw' 1e-10 bolt.veh bolt.scene
 model=$root/tests/data/laws/geared.veh
 scene 1 0.001 'initial: {rates: {turn: 12}, angular_velocity: [0.1, 0.2, 0.3]}' >geared.scene
 every_way 'a car' 1e-10 "$model" geared.scene
-sed '/type: reaction/d' "$model" >geared.veh
-"$gicgen" geared.veh -o geared.c && "$gicgen" --batch 4 geared.veh -o batch.c && "$gicgen" --derivatives geared.veh -o tangent.c 2>said
+"$gicgen" "$model" -o geared.c && "$gicgen" --batch 4 "$model" -o batch.c && "$gicgen" --derivatives "$model" -o tangent.c 2>said
 verdict $? 'a batch, and derivatives'
 for file in geared batch tangent; do
     cc -std=c99 -Wall -Wextra -Werror -pedantic -fsyntax-only -I. -I"$root/runtime" $file.c 2>said
