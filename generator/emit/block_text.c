@@ -520,7 +520,7 @@ static bool *find_early(Emitter *m)
     const Block *block = m->block;
     bool *early = pool_alloc(m->dag->pool, (size_t)block->stores + 1);
     for (int i = 0; i < block->stores; ++i)
-        early[i] = block->scheduled && m->planned[block->store[i].value];
+        early[i] = (block->scheduled || block->eager) && m->planned[block->store[i].value];
     for (int e = 0; e < m->dag->nodes; ++e) {
         const Node *node = &m->dag->node[e];
         for (int i = 0; m->uses[e] && node->op == OP_INPUT && i < block->stores; ++i)

@@ -24,6 +24,8 @@ typedef struct Generation {
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
     Constants packed;     /* of the equations of motion in lanes */
+    bool columns_made;
+    const struct RateColumns *columns; /* columns_of() */
 } Generation;
 
 /* model_file.c: a checksum of the whole header, for g->pair. */
@@ -141,11 +143,18 @@ const Block *class_tangent(const Generation *g, int class, bool still);
 const Block *whole_tangent(const Generation *g, const Block *block);
 /* jacobian.c: the number of columns; sizes, a picture and tables of what may be other than 0. */
 int jacobian_columns(const Generation *g);
+/* [columns] those of parameters that change the geometry. */
+const bool *columns_apart(Generation *g);
 void write_jacobian_sizes(void *context, Text *out, int indent);
 void write_jacobian_picture(void *context, Text *out, int indent);
 void write_jacobian_rows(void *context, Text *out, int indent);
 void write_jacobian_starts(void *context, Text *out, int indent);
 void write_tangent_header(void *context, Text *out, int indent);
+
+/* columns.c: insertion points of its templates; all columns that are computed at once, NULL: one by one; the function. */
+extern const Insertions columns_points, columns_class_points;
+const struct RateColumns *columns_of(Generation *g);
+void write_jacobian_columns(void *context, Text *out, int indent);
 
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);

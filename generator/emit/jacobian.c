@@ -250,6 +250,21 @@ static const Pattern *pattern_new(Generation *g)
     return p;
 }
 
+const bool *columns_apart(Generation *g)
+{
+    const Model *model = g->model;
+    const int first = states(g) + model->inputs;
+    bool *apart = pool_alloc(g->pool, (size_t)jacobian_columns(g) + 1);
+    Pattern p = {.g = g, .wheel = -1};
+    open_columns(&p);
+    if (model->tuning)
+        run(&p, whole_tangent(g, derive_block(g->pool, g->plan)), false);
+    for (int i = 0; model->tuning && i < p.count[ARRAY_self_derived]; ++i)
+        for (int k = 0; k < model->tunables; ++k)
+            apart[first + k] = apart[first + k] || p.of[ARRAY_self_derived][i][first + k];
+    return apart;
+}
+
 int jacobian_columns(const Generation *g)
 {
     return states(g) + g->model->inputs + g->model->tunables + 6 * g->model->ports;

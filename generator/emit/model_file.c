@@ -705,7 +705,8 @@ static void check_templates(Pool *pool, const char *templates)
                                         &wheels_points,        &wheel_points,          &wheel_lanes_points,
                                         &wheel_vector_points,  &dual_rate_points,      &powertrain_points,
                                         &states_points,        &states_rate_points,    &tangent_points,
-                                        &tangent_class_points, &tangent_header_points, NULL};
+                                        &tangent_class_points, &tangent_header_points, &columns_points,
+                                        &columns_class_points, NULL};
     templates_check(pool, templates, points);
 }
 

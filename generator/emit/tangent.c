@@ -519,6 +519,7 @@ static const Insertion tangent_point[] = {{"table slope", write_table_slope},
                                           {"tangent wheel calls", write_wheel_calls},
                                           {"tangent drive", write_drive_along},
                                           {"tangent drive block", write_drive_block},
+                                          {"columns", write_jacobian_columns},
                                           {"jacobian rows", write_jacobian_rows},
                                           {"jacobian starts", write_jacobian_starts},
                                           {NULL, NULL}};

@@ -114,19 +114,6 @@ static Ex add_all(Balance *b, Term *term, int terms)
     return term->minus ? ex_neg(b->dag, term->e) : term->e;
 }
 
-/* The same operation on the images of the arguments. */
-static Ex again(Dag *dag, Op op, Ex a, Ex b, Ex c)
-{
-    switch (op) {
-    case OP_NEG: return ex_neg(dag, a);
-    case OP_ADD: return ex_add(dag, a, b);
-    case OP_SUB: return ex_sub(dag, a, b);
-    case OP_MUL: return ex_mul(dag, a, b);
-    case OP_DIV: return ex_div(dag, a, b);
-    default: return ex_op(dag, op, a, b, c);
-    }
-}
-
 const Ex *balance_sums(Pool *pool, Dag *dag, const Ex *root, int roots)
 {
     const int nodes = dag->nodes;
@@ -161,7 +148,7 @@ const Ex *balance_sums(Pool *pool, Dag *dag, const Ex *root, int roots)
             Ex arg[3] = {node.arg[0], node.arg[1], node.arg[2]};
             for (int i = 0; i < ex_arity((Op)node.op); ++i)
                 arg[i] = image[arg[i]];
-            image[e] = again(dag, (Op)node.op, arg[0], arg[1], arg[2]);
+            image[e] = ex_again(dag, (Op)node.op, arg[0], arg[1], arg[2]);
         }
         measure(&b);
     }

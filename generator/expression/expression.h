@@ -70,7 +70,12 @@ typedef struct Table Table; /* base/table.h */
     X(self_motion, "self->motion", "motion of all bodies") \
     X(self_state, "self->state", "state of the instance") \
     X(self_input, "self->input", "inputs of the instance") \
-    X(self_start, "self->start[0]", "first of the Newton starts")
+    X(self_start, "self->start[0]", "first of the Newton starts") \
+    X(column, "column", "derivatives of all motions by coordinates and their rates, column by column") \
+    X(column_known, "column", "the same of the subset of a body that was solved before: Element.which") \
+    X(jacobian, "jacobian", "derivatives of the rates") \
+    X(share, "share", "share of the dependent Euler parameter's change in that of each other one") \
+    X(which, "which", "1 for the dependent Euler parameter, 0 for the others")
 
 typedef enum Array {
 #define ARRAY_ENUM(name, text, what) ARRAY_##name,
@@ -355,6 +360,7 @@ typedef struct Block {
     Ex *load;       /* applied forces among its values, for those who count */
     bool scheduled; /* its statements stand as schedule.c orders them, with stores to what it doesn't read where values
                      * are found; else depth-first from the results, with all stores at the end */
+    bool eager;     /* stores to what it doesn't read stand where values are found, in the order of the stores */
     bool across;    /* the road must be the same on both sides, and is looked up on one: specialize/specialize.h */
 } Block;
 
@@ -387,6 +393,7 @@ bool block_reads_slope(const Block *block, Array array, int which);
 /* Where derivatives begin. */
 typedef struct Seeds {
     bool (*moves)(const void *context, Element element); /* has an input a derivative? That is its `slope` */
+    Ex (*seed)(const void *context, Dag *dag, Element element); /* the derivative itself; NULL: as `moves` says */
     const void *context;
     int givens; /* nodes whose derivatives are given, [givens] */
     const Ex *given, *slope;
@@ -400,6 +407,11 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
  * which stores; NULL: all. */
 Block *block_tangent(const Block *block, const Seeds *seeds, bool both,
                      bool (*wanted)(const void *context, Element target));
+
+/* replace.c: what stands for each node [nodes] that the roots need where to[i] stands for from[i]. Without lanes. */
+const Ex *dag_replace(Dag *dag, const Ex *root, int roots, const Ex *from, const Ex *to, int count);
+/* The same operation on other arguments. */
+Ex ex_again(Dag *dag, Op op, Ex a, Ex b, Ex c);
 
 /* schedule.c: a statement that computes a node, or a check of one. */
 typedef struct Step {

@@ -131,7 +131,9 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
             continue;
         if (dag->node[e].op == OP_INPUT) {
             Element element = *dag->node[e].element;
-            if (element.array == ARRAY_number || !seeds->moves(seeds->context, element))
+            if (seeds->seed)
+                slope[e] = seeds->seed(seeds->context, dag, element);
+            if (seeds->seed || element.array == ARRAY_number || !seeds->moves(seeds->context, element))
                 continue;
             element.slope = true;
             slope[e] = ex_input(dag, element, NULL);

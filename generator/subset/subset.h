@@ -9,6 +9,7 @@
 #include "subset/method.h"
 
 typedef struct Sequence Sequence; /* sequence/sequence.h */
+typedef struct Subset Subset;
 
 /* ---- kinematics.c: how bodies move relative to the base */
 
@@ -204,6 +205,24 @@ const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *seq
  * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change.
  */
 const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still);
+/* The derivatives of nodes of `solve`, at the same poses. */
+const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots);
+
+/* columns.c: derivatives of a class's motions by each coordinate that they depend on, then by each rate of these. Of
+ * each number `slope` has what it is: a literal, a constant, a number of the same body's motion (ARRAY_motion), or
+ * what `block` stores at `place`. */
+typedef struct MotionColumns {
+    int columns, numbers; /* 2 deps; numbers of the motions of all bodies */
+    Ex *slope;            /* [columns][numbers] in the formula's graph */
+    int *place;           /* [columns][numbers] in column[]; -1: it is not stored */
+    int size;             /* of column[] */
+    Block block;          /* from the arguments of `solve`, the motions that it stored, and columns of the knowns */
+} MotionColumns;
+
+/* [classes]; NULL: a known stands for bodies of several classes. */
+MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula);
+/* The local column of a coordinate, or of its rate, in a subset; -1: its motion does not depend on it. */
+int subset_column(const Subset *subset, int coordinate, bool rate);
 /* True for a number of a body's motion, by its place, that follows from poses alone. */
 bool motion_is_pose(int place);
 

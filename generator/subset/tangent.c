@@ -51,19 +51,17 @@ static void pose_change(Dag *dag, const Ex *p, const Ex twist[6], Ex dq[7])
     dq[3] = ex_neg(dag, ex_dot(dag, t, p + 1));
 }
 
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still)
+/* Nodes whose derivatives are given: poses that Newton's iteration finds. */
+static void give_poses(const Formula *formula, Seeds *seeds)
 {
     Dag *dag = formula->dag;
     const Implicit *implicit = formula->implicit;
-    const int factors = formula->react.stores ? formula->layout.start_factors : -1;
-    Moving moving = {.steady = steady, .tuned = tuned, .still = still, .factors = factors};
-    Seeds seeds = {.moves = moves, .context = &moving};
-    if (!implicit)
-        return block_tangent(&formula->solve, &seeds, false, is_wanted);
     const int n = implicit->n, places = 7 * formula->layout.bodies;
-    Ex twist[n], node[2 * places], slope[2 * places];
+    Ex twist[n];
+    Ex *node = pool_alloc(dag->pool, (size_t)(2 * places) * sizeof *node);
+    Ex *slope = pool_alloc(dag->pool, (size_t)(2 * places) * sizeof *slope);
     dag_section(dag, "derivatives of the poses: what their equations lack, solved for the twists");
-    const Ex *lack = dag_slopes(dag, &formula->solve, implicit->value, n, &seeds);
+    const Ex *lack = dag_slopes(dag, &formula->solve, implicit->value, n, seeds);
     for (int r = 0; r < n; ++r)
         twist[r] = ex_neg(dag, lack[implicit->value[r]]);
     linear_solve(dag, implicit->factors, twist, twist);
@@ -75,8 +73,25 @@ const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, boo
         pose_change(dag, node + 7 * b + 3, twist + 6 * b, slope + 7 * b);
         pose_change(dag, node + 7 * b + 3, twist + 6 * b, slope + places + 7 * b);
     }
-    seeds.givens = 2 * places;
-    seeds.given = node;
-    seeds.slope = slope;
+    seeds->givens = 2 * places;
+    seeds->given = node;
+    seeds->slope = slope;
+}
+
+const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots)
+{
+    Seeds own = *seeds;
+    if (formula->implicit)
+        give_poses(formula, &own);
+    return dag_slopes(formula->dag, &formula->solve, root, roots, &own);
+}
+
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still)
+{
+    const int factors = formula->react.stores ? formula->layout.start_factors : -1;
+    Moving moving = {.steady = steady, .tuned = tuned, .still = still, .factors = factors};
+    Seeds seeds = {.moves = moves, .context = &moving};
+    if (formula->implicit)
+        give_poses(formula, &seeds);
     return block_tangent(&formula->solve, &seeds, false, is_wanted);
 }

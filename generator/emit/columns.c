@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT
+ * The function for all columns of the jacobian at once, with one for each class of subsets; columns that follow geometric
+ * parameters are left to tangents, as all are where rate_columns() has none. */
+#include "base/text.h"
+#include "emit/emit.h"
+#include "emit/emit_private.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "sequence/sequence.h"
+#include "subset/subset.h"
+#include "vehicle/columns.h"
+#include "vehicle/vehicle.h"
+
+const RateColumns *columns_of(Generation *g)
+{
+    if (!g->columns_made) {
+        g->columns_made = true;
+        g->columns = rate_columns(g->pool, g->formulation, columns_apart(g), jacobian_columns(g));
+    }
+    return g->columns;
+}
+
+/* ---- classes of subsets -------------------------------------------------------------------------------------- */
+
+typedef struct Expansion {
+    Generation *g;
+    Constants constants;
+} Expansion;
+
+static void write_knowns(void *context, Text *out, int indent)
+{
+    const Generation *g = ((Expansion *)context)->g;
+    const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
+    const Block *block = &g->columns->motion[g->class]->block;
+    for (int i = 0; i < first->knowns; ++i) {
+        const char *name = g->model->body[first->known[i]].name;
+        if (block_reads(block, ARRAY_known, i))
+            line(out, indent, "const gic_real *const m%d = links->known[%d]; /* %s */", i, i, name);
+        if (block_reads(block, ARRAY_column_known, i))
+            line(out, indent, "const gic_real *const column%d = known[%d]; /* %s */", i, i, name);
+    }
+    if (block_reads(block, ARRAY_d, 0))
+        line(out, indent, "const gic_real *const d = links->derived;");
+}
+
+static void write_motions(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    Style style = *x->g->style;
+    Naming naming;
+    if (style.naming) {
+        naming = *style.naming;
+        naming.class = x->g->plan->formula[x->g->class];
+        naming.scope = SCOPE_CLASS;
+        style.naming = &naming;
+    }
+    block_emit(out, &x->g->columns->motion[x->g->class]->block, &style, &x->constants, indent);
+}
+
+static void write_class_columns(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
+        const Class *class = &g->sequence->class[g->class];
+        Expansion x = {.g = g};
+        Text body = {.pool = g->pool};
+        const char *member[class->members];
+        for (int i = 0; i < class->members; ++i)
+            member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
+        template_expand(g->pool, &body, g->templates, "columns_class.c.in", g->model->name, class->name,
+                        &columns_class_points, &x);
+        write_constants(g, out, pool_print(g->pool, "k_columns_%s", class->name), g->plan->formula[g->class]->dag,
+                        &x.constants, member);
+        text_add(out, body.s, body.size);
+    }
+    g->class = 0;
+}
+
+static void write_calls(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    for (int s = 0; s < g->sequence->subsets; ++s) {
+        const Subset *subset = &g->sequence->subset[s];
+        if (subset->class < 0 || !g->columns->motion[subset->class]->size)
+            continue;
+        const Class *class = &g->sequence->class[subset->class];
+        line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
+        for (int i = 0; i < subset->knowns; ++i) {
+            line(out, indent, "links.known[%d] = self->motion + %s;", i, body_motion_text(g, subset->known[i]));
+            line(out, indent, "known[%d] = column + %d;", i,
+                 g->columns->offset[g->sequence->body_subset[subset->known[i]]]);
+        }
+        for (int j = 0; j < subset->deps; ++j) {
+            const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
+            line(out, indent, "links.x[%d] = self->x[%s], links.rate[%d] = self->xd[%s];", j, index, j, index);
+        }
+        if (g->plan->formula[subset->class]->derived)
+            line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
+        line(out, indent, "%s_columns_%s(%s_k_columns_%s[%d], &links, known, start + %d, self->motion + %s, column + %d);",
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), g->plan->start_offset[s],
+             body_motion_text(g, subset->body[0]), g->columns->offset[s]);
+    }
+}
+
+/* ---- the whole vehicle --------------------------------------------------------------------------------------- */
+
+static void write_rates(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    block_emit(out, &columns_of(g)->block, g->style, &none, indent);
+}
+
+/* The columns that are left, by their numbers. */
+static void write_apart(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const bool *apart = columns_apart(g);
+    for (int c = 0; c < jacobian_columns(g); ++c)
+        if (apart[c])
+            line(out, indent, "%d,", c);
+    line(out, indent, "-1 /* the end */");
+}
+
+static void write_work(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    line(out, indent, "gic_real column[%d];", room(columns_of(g)->size));
+}
+
+static void write_euler(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->free_base)
+        template_expand(g->pool, out, g->templates, "columns_free.c.in", g->model->name, NULL, &columns_points, g);
+}
+
+static const Insertion class_point[] = {
+    {"columns knowns", write_knowns}, {"columns motions", write_motions}, {NULL, NULL}};
+
+const Insertions columns_class_points = {(const char *const[]){"columns_class.c.in", NULL}, class_point, NULL};
+
+static const Insertion point[] = {{"columns classes", write_class_columns},
+                                  {"columns calls", write_calls},
+                                  {"columns rates", write_rates},
+                                  {"columns apart", write_apart},
+                                  {"columns work", write_work},
+                                  {"columns euler", write_euler},
+                                  {NULL, NULL}};
+
+const Insertions columns_points = {
+    (const char *const[]){"columns.c.in", "columns_free.c.in", "columns_apart.c.in", NULL}, point, NULL};
+
+void write_jacobian_columns(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    template_expand(g->pool, out, g->templates, columns_of(g) ? "columns.c.in" : "columns_apart.c.in", g->model->name,
+                    NULL, &columns_points, g);
+}

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ * Derivatives of the rates by all states, inputs, parameters and numbers of ports at once. Accelerations are not
+ * differentiated as they are solved for: M dz = -d tau, tau being what the equations of motion, written body by body,
+ * lack at accelerations that stand still. One factorization of M serves all columns, and a column is 0 but for the
+ * bodies and forces that it moves. */
+#include "expression/expression.h"
+#include "model/model.h"
+#include "sequence/sequence.h"
+#include "subset/subset.h"
+#include "vehicle/columns.h"
+#include "vehicle/dynamics.h"
+#include "vehicle/vehicle.h"
+
+/* Where a column's input stands. */
+typedef struct Origin {
+    Array array;
+    int index;
+} Origin;
+
+/* What is being differentiated by one column. */
+typedef struct Differentiation {
+    const RateColumns *all;
+    const Plan *plan;
+    Origin from;
+    const Ex *accelerations; /* [unknowns] their derivatives; NULL: they stand still */
+} Differentiation;
+
+static Origin origin_of(const Plan *plan, int column)
+{
+    const Model *model = plan->model;
+    const int kinds[] = {plan->states, model->inputs, model->tunables};
+    const Array array[] = {ARRAY_y, ARRAY_u, ARRAY_p};
+    for (int k = 0; k < 3; ++k) {
+        if (column < kinds[k])
+            return (Origin){array[k], column};
+        column -= kinds[k];
+    }
+    return (Origin){ARRAY_port, column};
+}
+
+/* The coordinate that a column moves, or whose rate it changes; -1: it does neither. */
+static int coordinate_of(const Plan *plan, Origin from, bool rate)
+{
+    const Model *model = plan->model;
+    for (int w = 0; w < model->coordinates; ++w) {
+        const Coordinate *c = &model->coordinate[w];
+        const int state = rate ? plan->coordinate_rate[w] : plan->coordinate_state[w];
+        if (c->driven ? from.array == ARRAY_u && from.index == c->input + rate
+                      : from.array == ARRAY_y && from.index == state)
+            return w;
+    }
+    return -1;
+}
+
+/* The derivative of a number of the motions. */
+static Ex motion_slope(const Differentiation *d, Dag *dag, int index)
+{
+    const Plan *plan = d->plan;
+    const Sequence *sequence = plan->sequence;
+    const int moved = coordinate_of(plan, d->from, false), sped = coordinate_of(plan, d->from, true);
+    if (moved < 0 && sped < 0)
+        return 0;
+    for (int b = 1; b < plan->model->bodies; ++b) {
+        const int s = sequence->body_subset[b];
+        const Subset *subset = &sequence->subset[s];
+        const Formula *formula = plan->formula[subset->class];
+        const int number = index - plan->motion_offset[b];
+        if (number < 0 || number >= formula->layout.motion_size)
+            continue;
+        const MotionColumns *m = d->all->motion[subset->class];
+        const int column = subset_column(subset, moved < 0 ? sped : moved, moved < 0);
+        if (column < 0)
+            return 0;
+        const int at = m->numbers * column + formula->layout.motion_size * subset_place(subset, b) + number;
+        const Ex e = m->slope[at];
+        if (m->place[at] >= 0)
+            return ex_input(dag, element_at(ARRAY_column, d->all->offset[s] + m->place[at]), NULL);
+        if (formula->dag->node[e].op == OP_INPUT) {
+            const int own = formula->dag->node[e].element->index % formula->layout.motion_size;
+            return ex_input(dag, element_at(ARRAY_m, plan->motion_offset[b] + own), NULL);
+        }
+        return ex_literal(dag, formula_value(formula, e, class_place(&sequence->class[subset->class], s)));
+    }
+    return 0;
+}
+
+static Ex seed(const void *context, Dag *dag, Element element)
+{
+    const Differentiation *d = context;
+    switch (element.array) {
+    case ARRAY_y:
+    case ARRAY_u:
+    case ARRAY_p:
+    case ARRAY_port: return ex_literal(dag, element.array == d->from.array && element.index == d->from.index);
+    case ARRAY_e: return ex_literal(dag, d->from.array == ARRAY_y && d->from.index == 3 + element.index);
+    case ARRAY_x: return ex_literal(dag, coordinate_of(d->plan, d->from, false) == element.index);
+    case ARRAY_xd: return ex_literal(dag, coordinate_of(d->plan, d->from, true) == element.index);
+    case ARRAY_m: return motion_slope(d, dag, element.index);
+    case ARRAY_acc: return d->accelerations ? d->accelerations[element.index] : 0;
+    default: return 0;
+    }
+}
+
+/* The derivatives of the rates [states] by one column. */
+static Ex *differentiate(Differentiation *d, Whole *whole, const Ex *tau, const Factors *factors, const Block *rates)
+{
+    Dag *dag = whole->dag;
+    const int n = d->plan->unknowns;
+    const Seeds seeds = {.seed = seed, .context = d};
+    Ex dz[n + 1], root[rates->stores + 1];
+    Ex *out = pool_alloc(dag->pool, (size_t)(d->plan->states + 1) * sizeof *out);
+    d->accelerations = NULL;
+    const Ex *slope = dag_slopes(dag, NULL, tau, n, &seeds);
+    for (int i = 0; i < n; ++i)
+        dz[i] = ex_neg(dag, slope[tau[i]]);
+    linear_solve(dag, factors, dz, dz);
+    d->accelerations = dz;
+    for (int i = 0; i < rates->stores; ++i)
+        root[i] = rates->store[i].value;
+    slope = dag_slopes(dag, NULL, root, rates->stores, &seeds);
+    for (int i = 0; i < rates->stores; ++i)
+        out[rates->store[i].target.index] = slope[root[i]];
+    return out;
+}
+
+/* Columns of Euler parameters change the dependent one as well, so that their squares have the sum 1: share[i] is its
+ * change less 1 where i is not the dependent one. That one's own column is 0. */
+static void constrain(Whole *whole, Ex **column)
+{
+    Dag *dag = whole->dag;
+    for (int r = 0; r < whole->plan->states; ++r) {
+        Ex dependent = 0;
+        for (int i = 0; i < 4; ++i)
+            dependent = ex_add(dag, dependent,
+                               ex_mul(dag, ex_input(dag, element_at(ARRAY_which, i), NULL), column[3 + i][r]));
+        for (int i = 0; i < 4; ++i) {
+            const Ex share = ex_input(dag, element_at(ARRAY_share, i), NULL);
+            column[3 + i][r] = ex_sub(dag, column[3 + i][r], ex_mul(dag, share, dependent));
+        }
+    }
+}
+
+/* acc[] from rate[]. */
+static Ex *solved(Whole *whole)
+{
+    const Plan *plan = whole->plan;
+    Ex alpha[3], a[3], *w2, *z = pool_alloc(whole->dag->pool, (size_t)(plan->unknowns + 1) * sizeof *z);
+    whole_accelerations(whole, alpha, a, &w2);
+    for (int i = 0; whole->model->free_base && i < 3; ++i) {
+        z[i] = alpha[i];
+        z[3 + i] = a[i];
+    }
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_unknown[w] >= 0)
+            z[plan->coordinate_unknown[w]] = w2[w];
+    return z;
+}
+
+const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns)
+{
+    const Plan *plan = f->plan;
+    const Sequence *sequence = f->sequence;
+    RateColumns *all = pool_alloc(pool, sizeof *all);
+    if (plan->solve != SOLVE_REDUCED || plan->reduction || f->wheels)
+        return NULL;
+    *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula),
+                         .offset = pool_alloc(pool, (size_t)sequence->subsets * sizeof(int))};
+    if (!all->motion)
+        return NULL;
+    for (int s = 0; s < sequence->subsets; ++s) {
+        all->offset[s] = all->size;
+        all->size += sequence->subset[s].class < 0 ? 0 : all->motion[sequence->subset[s].class]->size;
+    }
+    Whole *whole = whole_new(pool, plan);
+    Dag *dag = whole->dag;
+    const int n = plan->unknowns, rows = plan->states;
+    Block rates = {.dag = dag};
+    Ex acc[n + 1], **column = pool_alloc(pool, ((size_t)columns + 1) * sizeof *column);
+    const Ex *tau = dynamics_residuals(whole);
+    const Factors *factors = dynamics_factors(whole);
+    for (int i = 0; i < n; ++i)
+        acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
+    whole_store_rates(whole, &rates, acc);
+    dag_section(dag, "derivatives");
+    for (int c = 0; c < columns; ++c)
+        if (!apart[c]) {
+            Differentiation d = {.all = all, .plan = plan, .from = origin_of(plan, c)};
+            column[c] = differentiate(&d, whole, tau, factors, &rates);
+        }
+    if (f->model->free_base)
+        constrain(whole, column);
+    Ex *root = pool_alloc(pool, ((size_t)columns * (size_t)rows + 1) * sizeof *root);
+    for (int c = 0; c < columns; ++c)
+        for (int r = 0; r < rows && column[c]; ++r)
+            root[columns * r + c] = column[c][r];
+    const Ex *image = dag_replace(dag, root, columns * rows, acc, solved(whole), n);
+    all->block = (Block){.dag = dag, .eager = true};
+    for (int c = 0; c < columns; ++c)
+        for (int r = 0; r < rows; ++r)
+            if (!ex_is(dag, image[root[columns * r + c]], 0))
+                block_store(&all->block, image[root[columns * r + c]], element_at(ARRAY_jacobian, columns * r + c));
+    return all;
+}
