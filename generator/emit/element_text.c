@@ -443,7 +443,7 @@ static const char *index_text(Pool *pool, const Naming *naming, Element e)
 static const char *array_name(Pool *pool, Element e)
 {
     static const char own[] = "self->";
-    const bool several = e.array == ARRAY_known || e.array == ARRAY_onto;
+    const bool several = e.array == ARRAY_known || e.array == ARRAY_onto || e.array == ARRAY_column_known;
     const char *name = several ? pool_print(pool, "%s%d", array_text[e.array], e.which) : array_text[e.array];
     if (!e.slope)
         return name;
