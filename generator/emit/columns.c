@@ -77,6 +77,18 @@ static void write_class_columns(void *context, Text *out, int indent)
     g->class = 0;
 }
 
+/* act[]: accelerations of the base, then of the coordinates that a subset depends on. */
+static void write_accelerations_of(const Generation *g, Text *out, int indent, const Subset *subset)
+{
+    for (int j = 0; j < subset->deps; ++j) {
+        const Coordinate *c = &g->model->coordinate[subset->dep[j]];
+        line(out, indent, "act[%d] = %s; /* %s */", 6 + j,
+             c->driven ? pool_print(g->pool, "u[%s]", input_text(g->pool, g->style->naming, c->input + 2))
+                       : pool_print(g->pool, "acc[%d]", g->plan->coordinate_unknown[subset->dep[j]]),
+             c->name);
+    }
+}
+
 static void write_calls(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -97,13 +109,55 @@ static void write_calls(void *context, Text *out, int indent)
         }
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        line(out, indent, "%s_columns_%s(%s_k_columns_%s[%d], &links, known, start + %d, self->motion + %s, column + %d);",
+        if (block_reads(&g->columns->motion[subset->class]->block, ARRAY_acc, 0))
+            write_accelerations_of(g, out, indent, subset);
+        line(out, indent,
+             "%s_columns_%s(%s_k_columns_%s[%d], &links, known, act, start + %d, self->motion + %s, "
+             "self->inertia + %s, column + %d);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), g->plan->start_offset[s],
-             body_motion_text(g, subset->body[0]), g->columns->offset[s]);
+             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s), g->columns->offset[s]);
     }
 }
 
 /* ---- the whole vehicle --------------------------------------------------------------------------------------- */
+
+/* acc[], and those of the base in act[]. */
+static void write_accelerations(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    block_emit(out, &columns_of(g)->accelerations, g->style, &none, indent);
+    for (int i = 0; i < 6; ++i)
+        if (g->model->free_base)
+            line(out, indent, "act[%d] = acc[%d];", i, i);
+        else if (i < 3)
+            line(out, indent, "act[%d] = R(0.0), act[%d] = %s;", i, 3 + i,
+                 emit_number(g->pool, -g->model->gravity[i]));
+}
+
+static void write_turn(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    for (int i = 0; i < 3; ++i)
+        if (g->model->free_base)
+            line(out, indent, "links.turn[%d] = y[%s_TWIST + %d];", i, g->upper, 3 + i);
+        else
+            line(out, indent, "links.turn[%d] = R(0.0);", i);
+}
+
+static void write_residuals_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    block_emit(out, &columns_of(g)->residuals, g->style, &none, indent);
+}
+
+static void write_solution(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    block_emit(out, &columns_of(g)->solution, g->style, &none, indent);
+}
 
 static void write_rates(void *context, Text *out, int indent)
 {
@@ -126,7 +180,12 @@ static void write_apart(void *context, Text *out, int indent)
 static void write_work(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    line(out, indent, "gic_real column[%d];", room(columns_of(g)->size));
+    const RateColumns *columns = columns_of(g);
+    line(out, indent, "enum { LANES = %d }; /* columns that change accelerations, and some more, for vectors of them */",
+         room((columns->lanes + 7) / 8 * 8));
+    line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM];", g->upper, g->upper);
+    line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][LANES];", room(columns->size),
+         room(columns->factors), g->upper);
 }
 
 static void write_euler(void *context, Text *out, int indent)
@@ -145,6 +204,10 @@ const Insertions columns_class_points = {(const char *const[]){"columns_class.c.
 static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns calls", write_calls},
                                   {"columns rates", write_rates},
+                                  {"columns accelerations", write_accelerations},
+                                  {"columns turn", write_turn},
+                                  {"columns residuals", write_residuals_along},
+                                  {"columns solution", write_solution},
                                   {"columns apart", write_apart},
                                   {"columns work", write_work},
                                   {"columns euler", write_euler},

@@ -75,7 +75,9 @@ typedef struct Table Table; /* base/table.h */
     X(column_known, "column", "the same of the subset of a body that was solved before: Element.which") \
     X(jacobian, "jacobian", "derivatives of the rates") \
     X(share, "share", "share of the dependent Euler parameter's change in that of each other one") \
-    X(which, "which", "1 for the dependent Euler parameter, 0 for the others")
+    X(which, "which", "1 for the dependent Euler parameter, 0 for the others") \
+    X(right, "right", "right-hand sides, or solutions, of Element.which, one column of several; of column c where it is -1") \
+    X(factor, "factor", "factors of the mass matrix")
 
 typedef enum Array {
 #define ARRAY_ENUM(name, text, what) ARRAY_##name,

@@ -54,25 +54,34 @@ static Ex atan2_slope(Dag *dag, Ex a, Ex b, Ex da, Ex db)
     return where_positive(dag, square, ex_div(dag, ex_sub(dag, ex_mul(dag, b, da), ex_mul(dag, a, db)), square));
 }
 
-/* Height and slopes of a road move with the point under which they are looked up. */
-static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope)
+/* Height and slopes of a road move with the point under which they are looked up. `several`: there are several
+ * directions, so that the slopes' changes along x and y serve all of them. */
+static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope, bool several)
 {
     const Ex road = part->arg[0], *at = dag->node[road].arg;
-    const Ex dx = slope[at[0]], dy = slope[at[1]], zero = ex_literal(dag, 0);
+    const Ex dx = slope[at[0]], dy = slope[at[1]], zero = ex_literal(dag, 0), one = ex_literal(dag, 1);
+    const Ex number = part->arg[1];
+    Ex along[2];
     if (ex_is(dag, dx, 0) && ex_is(dag, dy, 0))
         return zero;
-    return ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, dx, dy), part->arg[1], 0);
+    if (!several)
+        return ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, dx, dy), number, 0);
+    for (int i = 0; i < 2; ++i)
+        along[i] = number == 0 ? ex_op(dag, OP_ROAD_PART, road, (Ex)(1 + i), 0)
+                               : ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, i ? zero : one, i ? one : zero),
+                                       number, 0);
+    return ex_add(dag, ex_mul(dag, along[0], dx), ex_mul(dag, along[1], dy));
 }
 
-/* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0. */
-static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive)
+/* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0; several: see above. */
+static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool several)
 {
     const Node node = dag->node[e]; /* a copy: nodes move when there are more */
     const int arity = ex_arity((Op)node.op);
     const Ex a = node.arg[0], b = node.arg[1], c = node.arg[2], one = ex_literal(dag, 1), zero = ex_literal(dag, 0);
     const Ex da = arity > 0 ? slope[a] : zero, db = arity > 1 ? slope[b] : zero, dc = arity > 2 ? slope[c] : zero;
     if (node.op == OP_ROAD_PART)
-        return road_part_slope(dag, &node, slope);
+        return road_part_slope(dag, &node, slope, several);
     if (ex_is(dag, da, 0) && ex_is(dag, db, 0) && ex_is(dag, dc, 0))
         return zero;
     switch ((Op)node.op) {
@@ -131,14 +140,14 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
             continue;
         if (dag->node[e].op == OP_INPUT) {
             Element element = *dag->node[e].element;
-            if (seeds->seed)
+            if (seeds->seed != NULL)
                 slope[e] = seeds->seed(seeds->context, dag, element);
             if (seeds->seed || element.array == ARRAY_number || !seeds->moves(seeds->context, element))
                 continue;
             element.slope = true;
             slope[e] = ex_input(dag, element, NULL);
         } else {
-            slope[e] = slope_of(dag, e, slope, positive);
+            slope[e] = slope_of(dag, e, slope, positive, seeds->seed);
         }
     }
     return slope;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Derivatives of a class's motions by every coordinate that they depend on and by the rates of these, in one block: what
- * several of them have in common is computed once, and numbers that `solve` has stored are read. */
+ * Derivatives of a class's motions, and of what its bodies lack in the equations of motion at accelerations that stand
+ * still, by every coordinate that they depend on, by the rates of these and by the base's angular velocity, in one block:
+ * what several of them have in common is computed once, and numbers that `solve` has stored are read. */
 #include "expression/expression.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
@@ -19,8 +20,8 @@ typedef struct Column {
     Formula *const *formula;
     MotionColumns *const *made; /* of earlier classes */
     const Class *class;
-    int coordinate; /* by its place among the deps */
-    bool rate;
+    Array array;    /* x, rate or turn, and which of them */
+    int index;
 } Column;
 
 /* A derivative that a class made, as a later one reads it. */
@@ -52,13 +53,13 @@ static Ex seed(const void *context, Dag *dag, Element element)
 {
     const Column *c = context;
     const Subset *first = &c->sequence->subset[c->class->member[0]];
-    if (element.array == (c->rate ? ARRAY_rate : ARRAY_x))
-        return ex_literal(dag, element.index == c->coordinate);
-    if (element.array != ARRAY_known)
+    if (element.array == c->array)
+        return ex_literal(dag, element.index == c->index);
+    if (element.array != ARRAY_known || c->array == ARRAY_turn)
         return 0;
     const int known = first->known[element.which];
     const Subset *subset = &c->sequence->subset[c->sequence->body_subset[known]];
-    const int column = subset_column(subset, first->dep[c->coordinate], c->rate);
+    const int column = subset_column(subset, first->dep[c->index], c->array == ARRAY_rate);
     return column < 0 ? 0 : read_known(c, dag, element, column);
 }
 
@@ -69,48 +70,107 @@ static bool is_own(const Dag *dag, Ex e, int number, int size)
     return node->op == OP_INPUT && node->element->array == ARRAY_motion && node->element->index / size == number / size;
 }
 
-static MotionColumns *columns_of(const Sequence *sequence, const Formula *formula, Column *column)
+/* What a subset's bodies lack in the equations of motion at accelerations acc[], but for their mass: moment and force on
+ * the whole vehicle, forces along the coordinates. acc: of the base, alpha and a, then of the deps. */
+static void residuals(const Formula *f, bool free_base, int deps, Ex *tau)
+{
+    Dag *dag = f->dag;
+    const Ex *n = f->inertia, *first = n + INERTIA_FIRST, *J = n + INERTIA_SECOND;
+    Ex acc[6 + deps], t[3];
+    for (int i = 0; i < 6 + deps; ++i) {
+        acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
+        tau[i] = 0;
+    }
+    const Ex *a = acc + 3;
+    if (free_base) {
+        ex_add3(dag, tau, n + INERTIA_MOMENT, tau);
+        ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, acc, t);
+        ex_add3(dag, tau, t, tau);
+        ex_cross(dag, first, a, t);
+        ex_add3(dag, tau, t, tau);
+        ex_cross(dag, acc, first, t);
+        ex_add3(dag, n + INERTIA_FORCE, t, tau + 3);
+    }
+    for (int j = 0; j < deps; ++j) {
+        const Ex *own = n + INERTIA_COORDINATE + 7 * j;
+        for (int i = 0; free_base && i < 6; ++i)
+            tau[i] = ex_add(dag, tau[i], ex_mul(dag, own[(i + 3) % 6], acc[6 + j]));
+        tau[6 + j] = ex_add(dag, own[6], ex_dot(dag, own, a));
+        if (free_base)
+            tau[6 + j] = ex_add(dag, tau[6 + j], ex_dot(dag, own + 3, acc));
+        for (int k = 0; k < deps; ++k) {
+            const Ex mass = n[inertia_mass(deps, j < k ? j : k, j < k ? k : j)];
+            tau[6 + j] = ex_add(dag, tau[6 + j], ex_mul(dag, mass, acc[6 + k]));
+        }
+    }
+}
+
+/* Numbers that `solve` stored stand for what they are in what is differentiated. */
+static const Ex *read_stored(const Formula *formula, const Ex *root, int roots)
 {
     Dag *dag = formula->dag;
-    Pool *pool = dag->pool;
     const Block *solve = &formula->solve;
-    const int size = formula->layout.motion_size, numbers = size * formula->layout.bodies;
-    const int deps = sequence->subset[column->class->member[0]].deps, all = 2 * deps * numbers;
-    MotionColumns *m = pool_alloc(pool, sizeof *m);
-    Ex root[numbers], from[numbers + 1], to[numbers + 1];
+    Ex from[solve->stores + 1], to[solve->stores + 1];
     int stored = 0;
-    *m = (MotionColumns){.columns = 2 * deps,
+    for (int i = 0; i < solve->stores && formula->closed; ++i) { /* others are found at poses that differ by roundings */
+        const Store *store = &solve->store[i];
+        const Node *node = &dag->node[store->value];
+        const bool kept = store->target.array == ARRAY_motion || store->target.array == ARRAY_inertia;
+        if (!kept || node->level < LEVEL_VARIABLE || node->op == OP_INPUT)
+            continue;
+        from[stored] = store->value;
+        to[stored++] = ex_input(dag, store->target, NULL);
+    }
+    return dag_replace(dag, root, roots, from, to, stored);
+}
+
+static MotionColumns *columns_of(const Sequence *sequence, const Formula *formula, bool free_base, Column *column)
+{
+    static const Array kind[3] = {ARRAY_x, ARRAY_rate, ARRAY_turn};
+    Dag *dag = formula->dag;
+    Pool *pool = dag->pool;
+    const int size = formula->layout.motion_size, numbers = size * formula->layout.bodies;
+    const int deps = sequence->subset[column->class->member[0]].deps, rows = 6 + deps;
+    const int columns = 2 * deps + (free_base ? 3 : 0), motions = 2 * deps * numbers, all = motions + columns * rows;
+    MotionColumns *m = pool_alloc(pool, sizeof *m);
+    Ex root[numbers + rows];
+    *m = (MotionColumns){.columns = columns,
                          .numbers = numbers,
+                         .rows = rows,
                          .slope = pool_alloc(pool, ((size_t)all + 1) * sizeof(Ex)),
                          .place = pool_alloc(pool, ((size_t)all + 1) * sizeof(int)),
                          .block = {.dag = dag, .eager = true}};
     for (int i = 0; i < numbers; ++i)
         root[i] = *motion_number(&formula->motion[i / size], i % size);
     dag_section(dag, "derivatives by coordinates and their rates");
-    for (int c = 0; c < 2 * deps; ++c) {
-        column->rate = c >= deps;
-        column->coordinate = c % deps;
+    residuals(formula, free_base, deps, root + numbers);
+    for (int c = 0; c < columns; ++c) {
+        column->array = kind[deps ? (c < 2 * deps ? c / deps : 2) : 2];
+        column->index = column->array == ARRAY_turn ? c - 2 * deps : c % deps;
         const Seeds seeds = {.seed = seed, .context = column};
-        const Ex *slope = subset_slopes(formula, &seeds, root, numbers);
-        for (int i = 0; i < numbers; ++i)
+        const Ex *slope = subset_slopes(formula, &seeds, root, numbers + rows);
+        for (int i = 0; i < numbers && c < 2 * deps; ++i)
             m->slope[numbers * c + i] = slope[root[i]];
+        for (int i = 0; i < rows; ++i)
+            m->slope[motions + rows * c + i] = slope[root[numbers + i]];
     }
-    for (int i = 0; i < solve->stores && formula->closed; ++i) /* others are found at poses that differ by roundings */
-        if (solve->store[i].target.array == ARRAY_motion && dag->node[solve->store[i].value].level == LEVEL_VARIABLE &&
-            dag->node[solve->store[i].value].op != OP_INPUT) {
-            from[stored] = solve->store[i].value;
-            to[stored++] = ex_input(dag, element_at(ARRAY_motion, solve->store[i].target.index), NULL);
-        }
-    const Ex *image = dag_replace(dag, m->slope, all, from, to, stored);
+    const Ex *image = read_stored(formula, m->slope, all);
     for (int i = 0; i < all; ++i) {
         const Ex e = m->slope[i] = image[m->slope[i]];
         m->place[i] = -1;
-        if (dag->node[e].level < LEVEL_VARIABLE || is_own(dag, e, i % numbers, size))
+        if (i < motions ? dag->node[e].level < LEVEL_VARIABLE || is_own(dag, e, i % numbers, size)
+                        : ex_is(dag, e, 0))
             continue;
         m->place[i] = m->size++;
         block_store(&m->block, e, element_at(ARRAY_column, m->place[i]));
     }
     return m;
+}
+
+int motion_columns_residual(const MotionColumns *m, int column, int row)
+{
+    const int deps = m->rows - 6;
+    return m->place[2 * deps * m->numbers + m->rows * column + row];
 }
 
 /* Does each known of a class stand for bodies of one class, all at one place in their subsets? */
@@ -133,7 +193,7 @@ static bool is_uniform(const Sequence *sequence, const Class *class)
     return same;
 }
 
-MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula)
+MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base)
 {
     MotionColumns **made = pool_alloc(pool, ((size_t)sequence->classes + 1) * sizeof *made);
     if (sequence->chained)
@@ -145,7 +205,7 @@ MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *c
         if (!is_uniform(sequence, &sequence->class[c]))
             return NULL;
         Column column = {.sequence = sequence, .formula = formula, .made = made, .class = &sequence->class[c]};
-        made[c] = columns_of(sequence, formula[c], &column);
+        made[c] = columns_of(sequence, formula[c], free_base, &column);
     }
     return made;
 }

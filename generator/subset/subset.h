@@ -208,19 +208,23 @@ const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, boo
 /* The derivatives of nodes of `solve`, at the same poses. */
 const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots);
 
-/* columns.c: derivatives of a class's motions by each coordinate that they depend on, then by each rate of these. Of
- * each number `slope` has what it is: a literal, a constant, a number of the same body's motion (ARRAY_motion), or
- * what `block` stores at `place`. */
+/* columns.c: derivatives of a class's motions by each coordinate that they depend on, then by each rate of these, then
+ * of residuals by these and by the base's angular velocity. Of each number `slope` has what it is: a literal, a
+ * constant, a number of the same body's motion (ARRAY_motion), or what `block` stores at `place`. */
 typedef struct MotionColumns {
-    int columns, numbers; /* 2 deps; numbers of the motions of all bodies */
-    Ex *slope;            /* [columns][numbers] in the formula's graph */
-    int *place;           /* [columns][numbers] in column[]; -1: it is not stored */
+    int columns, numbers; /* 2 deps and 3; numbers of the motions of all bodies */
+    int rows;             /* of residuals: moment and force on the whole vehicle, forces along the deps */
+    Ex *slope;            /* [2 deps][numbers], then [columns][rows], in the formula's graph */
+    int *place;           /* the same, in column[]; -1: it is not stored, a residual is 0 */
     int size;             /* of column[] */
-    Block block;          /* from the arguments of `solve`, the motions that it stored, and columns of the knowns */
+    Block block;          /* from the arguments of `solve`, what that stored, accelerations acc[] (alpha and a of the
+                           * base, of the deps) and columns of the knowns */
 } MotionColumns;
 
 /* [classes]; NULL: a known stands for bodies of several classes. */
-MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula);
+MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base);
+/* Where the derivative of a residual is in column[]; -1: it is 0. */
+int motion_columns_residual(const MotionColumns *m, int column, int row);
 /* The local column of a coordinate, or of its rate, in a subset; -1: its motion does not depend on it. */
 int subset_column(const Subset *subset, int coordinate, bool rate);
 /* True for a number of a body's motion, by its place, that follows from poses alone. */

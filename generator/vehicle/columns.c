@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Derivatives of the rates by all states, inputs, parameters and numbers of ports at once. Accelerations are not
- * differentiated as they are solved for: M dz = -d tau, tau being what the equations of motion, written body by body,
- * lack at accelerations that stand still. One factorization of M serves all columns, and a column is 0 but for the
- * bodies and forces that it moves. */
+ * differentiated as they are solved for: M dz = db - d(M z) at accelerations z that stand still. One factorization of M
+ * serves all columns, and a column is 0 but for the bodies and forces that it moves. */
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
@@ -101,26 +100,108 @@ static Ex seed(const void *context, Dag *dag, Element element)
     }
 }
 
-/* The derivatives of the rates [states] by one column. */
-static Ex *differentiate(Differentiation *d, Whole *whole, const Ex *tau, const Factors *factors, const Block *rates)
+/* Subtract the derivatives of what the bodies of a subset lack, by a column of it. */
+static void subtract_residuals(const Differentiation *d, Dag *dag, int s, int column, Ex *right)
 {
-    Dag *dag = whole->dag;
-    const int n = d->plan->unknowns;
+    const Plan *plan = d->plan;
+    const Subset *subset = &plan->sequence->subset[s];
+    const MotionColumns *m = d->all->motion[subset->class];
+    for (int i = 0; i < m->rows; ++i) {
+        const int place = motion_columns_residual(m, column, i);
+        const int row = i >= 6 ? plan->coordinate_unknown[subset->dep[i - 6]] : plan->model->free_base ? i : -1;
+        if (place >= 0 && row >= 0)
+            right[row] = ex_sub(dag, right[row], ex_input(dag, element_at(ARRAY_column, d->all->offset[s] + place), NULL));
+    }
+}
+
+/* Right-hand sides of one column, in right[]. b: applied forces less what follows accelerations that are inputs. True
+ * where any is not 0. */
+static bool push(const Differentiation *d, Dag *dag, const Ex *b, int lane, Block *out)
+{
     const Seeds seeds = {.seed = seed, .context = d};
-    Ex dz[n + 1], root[rates->stores + 1];
-    Ex *out = pool_alloc(dag->pool, (size_t)(d->plan->states + 1) * sizeof *out);
-    d->accelerations = NULL;
-    const Ex *slope = dag_slopes(dag, NULL, tau, n, &seeds);
+    const Plan *plan = d->plan;
+    const int n = plan->unknowns, before = out->stores, twist = plan->free_coordinates + 10;
+    const int moved = coordinate_of(plan, d->from, false), sped = coordinate_of(plan, d->from, true);
+    const bool turns = plan->model->free_base && d->from.array == ARRAY_y && d->from.index >= twist &&
+                       d->from.index < twist + 3;
+    const Ex *slope = dag_slopes(dag, NULL, b, n, &seeds);
+    Ex right[n + 1];
     for (int i = 0; i < n; ++i)
-        dz[i] = ex_neg(dag, slope[tau[i]]);
-    linear_solve(dag, factors, dz, dz);
+        right[i] = slope[b[i]];
+    for (int s = 0; s < plan->sequence->subsets; ++s) {
+        const Subset *subset = &plan->sequence->subset[s];
+        if (subset->class < 0 || (moved < 0 && sped < 0 && !turns))
+            continue;
+        const int column = turns ? 2 * subset->deps + d->from.index - twist
+                                 : subset_column(subset, moved < 0 ? sped : moved, moved < 0);
+        if (column >= 0)
+            subtract_residuals(d, dag, s, column, right);
+    }
+    for (int i = 0; i < n; ++i)
+        if (!ex_is(dag, right[i], 0))
+            block_store(out, right[i], element_of(ARRAY_right, lane, i));
+    return out->stores > before;
+}
+
+/* The derivatives of the rates [states] by one column, with those of the accelerations in right[]; lane -1: these are 0.
+ */
+static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, int lane)
+{
+    const Seeds seeds = {.seed = seed, .context = d};
+    Ex dz[d->plan->unknowns + 1], root[rates->stores + 1];
+    Ex *out = pool_alloc(dag->pool, (size_t)(d->plan->states + 1) * sizeof *out);
+    for (int i = 0; i < d->plan->unknowns; ++i)
+        dz[i] = lane < 0 ? 0 : ex_input(dag, element_of(ARRAY_right, lane, i), NULL);
     d->accelerations = dz;
     for (int i = 0; i < rates->stores; ++i)
         root[i] = rates->store[i].value;
-    slope = dag_slopes(dag, NULL, root, rates->stores, &seeds);
+    const Ex *slope = dag_slopes(dag, NULL, root, rates->stores, &seeds);
     for (int i = 0; i < rates->stores; ++i)
         out[rates->store[i].target.index] = slope[root[i]];
     return out;
+}
+
+/* [nodes] those that depend on right[]. */
+static const bool *follow_right(const Dag *dag)
+{
+    bool *follows = pool_alloc(dag->pool, (size_t)dag->nodes);
+    for (int e = 0; e < dag->nodes; ++e) {
+        const Node *node = &dag->node[e];
+        follows[e] = node->op == OP_INPUT && node->element->array == ARRAY_right;
+        for (int i = 0; node->level == LEVEL_VARIABLE && i < ex_arity((Op)node->op); ++i)
+            follows[e] = follows[e] || follows[node->arg[i]];
+    }
+    return follows;
+}
+
+/* The solution of column c, in its place. What is the same for all columns is read from factor[], where `residuals`
+ * stores it. Returns the number of these. */
+static int solve_column(Dag *dag, const Factors *f, Block *residuals, Block *solution)
+{
+    const int n = f->n;
+    Ex z[n + 1], *from = NULL, *to = NULL;
+    int count = 0;
+    for (int i = 0; i < n; ++i)
+        z[i] = ex_input(dag, element_of(ARRAY_right, -1, i), NULL);
+    linear_solve(dag, f, z, z);
+    const bool *follows = follow_right(dag), *needed = dag_needed(dag, z, n);
+    bool *read = pool_alloc(dag->pool, (size_t)dag->nodes);
+    for (int e = 0; e < dag->nodes; ++e)
+        for (int i = 0; needed[e] && follows[e] && i < ex_arity((Op)dag->node[e].op); ++i)
+            read[dag->node[e].arg[i]] = true;
+    for (Ex e = 0; e < (Ex)dag->nodes; ++e)
+        if (read[e] && !follows[e] && dag->node[e].level == LEVEL_VARIABLE) {
+            *POOL_PUSH(dag->pool, from, count) = e;
+            block_store(residuals, e, element_at(ARRAY_factor, count - 1));
+        }
+    to = pool_alloc(dag->pool, ((size_t)count + 1) * sizeof *to);
+    for (int i = 0; i < count; ++i)
+        to[i] = ex_input(dag, element_at(ARRAY_factor, i), NULL);
+    const Ex *image = dag_replace(dag, z, n, from, to, count);
+    *solution = (Block){.dag = dag};
+    for (int i = 0; i < n; ++i)
+        block_store(solution, image[z[i]], element_of(ARRAY_right, -1, i));
+    return count;
 }
 
 /* Columns of Euler parameters change the dependent one as well, so that their squares have the sum 1: share[i] is its
@@ -156,6 +237,17 @@ static Ex *solved(Whole *whole)
     return z;
 }
 
+/* Put accelerations in the place of acc[] in what a block stores. */
+static void set_accelerations(Block *block, const Ex *acc, const Ex *z, int n)
+{
+    Ex *root = pool_alloc(block->dag->pool, ((size_t)block->stores + 1) * sizeof *root);
+    for (int i = 0; i < block->stores; ++i)
+        root[i] = block->store[i].value;
+    const Ex *image = dag_replace(block->dag, root, block->stores, acc, z, n);
+    for (int i = 0; i < block->stores; ++i)
+        block->store[i].value = image[root[i]];
+}
+
 const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns)
 {
     const Plan *plan = f->plan;
@@ -163,7 +255,7 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     RateColumns *all = pool_alloc(pool, sizeof *all);
     if (plan->solve != SOLVE_REDUCED || plan->reduction || f->wheels)
         return NULL;
-    *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula),
+    *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula, f->model->free_base),
                          .offset = pool_alloc(pool, (size_t)sequence->subsets * sizeof(int))};
     if (!all->motion)
         return NULL;
@@ -175,29 +267,30 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     Dag *dag = whole->dag;
     const int n = plan->unknowns, rows = plan->states;
     Block rates = {.dag = dag};
-    Ex acc[n + 1], **column = pool_alloc(pool, ((size_t)columns + 1) * sizeof *column);
-    const Ex *tau = dynamics_residuals(whole);
-    const Factors *factors = dynamics_factors(whole);
+    Ex b[n + 1], acc[n + 1], **column = pool_alloc(pool, ((size_t)columns + 1) * sizeof *column);
+    const Factors *factors = dynamics_factors(whole, b);
     for (int i = 0; i < n; ++i)
         acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
     whole_store_rates(whole, &rates, acc);
     dag_section(dag, "derivatives");
+    all->residuals = all->block = (Block){.dag = dag, .eager = true};
     for (int c = 0; c < columns; ++c)
         if (!apart[c]) {
             Differentiation d = {.all = all, .plan = plan, .from = origin_of(plan, c)};
-            column[c] = differentiate(&d, whole, tau, factors, &rates);
+            const int lane = push(&d, dag, b, all->lanes, &all->residuals) ? all->lanes++ : -1;
+            column[c] = pull(&d, dag, &rates, lane);
         }
+    all->factors = solve_column(dag, factors, &all->residuals, &all->solution);
     if (f->model->free_base)
         constrain(whole, column);
-    Ex *root = pool_alloc(pool, ((size_t)columns * (size_t)rows + 1) * sizeof *root);
     for (int c = 0; c < columns; ++c)
         for (int r = 0; r < rows && column[c]; ++r)
-            root[columns * r + c] = column[c][r];
-    const Ex *image = dag_replace(dag, root, columns * rows, acc, solved(whole), n);
-    all->block = (Block){.dag = dag, .eager = true};
-    for (int c = 0; c < columns; ++c)
-        for (int r = 0; r < rows; ++r)
-            if (!ex_is(dag, image[root[columns * r + c]], 0))
-                block_store(&all->block, image[root[columns * r + c]], element_at(ARRAY_jacobian, columns * r + c));
+            if (!ex_is(dag, column[c][r], 0))
+                block_store(&all->block, column[c][r], element_at(ARRAY_jacobian, columns * r + c));
+    const Ex *z = solved(whole);
+    set_accelerations(&all->block, acc, z, n);
+    all->accelerations = (Block){.dag = dag};
+    for (int i = 0; i < n; ++i)
+        block_store(&all->accelerations, z[i], element_at(ARRAY_acc, i));
     return all;
 }

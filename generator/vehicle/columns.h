@@ -12,7 +12,11 @@ typedef struct RateColumns {
     MotionColumns **motion; /* [classes] */
     int *offset;            /* [subsets] where the subset's part of column[] begins */
     int size;               /* of column[] */
-    Block block;
+    int lanes, factors;     /* right-hand sides; numbers of factor[] */
+    Block accelerations;    /* acc[] [unknowns] from rate[] */
+    Block residuals;        /* right[], by columns, and factor[] */
+    Block solution;         /* the solution of one column c of right[], in its place */
+    Block block;            /* jacobian[] from these */
 } RateColumns;
 
 /* apart [columns]: columns that are not among them. NULL: the model has something that this is not made for: another

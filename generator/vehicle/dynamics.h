@@ -31,9 +31,7 @@ void dynamics_right(Whole *whole, const Composite *c, const Loads *loads, const 
  * digits. Both may have a common factor. */
 void dynamics_check(Whole *whole, Block *block, int unknown, Ex left, Ex whole_of_it);
 
-/* tau [unknowns]: residuals of the equations of motion for accelerations acc[], computed body by body. */
-Ex *dynamics_residuals(Whole *whole);
-/* Of the mass matrix of the reduced form, without a reduction: M acc less what acc does not change are the residuals. */
-const Factors *dynamics_factors(Whole *whole);
+/* Of the mass matrix of the reduced form, without a reduction; b [unknowns]: the right-hand sides. */
+const Factors *dynamics_factors(Whole *whole, Ex *b);
 
 #endif

@@ -418,12 +418,26 @@ static Projection project(Whole *whole, const Loads *loads, const Ex alpha[3], c
     return p;
 }
 
-Ex *dynamics_residuals(Whole *whole)
+const Factors *dynamics_factors(Whole *whole, Ex *b)
+{
+    Dag *dag = whole->dag;
+    const int n = whole->plan->unknowns;
+    Ex *M = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *M);
+    const Composite c = dynamics_compose(whole);
+    int blocked;
+    dynamics_matrix(whole, &c, M, n);
+    dynamics_right(whole, &c, loads_make(whole), whole_driven_accelerations(whole), b);
+    const int *order = elimination_order(whole, n, &blocked);
+    return linear_factor_symmetric(dag, n, M, order, blocked);
+}
+
+Block *inverse_block(Whole *whole)
 {
     Dag *dag = whole->dag;
     const Plan *plan = whole->plan;
+    Block *block = pool_alloc(dag->pool, sizeof *block);
+    block->dag = dag;
     Ex alpha[3] = {0}, a[3], *w2 = whole_driven_accelerations(whole);
-    Ex *tau = pool_alloc(dag->pool, (size_t)(plan->unknowns + 1) * sizeof *tau);
     ex_sub3(dag, (Ex[3]){0}, whole->gravity, a);
     for (int i = 0; whole->model->free_base && i < 3; ++i) {
         alpha[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
@@ -434,37 +448,12 @@ Ex *dynamics_residuals(Whole *whole)
             w2[w] = ex_input(dag, element_at(ARRAY_acc, plan->coordinate_unknown[w]), NULL);
     Projection p = project(whole, loads_make(whole), alpha, a, w2);
     for (int i = 0; whole->model->free_base && i < 3; ++i) {
-        tau[i] = p.moment[i];
-        tau[3 + i] = p.force[i];
+        block_store(block, p.moment[i], element_at(ARRAY_tau, i));
+        block_store(block, p.force[i], element_at(ARRAY_tau, 3 + i));
     }
     for (int w = 0; w < whole->model->coordinates; ++w)
         if (plan->coordinate_unknown[w] >= 0)
-            tau[plan->coordinate_unknown[w]] = p.along[w];
-    return tau;
-}
-
-const Factors *dynamics_factors(Whole *whole)
-{
-    Dag *dag = whole->dag;
-    const int n = whole->plan->unknowns;
-    Ex *M = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *M);
-    const Composite c = dynamics_compose(whole);
-    int blocked;
-    dynamics_matrix(whole, &c, M, n);
-    const int *order = elimination_order(whole, n, &blocked);
-    return linear_factor_symmetric(dag, n, M, order, blocked);
-}
-
-Block *inverse_block(Whole *whole)
-{
-    Block *block = pool_alloc(whole->dag->pool, sizeof *block);
-    block->dag = whole->dag;
-    const Ex *tau = dynamics_residuals(whole);
-    const int base = whole->model->free_base ? 6 : 0;
-    for (int i = 0; i < base; ++i) /* moments and forces by turns */
-        block_store(block, tau[i / 2 + 3 * (i % 2)], element_at(ARRAY_tau, i / 2 + 3 * (i % 2)));
-    for (int i = base; i < whole->plan->unknowns; ++i)
-        block_store(block, tau[i], element_at(ARRAY_tau, i));
+            block_store(block, p.along[w], element_at(ARRAY_tau, plan->coordinate_unknown[w]));
     return block;
 }
 
