@@ -70,39 +70,122 @@ static bool is_own(const Dag *dag, Ex e, int number, int size)
     return node->op == OP_INPUT && node->element->array == ARRAY_motion && node->element->index / size == number / size;
 }
 
-/* What a subset's bodies lack in the equations of motion at accelerations acc[], but for their mass: moment and force on
- * the whole vehicle, forces along the coordinates. acc: of the base, alpha and a, then of the deps. */
+static void apply(Dag *dag, const Ex J[6], const Ex x[3], Ex out[3])
+{
+    ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, x, out);
+}
+
+/* Velocity of a body's centre of mass at unit rate of a coordinate. */
+static void unit_velocity(Dag *dag, const Ex *S, const Ex arm[3], Ex out[3])
+{
+    Ex t[3];
+    ex_cross(dag, S, arm, t);
+    ex_add3(dag, S + 3, t, out);
+}
+
+/* What one body lacks: Newton's and Euler's equations at accelerations acc, projected on the coordinates. */
+static void add_body(Dag *dag, const BodyInertia *body, const Motion *m, bool free_base, const Ex *acc, Ex *tau)
+{
+    Ex a[3], alpha[3], t[3], force[3], moment[3], v[3];
+    ex_cross(dag, acc, body->at, a);
+    ex_add3(dag, a, acc + 3, a);
+    ex_add3(dag, acc, (Ex[3]){0}, alpha);
+    for (int j = 0; j < m->deps; ++j) {
+        unit_velocity(dag, m->S + 6 * j, body->arm, v);
+        ex_scale3(dag, acc[6 + j], v, t);
+        ex_add3(dag, a, t, a);
+        ex_scale3(dag, acc[6 + j], m->S + 6 * j, t);
+        ex_add3(dag, alpha, t, alpha);
+    }
+    ex_scale3(dag, body->mass, a, force);
+    ex_add3(dag, body->force, force, force);
+    apply(dag, body->J, alpha, moment);
+    ex_add3(dag, body->moment, moment, moment);
+    ex_cross(dag, body->at, force, t);
+    ex_add3(dag, t, moment, t);
+    if (free_base) {
+        ex_add3(dag, tau, t, tau);
+        ex_add3(dag, tau + 3, force, tau + 3);
+    }
+    for (int j = 0; j < m->deps; ++j) {
+        unit_velocity(dag, m->S + 6 * j, body->arm, v);
+        const Ex own = ex_add(dag, ex_dot(dag, v, force), ex_dot(dag, m->S + 6 * j, moment));
+        tau[6 + j] = ex_add(dag, tau[6 + j], own);
+    }
+}
+
+/* What a subset's bodies lack in the equations of motion at accelerations acc[]: moment and force on the whole vehicle,
+ * forces along the coordinates. acc: of the base, alpha and a, then of the deps. */
 static void residuals(const Formula *f, bool free_base, int deps, Ex *tau)
 {
-    Dag *dag = f->dag;
-    const Ex *n = f->inertia, *first = n + INERTIA_FIRST, *J = n + INERTIA_SECOND;
-    Ex acc[6 + deps], t[3];
+    Ex acc[6 + deps];
     for (int i = 0; i < 6 + deps; ++i) {
-        acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
+        acc[i] = ex_input(f->dag, element_at(ARRAY_acc, i), NULL);
         tau[i] = 0;
     }
-    const Ex *a = acc + 3;
-    if (free_base) {
-        ex_add3(dag, tau, n + INERTIA_MOMENT, tau);
-        ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, acc, t);
-        ex_add3(dag, tau, t, tau);
-        ex_cross(dag, first, a, t);
-        ex_add3(dag, tau, t, tau);
-        ex_cross(dag, acc, first, t);
-        ex_add3(dag, n + INERTIA_FORCE, t, tau + 3);
-    }
-    for (int j = 0; j < deps; ++j) {
-        const Ex *own = n + INERTIA_COORDINATE + 7 * j;
-        for (int i = 0; free_base && i < 6; ++i)
-            tau[i] = ex_add(dag, tau[i], ex_mul(dag, own[(i + 3) % 6], acc[6 + j]));
-        tau[6 + j] = ex_add(dag, own[6], ex_dot(dag, own, a));
-        if (free_base)
-            tau[6 + j] = ex_add(dag, tau[6 + j], ex_dot(dag, own + 3, acc));
-        for (int k = 0; k < deps; ++k) {
-            const Ex mass = n[inertia_mass(deps, j < k ? j : k, j < k ? k : j)];
-            tau[6 + j] = ex_add(dag, tau[6 + j], ex_mul(dag, mass, acc[6 + k]));
+    for (int i = 0; i < 3 && !free_base; ++i)
+        acc[i] = 0;
+    for (int b = 0; b < f->layout.bodies; ++b)
+        add_body(f->dag, &f->body[b], &f->motion[b], free_base, acc, tau);
+}
+
+/* Nodes whose derivatives are known. */
+typedef struct Givens {
+    int count;
+    Ex *node, *slope;
+} Givens;
+
+static void give(Dag *dag, Givens *g, const Ex *node, const Ex *slope, int count)
+{
+    int slopes = g->count;
+    for (int i = 0; i < count; ++i)
+        if (dag->node[node[i]].level == LEVEL_VARIABLE && dag->node[node[i]].op != OP_INPUT) {
+            *POOL_PUSH(dag->pool, g->node, g->count) = node[i];
+            *POOL_PUSH(dag->pool, g->slope, slopes) = slope[i];
         }
+}
+
+/* w x J - J w x, the change of J in base axes as its body turns. */
+static void turn_inertia(Dag *dag, const Ex w[3], const Ex J[6], Ex out[6])
+{
+    static const int product[3][2] = {{0, 1}, {0, 2}, {1, 2}}; /* of J[3 + k] */
+    Ex across[3][3];                                           /* w x the columns of J */
+    const Ex column[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
+    for (int k = 0; k < 3; ++k)
+        ex_cross(dag, w, column[k], across[k]);
+    for (int k = 0; k < 3; ++k) {
+        out[k] = ex_add(dag, across[k][k], across[k][k]);
+        out[3 + k] = ex_add(dag, across[product[k][1]][product[k][0]], across[product[k][0]][product[k][1]]);
     }
+}
+
+/* Along a coordinate bodies move by S: what follows their poses needs no derivative of the closed form. */
+static Givens moved_bodies(const Formula *f, int coordinate)
+{
+    Dag *dag = f->dag;
+    Givens g = {0};
+    for (int b = 0; b < f->layout.bodies; ++b) {
+        const Motion *m = &f->motion[b];
+        const BodyInertia *body = &f->body[b];
+        const Ex *S = m->S + 6 * coordinate;
+        Ex A[9], arm[3], at[3], J[6], column[3], t[3];
+        for (int k = 0; k < 3; ++k) {
+            for (int i = 0; i < 3; ++i)
+                column[i] = m->A[3 * i + k];
+            ex_cross(dag, S, column, t);
+            for (int i = 0; i < 3; ++i)
+                A[3 * i + k] = t[i];
+        }
+        ex_cross(dag, S, body->arm, arm);
+        ex_add3(dag, S + 3, arm, at);
+        turn_inertia(dag, S, body->J, J);
+        give(dag, &g, m->A, A, 9);
+        give(dag, &g, m->c, S + 3, 3);
+        give(dag, &g, body->arm, arm, 3);
+        give(dag, &g, body->at, at, 3);
+        give(dag, &g, body->J, J, 6);
+    }
+    return g;
 }
 
 /* Numbers that `solve` stored stand for what they are in what is differentiated. */
@@ -147,7 +230,9 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
     for (int c = 0; c < columns; ++c) {
         column->array = kind[deps ? (c < 2 * deps ? c / deps : 2) : 2];
         column->index = column->array == ARRAY_turn ? c - 2 * deps : c % deps;
-        const Seeds seeds = {.seed = seed, .context = column};
+        const Givens g = column->array == ARRAY_x ? moved_bodies(formula, column->index) : (Givens){0};
+        const Seeds seeds = {
+            .seed = seed, .context = column, .givens = g.count, .given = g.node, .slope = g.slope};
         const Ex *slope = subset_slopes(formula, &seeds, root, numbers + rows);
         for (int i = 0; i < numbers && c < 2 * deps; ++i)
             m->slope[numbers * c + i] = slope[root[i]];

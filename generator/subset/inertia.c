@@ -81,7 +81,7 @@ static void accumulate(Dag *dag, Ex *sum, const Ex *more, int count)
 /* Add one body to the subset's inertia numbers. Velocities are relative to the inertial frame that moves with the
  * base's origin, and the base's acceleration enters as a = acceleration - gravity: both appear in the equations of the
  * whole vehicle only. Moments are about the base's origin, or about the carrier's reference point. */
-static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], Ex *sum)
+static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], Ex *sum, BodyInertia *body)
 {
     Dag *dag = w->dag;
     int deps = m->deps;
@@ -128,6 +128,12 @@ static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], 
     ex_cross(dag, total, t, u);
     ex_add3(dag, moment, u, moment);
 
+    body->mass = mass;
+    memcpy(body->arm, arm, sizeof arm);
+    memcpy(body->at, at, sizeof at);
+    memcpy(body->J, J, sizeof J);
+    memcpy(body->force, force, sizeof force);
+    memcpy(body->moment, moment, sizeof moment);
     accumulate(dag, sum + INERTIA_FORCE, force, 3);
     ex_cross(dag, x, force, t);
     ex_add3(dag, t, moment, t);
@@ -154,7 +160,7 @@ static void add_body_inertia(Work *w, int b, const Motion *m, const Ex turn[3], 
     }
 }
 
-Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion)
+Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion, BodyInertia *body)
 {
     Dag *dag = w->dag;
     bool free_base = w->model->free_base;
@@ -162,6 +168,6 @@ Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion)
     for (int i = 0; free_base && i < 3; ++i)
         turn[i] = ex_input(dag, element_at(ARRAY_turn, i), NULL);
     for (int b = 0; b < w->first->bodies; ++b)
-        add_body_inertia(w, b, &motion[b], turn, sum);
+        add_body_inertia(w, b, &motion[b], turn, sum, &body[b]);
     return sum;
 }

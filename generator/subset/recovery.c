@@ -536,8 +536,9 @@ static void finish(Work *w, Formula *formula, Solve solve, const Factors *factor
     for (int i = 0; i < count; ++i)
         block_store(&formula->solve, stored[i], element_at(ARRAY_start, layout->start_factors + i));
     dag_section(w->dag, "what the bodies add to the inertia and to the equations of motion");
+    formula->body = pool_alloc(w->pool, (size_t)layout->bodies * sizeof *formula->body);
     if (solve != SOLVE_AUGMENTED)
-        formula->inertia = subset_inertia(w, layout, motion);
+        formula->inertia = subset_inertia(w, layout, motion, formula->body);
     /* a fixed base has no equations of its own */
     for (int i = w->model->free_base || w->first->carrier != BODY_BASE ? 0 : INERTIA_COORDINATE;
          i < layout->inertia_size; ++i)
@@ -641,6 +642,7 @@ static void balance(Work *w, Formula *formula)
         for (int i = 0; i < MOTION_S + 6 * layout->deps; ++i)
             replace_all(image, motion_number(&formula->motion[b], i), 1);
     replace_all(image, formula->inertia, layout->inertia_size);
+    replace_all(image, (Ex *)formula->body, layout->bodies * (int)(sizeof *formula->body / sizeof(Ex)));
 }
 
 /* NULL if the geometry has no closed form. */

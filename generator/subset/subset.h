@@ -159,6 +159,12 @@ typedef struct Implicit {
     const Ex *found;        /* [7 bodies] */
 } Implicit;
 
+/* One body in its subset's inertia: centre of mass from the reference point and relative to the base, J in base axes,
+ * force and moment about the centre of mass of the quadratic-velocity terms. */
+typedef struct BodyInertia {
+    Ex mass, arm[3], at[3], J[6], force[3], moment[3];
+} BodyInertia;
+
 /* The formulas of a class. C names: k constants of the member; d constants that tunable parameters change; m0, m1, ...
  * motions of the knowns; x, rate, change: value, rate and change since the start of the deps; turn: angular velocity of
  * the base; ahead: time for which coordinates must stay independent at the present velocities; q: pose; s and f: S and
@@ -172,6 +178,7 @@ typedef struct Formula {
     bool closed;        /* poses in closed form by `solve` alone: predict and chord are empty, no start is kept */
     Motion *motion;     /* [bodies] motions after `solve` */
     Ex *inertia;        /* [inertia_size] numbers of inertia after `solve` */
+    BodyInertia *body;  /* [bodies] what these are sums of */
     Ex (*across)[2][3]; /* [joints] directions in the base frame that multipliers refer to instead of those fixed in the
                          * first body at the design; 0: the latter */
     Block predict;      /* q from the start and `change`; reach: squared relative size of that move */

@@ -167,7 +167,7 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
 void determinant_check_ahead(Work *w, Formula *formula, Ex determinant, const Motion *motion);
 
 /* inertia.c: the contribution of the bodies to the equations of motion, for given motions: [inertia_size]. */
-Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion);
+Ex *subset_inertia(Work *w, const Layout *layout, const Motion *motion, BodyInertia *body); /* body [bodies] */
 
 /* multipliers.c: make the class's block `react`. factors, row [n]: those that the last solution stored. */
 void subset_react(Work *w, const Factors *factors, const Row *row, Block *block);

@@ -80,9 +80,22 @@ static void give_poses(const Formula *formula, Seeds *seeds)
 
 const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots)
 {
+    Pool *pool = formula->dag->pool;
     Seeds own = *seeds;
-    if (formula->implicit)
+    if (formula->implicit) {
+        own.givens = 0;
         give_poses(formula, &own);
+        const int poses = own.givens, all = poses + seeds->givens;
+        Ex *node = pool_alloc(pool, (size_t)(all + 1) * sizeof *node);
+        Ex *slope = pool_alloc(pool, (size_t)(all + 1) * sizeof *slope);
+        for (int i = 0; i < all; ++i) {
+            node[i] = i < poses ? own.given[i] : seeds->given[i - poses];
+            slope[i] = i < poses ? own.slope[i] : seeds->slope[i - poses];
+        }
+        own.givens = all;
+        own.given = node;
+        own.slope = slope;
+    }
     return dag_slopes(formula->dag, &formula->solve, root, roots, &own);
 }
 
