@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The function for all columns of the jacobian at once, with one for each class of subsets; columns that follow geometric
- * parameters are left to tangents, as all are where rate_columns() has none. */
+ * The function for all columns of the jacobian at once, with one for each class of subsets; columns that follow
+ * geometric parameters are left to tangents, as all are where rate_columns() has none. */
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
@@ -131,8 +131,7 @@ static void write_accelerations(void *context, Text *out, int indent)
         if (g->model->free_base)
             line(out, indent, "act[%d] = acc[%d];", i, i);
         else if (i < 3)
-            line(out, indent, "act[%d] = R(0.0), act[%d] = %s;", i, 3 + i,
-                 emit_number(g->pool, -g->model->gravity[i]));
+            line(out, indent, "act[%d] = R(0.0), act[%d] = %s;", i, 3 + i, emit_number(g->pool, -g->model->gravity[i]));
 }
 
 static void write_turn(void *context, Text *out, int indent)
@@ -181,7 +180,8 @@ static void write_work(void *context, Text *out, int indent)
 {
     Generation *g = context;
     const RateColumns *columns = columns_of(g);
-    line(out, indent, "enum { LANES = %d }; /* columns that change accelerations, and some more, for vectors of them */",
+    line(out, indent,
+         "enum { LANES = %d }; /* columns that change accelerations, and some more, for vectors of them */",
          room((columns->lanes + 7) / 8 * 8));
     line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM];", g->upper, g->upper);
     line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][LANES];", room(columns->size),

@@ -151,7 +151,8 @@ void write_jacobian_rows(void *context, Text *out, int indent);
 void write_jacobian_starts(void *context, Text *out, int indent);
 void write_tangent_header(void *context, Text *out, int indent);
 
-/* columns.c: insertion points of its templates; all columns that are computed at once, NULL: one by one; the function. */
+/* columns.c: insertion points of its templates; all columns that are computed at once, NULL: one by one; the function.
+ */
 extern const Insertions columns_points, columns_class_points;
 const struct RateColumns *columns_of(Generation *g);
 void write_jacobian_columns(void *context, Text *out, int indent);

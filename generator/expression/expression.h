@@ -76,7 +76,8 @@ typedef struct Table Table; /* base/table.h */
     X(jacobian, "jacobian", "derivatives of the rates") \
     X(share, "share", "share of the dependent Euler parameter's change in that of each other one") \
     X(which, "which", "1 for the dependent Euler parameter, 0 for the others") \
-    X(right, "right", "right-hand sides, or solutions, of Element.which, one column of several; of column c where it is -1") \
+    X(right, "right", \
+      "right-hand sides, or solutions, of Element.which, one column of several; of column c where it is -1") \
     X(factor, "factor", "factors of the mass matrix")
 
 typedef enum Array {
@@ -394,7 +395,7 @@ bool block_reads_slope(const Block *block, Array array, int which);
 
 /* Where derivatives begin. */
 typedef struct Seeds {
-    bool (*moves)(const void *context, Element element); /* has an input a derivative? That is its `slope` */
+    bool (*moves)(const void *context, Element element);        /* has an input a derivative? That is its `slope` */
     Ex (*seed)(const void *context, Dag *dag, Element element); /* the derivative itself; NULL: as `moves` says */
     const void *context;
     int givens; /* nodes whose derivatives are given, [givens] */

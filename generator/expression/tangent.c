@@ -68,8 +68,8 @@ static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope, bool seve
         return ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, dx, dy), number, 0);
     for (int i = 0; i < 2; ++i)
         along[i] = number == 0 ? ex_op(dag, OP_ROAD_PART, road, (Ex)(1 + i), 0)
-                               : ex_op(dag, OP_ROAD_PART, ex_op(dag, OP_ROAD_CHANGE, road, i ? zero : one, i ? one : zero),
-                                       number, 0);
+                               : ex_op(dag, OP_ROAD_PART,
+                                       ex_op(dag, OP_ROAD_CHANGE, road, i ? zero : one, i ? one : zero), number, 0);
     return ex_add(dag, ex_mul(dag, along[0], dx), ex_mul(dag, along[1], dy));
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Derivatives of a class's motions, and of what its bodies lack in the equations of motion at accelerations that stand
- * still, by every coordinate that they depend on, by the rates of these and by the base's angular velocity, in one block:
- * what several of them have in common is computed once, and numbers that `solve` has stored are read. */
+ * still, by every coordinate that they depend on, by the rates of these and by the base's angular velocity, in one
+ * block: what several of them have in common is computed once, and numbers that `solve` has stored are read. */
 #include "expression/expression.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
@@ -20,7 +20,7 @@ typedef struct Column {
     Formula *const *formula;
     MotionColumns *const *made; /* of earlier classes */
     const Class *class;
-    Array array;    /* x, rate or turn, and which of them */
+    Array array; /* x, rate or turn, and which of them */
     int index;
 } Column;
 
@@ -195,7 +195,8 @@ static const Ex *read_stored(const Formula *formula, const Ex *root, int roots)
     const Block *solve = &formula->solve;
     Ex from[solve->stores + 1], to[solve->stores + 1];
     int stored = 0;
-    for (int i = 0; i < solve->stores && formula->closed; ++i) { /* others are found at poses that differ by roundings */
+    for (int i = 0; i < solve->stores && formula->closed;
+         ++i) { /* others are found at poses that differ by roundings */
         const Store *store = &solve->store[i];
         const Node *node = &dag->node[store->value];
         const bool kept = store->target.array == ARRAY_motion || store->target.array == ARRAY_inertia;
@@ -231,8 +232,7 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
         column->array = kind[deps ? (c < 2 * deps ? c / deps : 2) : 2];
         column->index = column->array == ARRAY_turn ? c - 2 * deps : c % deps;
         const Givens g = column->array == ARRAY_x ? moved_bodies(formula, column->index) : (Givens){0};
-        const Seeds seeds = {
-            .seed = seed, .context = column, .givens = g.count, .given = g.node, .slope = g.slope};
+        const Seeds seeds = {.seed = seed, .context = column, .givens = g.count, .given = g.node, .slope = g.slope};
         const Ex *slope = subset_slopes(formula, &seeds, root, numbers + rows);
         for (int i = 0; i < numbers && c < 2 * deps; ++i)
             m->slope[numbers * c + i] = slope[root[i]];
@@ -243,8 +243,7 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
     for (int i = 0; i < all; ++i) {
         const Ex e = m->slope[i] = image[m->slope[i]];
         m->place[i] = -1;
-        if (i < motions ? dag->node[e].level < LEVEL_VARIABLE || is_own(dag, e, i % numbers, size)
-                        : ex_is(dag, e, 0))
+        if (i < motions ? dag->node[e].level < LEVEL_VARIABLE || is_own(dag, e, i % numbers, size) : ex_is(dag, e, 0))
             continue;
         m->place[i] = m->size++;
         block_store(&m->block, e, element_at(ARRAY_column, m->place[i]));
@@ -269,8 +268,7 @@ static bool is_uniform(const Sequence *sequence, const Class *class)
             const Subset *of[2];
             for (int j = 0; j < 2; ++j)
                 of[j] = &sequence->subset[sequence->body_subset[body[j]]];
-            same = same && of[0]->class == of[1]->class &&
-                   subset_place(of[0], body[0]) == subset_place(of[1], body[1]);
+            same = same && of[0]->class == of[1]->class && subset_place(of[0], body[0]) == subset_place(of[1], body[1]);
             for (int j = 0; same && j < first->deps; ++j)
                 same = subset_column(of[0], first->dep[j], false) ==
                        subset_column(of[1], sequence->subset[class->member[i]].dep[j], false);

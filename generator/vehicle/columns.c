@@ -110,7 +110,8 @@ static void subtract_residuals(const Differentiation *d, Dag *dag, int s, int co
         const int place = motion_columns_residual(m, column, i);
         const int row = i >= 6 ? plan->coordinate_unknown[subset->dep[i - 6]] : plan->model->free_base ? i : -1;
         if (place >= 0 && row >= 0)
-            right[row] = ex_sub(dag, right[row], ex_input(dag, element_at(ARRAY_column, d->all->offset[s] + place), NULL));
+            right[row] =
+                ex_sub(dag, right[row], ex_input(dag, element_at(ARRAY_column, d->all->offset[s] + place), NULL));
     }
 }
 
@@ -122,8 +123,8 @@ static bool push(const Differentiation *d, Dag *dag, const Ex *b, int lane, Bloc
     const Plan *plan = d->plan;
     const int n = plan->unknowns, before = out->stores, twist = plan->free_coordinates + 10;
     const int moved = coordinate_of(plan, d->from, false), sped = coordinate_of(plan, d->from, true);
-    const bool turns = plan->model->free_base && d->from.array == ARRAY_y && d->from.index >= twist &&
-                       d->from.index < twist + 3;
+    const bool turns =
+        plan->model->free_base && d->from.array == ARRAY_y && d->from.index >= twist && d->from.index < twist + 3;
     const Ex *slope = dag_slopes(dag, NULL, b, n, &seeds);
     Ex right[n + 1];
     for (int i = 0; i < n; ++i)
@@ -143,7 +144,8 @@ static bool push(const Differentiation *d, Dag *dag, const Ex *b, int lane, Bloc
     return out->stores > before;
 }
 
-/* The derivatives of the rates [states] by one column, with those of the accelerations in right[]; lane -1: these are 0.
+/* The derivatives of the rates [states] by one column, with those of the accelerations in right[]; lane -1: these are
+ * 0.
  */
 static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, int lane)
 {
@@ -212,8 +214,8 @@ static void constrain(Whole *whole, Ex **column)
     for (int r = 0; r < whole->plan->states; ++r) {
         Ex dependent = 0;
         for (int i = 0; i < 4; ++i)
-            dependent = ex_add(dag, dependent,
-                               ex_mul(dag, ex_input(dag, element_at(ARRAY_which, i), NULL), column[3 + i][r]));
+            dependent =
+                ex_add(dag, dependent, ex_mul(dag, ex_input(dag, element_at(ARRAY_which, i), NULL), column[3 + i][r]));
         for (int i = 0; i < 4; ++i) {
             const Ex share = ex_input(dag, element_at(ARRAY_share, i), NULL);
             column[3 + i][r] = ex_sub(dag, column[3 + i][r], ex_mul(dag, share, dependent));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What derivatives cost, by turns in one run: a right-hand side, a tangent, a Jacobian (all with a state that changes
  * at every call, as in an integrator). MODEL and CODE as in tests/derivatives/program.c. Prints nanoseconds, the least
- * of 40 turns. */
+ * of 200 turns. */
 #define _POSIX_C_SOURCE 199309L
 #include "gic_runtime.c"
 #include CODE
@@ -35,7 +35,7 @@ static void vary(int i, gic_real *state)
 
 int main(void)
 {
-    enum { CALLS = 2000, TURNS = 40 };
+    enum { CALLS = 2000, TURNS = 200 };
     const gic_model *code = &OF(_model);
     double least[3] = {1e30, 1e30, 1e30}, sum = 0;
     gic_real state[sizeof self.state / sizeof(gic_real)], rate[sizeof self.state / sizeof(gic_real)];

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""compare.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]: derivatives of rates and outputs by the
-code of `gicgen --derivatives` against the very same code computed with dual numbers in C++ (dual_real.hpp), by every state,
-input, parameter and number of a port, at the design and at ROWS (5) random states beside it.
+"""compare.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]: derivatives of rates and
+outputs by the code of `gicgen --derivatives`, by tangents and by the jacobian, against the very same code computed with
+dual numbers in C++ (dual_real.hpp), by every state, input, parameter and number of a port, at the design and at ROWS (5)
+random states beside it.
 
 --npz IN OUT: instead, at the operating point of a file IN of `gicrun --linearize`: the matrices A to F by the code, in the
 small motions of models/SCENE.md section 8, which are written again here, against those of the file; those of the code
@@ -61,10 +62,10 @@ def build(folder, dual):
     return f"{folder}/program"
 
 
-def evaluate(program, numbers):
+def evaluate(program, numbers, *how):
     """For each row of numbers: rates and outputs, and the derivatives, a column for each number."""
     text = "\n".join(" ".join(repr(float(number)) for number in row) for row in numbers)
-    said = subprocess.run([program, *(wave or ["0", "1"])], input=text, capture_output=True, text=True,
+    said = subprocess.run([program, *(wave or ["0", "1"]), *how], input=text, capture_output=True, text=True,
                           check=True).stdout.split("\n")
     found, at = [], 0
     for _ in numbers:
@@ -119,7 +120,7 @@ with tempfile.TemporaryDirectory() as work:
             row[len(row) - len(kind["discrete"]):] = [int(x) for x in row[len(row) - len(kind["discrete"]):]]
         mine, theirs = evaluate(tangent, numbers), evaluate(dual, numbers)
         worst, compared = 0, 0
-        for a, b in zip(mine, theirs):
+        for a, b in zip(mine + evaluate(tangent, numbers, "columns"), theirs + theirs):
             if a is None or b is None:
                 if (a is None) != (b is None):
                     sys.exit("one of both has a status")
@@ -132,7 +133,7 @@ with tempfile.TemporaryDirectory() as work:
             if off[i, j] > worst:
                 worst, place = off[i, j], (i, j)
             compared += 1
-        print(f"{compared} states, {columns} columns: {worst:.2e}" + (f" at {place}" if worst else ""))
+        print(f"{compared} states, by tangents and by columns, {columns} columns: {worst:.2e}" + (f" at {place}" if worst else ""))
         sys.exit(not (compared and worst <= 1e-13))
 
     # ---- at the point of a file

@@ -8,7 +8,8 @@
  * a line each: kind (state, input, parameter, port, discrete, output) and name; `program start` their values at set-up.
  * Else, for each row of these numbers on
  * standard input but for outputs, it prints the status, rates and outputs, then those of their derivatives by each
- * state, input, parameter and number of a port: a line each. Arguments AMPLITUDE WAVELENGTH: a wavy road. */
+ * state, input, parameter and number of a port: a line each. Arguments AMPLITUDE WAVELENGTH: a wavy road; and
+ * `columns`: derivatives of rates by car_jacobian() instead. */
 #ifdef DUAL
 #include "dual_real.hpp"
 #endif
@@ -165,6 +166,9 @@ int main(int argc, char **argv)
     for (;;) {
         gic_real parameter[4096], other[4096];
         int i, k, j, status;
+#ifndef DUAL
+        int column;
+#endif
         OF(_setup)(&at);
         if (!take(states, other) || !take(code->input_count, other + states) || !take(code->parameter_count, parameter))
             return 0;
@@ -195,6 +199,9 @@ int main(int argc, char **argv)
             return 1;
         }
 #endif
+#ifndef DUAL
+        column = 0;
+#endif
         for (k = 0; k < 4; ++k)
             for (j = 0; j < kinds[k]; ++j) {
 #ifdef DUAL
@@ -207,12 +214,21 @@ int main(int argc, char **argv)
                     line[i] = SLOPE(i < states ? self.rate[i] : self.output[i - states]);
 #else
                 static OF(_direction) along;
+                static gic_real jacobian[1 << 18];
                 memset(&along, 0, sizeof along);
                 (k == 0 ? along.state : k == 1 ? along.input : k == 2 ? along.parameter : along.port)[j] = 1;
                 self = at;
                 status = OF(_tangent_outputs)(&self, &along);
                 for (i = 0; i < results; ++i)
                     line[i] = i < states ? along.rate[i] : along.output[i - states];
+                if (argc > 3) {
+                    const int columns = kinds[0] + kinds[1] + kinds[2] + kinds[3];
+                    self = at;
+                    status = status ? status : OF(_jacobian)(&self, gic_time(&at.head), at.state, &along, jacobian);
+                    for (i = 0; i < states; ++i)
+                        line[i] = jacobian[columns * i + column];
+                    ++column;
+                }
 #endif
                 if (status != GIC_OK)
                     for (i = 0; i < results; ++i)
