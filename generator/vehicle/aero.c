@@ -27,7 +27,8 @@ static void motions(Whole *whole, const Force *force, Ex own[3], Ex wind[3])
 }
 
 /* Incidence, sideslip and speed of the motion through the air. The angles have no value where the component that they
- * are taken of has none: 0 there, and so are their derivatives. */
+ * are taken of has none: 0 there, and so are their derivatives, and that of a speed whose square is too small for a
+ * number. */
 static void airflow(Dag *dag, const Ex u[3], Ex local[FORCE_LOCALS])
 {
     const Ex level = ex_add(dag, ex_mul(dag, u[0], u[0]), ex_mul(dag, u[1], u[1]));
@@ -35,7 +36,7 @@ static void airflow(Dag *dag, const Ex u[3], Ex local[FORCE_LOCALS])
     const Ex rise = ex_op(dag, OP_ATAN2, ex_neg(dag, u[2]), ex_sqrt(dag, level), 0);
     local[AERO_INCIDENCE] = ex_op(dag, OP_POSITIVE, square, rise, 0);
     local[AERO_SIDESLIP] = ex_op(dag, OP_POSITIVE, level, ex_op(dag, OP_ATAN2, u[1], u[0], 0), 0);
-    local[AERO_SPEED] = ex_sqrt(dag, square);
+    local[AERO_SPEED] = ex_op(dag, OP_POSITIVE, square, ex_sqrt(dag, square), 0);
 }
 
 void aero_wrench(Whole *whole, const Force *force, Ex value[6], Ex size[2])

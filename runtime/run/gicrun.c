@@ -215,6 +215,11 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "the model must be a file", NULL);
     if (request.lanes && strcmp(request.engine, "cc") != 0)
         usage_fail("gicrun", "--lanes goes with --engine cc, not with", request.engine);
+    if (request.linear && strcmp(request.engine, engine_name[0]) != 0 && strcmp(request.engine, "tape") != 0)
+        usage_fail("gicrun", "derivatives are those of the engine tape: --linearize does not go with --engine",
+                   request.engine);
+    if (request.driven && !engine_generates(request.engine))
+        usage_fail("gicrun", "a page of --drive runs generated code, and does not go with --engine", request.engine);
     if (request.integrator && integrator_method(request.integrator) < 0)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)

@@ -118,6 +118,12 @@ static double atan2_change(double a, double b, double da, double db)
     return square > 0 ? (b * da - a * db) / square : 0;
 }
 
+/* The angle jumps from pi to -pi where a passes 0 at negative b: on the way that changes there, that of its side. */
+static double atan2_side(const TapeWorld *world, double a, double b, double da)
+{
+    return b < 0 && meets(world, a, da) ? atan2(copysign(a, da), b) : atan2(a, b);
+}
+
 /* The result's slot may be an argument's: the derivative first, from arguments that are still there. */
 #define RUN_1(value, change) \
     for (; left; --left, at += 2) { \
@@ -170,7 +176,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
         case OP_LOG: RUN_1(log(a), chain(1 / a, da));
         case OP_TANH: RUN_1(tanh(a), (1 - r * r) * da);
         case OP_POW: RUN_2(pow(a, b), power_change(a, b, da, db));
-        case OP_ATAN2: RUN_2(atan2(a, b), atan2_change(a, b, da, db));
+        case OP_ATAN2: RUN_2(atan2_side(world, a, b, da), atan2_change(a, b, da, db));
         case OP_MIN: RUN_2(a < b ? a : b, min_change(world, a, b, da, db));
         case OP_MAX: RUN_2(a > b ? a : b, -min_change(world, -a, -b, -da, -db));
         case OP_POSITIVE:

@@ -123,6 +123,7 @@ through() {
     gicrun=$work/through
 }
 through "$work/none"
+misses 'no generated code' 2 'does not go with --engine' --engine gic --drive "$work/none.html" "$vehicle" "$full"
 misses 'no clang' 1 'install clang' --engine tape --drive "$work/none.html" "$vehicle" "$full"
 printf '#!/bin/sh\necho "error: unknown target wasm32" >&2\nexit 1\n' >"$work/bin/clang"
 chmod +x "$work/bin/clang"

@@ -164,6 +164,31 @@ check 'neutral directions are named' prints '^  neutral: x, y, yaw$'
 run --linearize --at 0.0129 "$root/tests/data/tuning/car.veh" "$work/waves.scene" -o "$work/car.csv"
 check 'constant steps end at the last one before' grep -q '^time,s,0.01,' "$work/car.csv"
 
+# ---- jumps
+
+# a sledge in a tail wind: the air comes from behind, where sideslip jumps from pi to -pi
+cat >"$work/sledge.veh" <<'END'
+gicgen: 1
+model: sledge
+base: sledge
+gravity: [0, 0, 0]
+bodies:
+  sledge: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}
+forces:
+  air: {type: aero, body: sledge, area: 1, force: [0, SIDE, 0], wind: [4, 0, 0]}
+END
+printf 'gicscene: 1\nduration: 1\nstep: 0.1\n' >"$work/plain.scene"
+jumps() { # SIDE: how the coefficient follows sideslip
+    sed "s/SIDE/$1/" "$work/sledge.veh" >"$work/wind.veh"
+    run --linearize --at 0 "$work/wind.veh" "$work/plain.scene" -o "$work/wind.npz"
+    check "sideslip from behind, $1" exits 0
+}
+jumps '"0.1 * sideslip"'
+check 'a jump is said' says 'a rate or an output jumps'
+jumps '"sin(sideslip)"'
+silent() { ! says jumps; }
+check 'what has no jump is not said' silent
+
 # ---- mistakes
 
 rm -f "$work"/car.*
@@ -182,6 +207,7 @@ mistake 2 'no scene given' --linearize --at 1 "$car" -o "$work/car.npz"
 mistake 2 '\-\-at goes with --linearize' --modes --at 1 "$car" "$work/waves.scene"
 mistake 2 'one of --eval, --equilibrium, --modes, --linearize, --kc and --sheet' --modes --linearize "$car"
 mistake 2 "must end in .csv, .npz or .mat, unlike '" --linearize "$car" -o "$work/car.txt"
+mistake 2 "does not go with --engine 'gic'" --linearize --engine gic "$car" -o "$work/car.npz"
 mistake 1 'remedy: --at takes a time from 0 to 1$' --linearize --at 1.5 "$car" "$work/waves.scene" -o "$work/car.npz"
 mistake 1 'No such file or directory' --linearize "$root/models/hmmwv.veh" -o "$work/none/car.npz"
 sed 's/value: torque}/value: "torque + sqrt(abs(angle))"}/; s/default: 40/default: 0/' "$work/pendulum.veh" >"$work/root.veh"
