@@ -63,6 +63,8 @@ static void write_class_columns(void *context, Text *out, int indent)
     (void)indent;
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         const Class *class = &g->sequence->class[g->class];
+        if (!g->columns->motion[g->class]->size)
+            continue;
         Expansion x = {.g = g};
         Text body = {.pool = g->pool};
         const char *member[class->members];
@@ -183,7 +185,7 @@ static void write_work(void *context, Text *out, int indent)
     line(out, indent,
          "enum { LANES = %d }; /* columns that change accelerations, and some more, for vectors of them */",
          room((columns->lanes + 7) / 8 * 8));
-    line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM];", g->upper, g->upper);
+    line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM] = {R(0.0)};", g->upper, g->upper);
     line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][LANES];", room(columns->size),
          room(columns->factors), g->upper);
 }
