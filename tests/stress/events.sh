@@ -4,7 +4,7 @@
 #
 # A million contacts made or lost, by every integrator with location: none lost, none found twice, no NaN.
 sequences=$1
-[ "$STRESS" = short ] && count=500 || count=16500
+[ "$STRESS" = short ] && count=500 || count=18500
 said=$("$sequences" "$count" 2>&1)
 status=$?
 events=$(printf '%s\n' "$said" | sed -n 's/^\([0-9]*\) events.*/\1/p')
