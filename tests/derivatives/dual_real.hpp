@@ -43,6 +43,8 @@ inline Differential exp(Differential a) { return along(a, std::exp(a.v), std::ex
 inline Differential log(Differential a) { return along(a, std::log(a.v), 1 / a.v); }
 inline Differential tanh(Differential a) { return along(a, std::tanh(a.v), 1 / (std::cosh(a.v) * std::cosh(a.v))); }
 inline Differential floor(Differential a) { return Differential(std::floor(a.v)); }
+inline Differential ceil(Differential a) { return Differential(std::ceil(a.v)); }
+inline Differential round(Differential a) { return Differential(std::round(a.v)); }
 inline Differential pow(Differential a, Differential b)
 {
     const double value = std::pow(a.v, b.v);
