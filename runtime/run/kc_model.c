@@ -61,6 +61,9 @@ static void add_element(Kc *kc, Model *model, int index)
 {
     const Force *force = &model->force[index];
     KcElement element = {.name = force->name, .coordinate = force->coordinate, .value = -1, .rate = -1, .sign = 1};
+    if (force->type == FORCE_BUSHING)
+        diag_warn(force->at, "write what matters of it as springs between points, along coordinates or about axes",
+                  "bushing '%s' is left out of forces, wheel and roll rates and compliance", force->name);
     if (force_is_wrench(force))
         return;
     element.force = watch_force(kc->pool, model, index);
