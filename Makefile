@@ -28,7 +28,7 @@ WERROR :=
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
-COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -Igenerator -Iruntime -I$(BUILD) $(CFLAGS) -MMD -MP
+COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -fPIC -fvisibility=hidden -Igenerator -Iruntime -I$(BUILD) $(CFLAGS) -MMD -MP
 # of host programs, gicrun minizip too; gicgen needs libyaml and minizip, what it emits nothing
 LIBRARIES := -lyaml -lgsl -lgslcblas -lklu -ltcc -lm -ldl
 # of the plug-in that the engine gcp2 loads, where it is there: by the name for linking, or as programs load it
@@ -65,7 +65,7 @@ archive := $(BUILD)/gicgen.a
 # gicrun looks for it there, beside programs or beside their folder: runtime/compare/mumps_load.c
 plugin := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so)
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin)
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin) $(BUILD)/libgic.a $(BUILD)/libgic.so
 
 $(archive): $(objects)
 	rm -f $@
@@ -83,7 +83,26 @@ $(BUILD)/gicsweep: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/sweep/*.c)) $(
 $(BUILD)/gicbench: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/bench/*.c)) $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fPIC
+# the library: runtime/host/gic.h alone is seen of it. All of the archive that it needs becomes one object
+library := $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/library/*.c))
+
+$(BUILD)/libgic.a: $(library) $(archive)
+	$(CC) -r -nostdlib -o $(BUILD)/libgic.o $(library) $(archive)
+	objcopy --localize-hidden $(BUILD)/libgic.o
+	rm -f $@
+	$(AR) rcs $@ $(BUILD)/libgic.o
+
+# Debian's libtcc.a is for programs: a shared object can hold it once its references to the C library's variables are to
+# our own, runtime/library/tcc_streams.c
+libtcc := $(shell $(CC) -print-file-name=libtcc.a)
+$(BUILD)/libtcc_shared.a: $(libtcc)
+	objcopy $(foreach name,stdin stdout stderr environ,--redefine-sym $(name)=gicl_tcc_$(name)) $< $@
+
+$(BUILD)/libgic.so: $(library) $(archive) $(BUILD)/libtcc_shared.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libgic.so.1 -Wl,--exclude-libs,libtcc_shared.a -o $@ $^ \
+	    $(filter-out -ltcc,$(LIBRARIES)) -lpthread
+
+$(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fvisibility=default
 
 $(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
@@ -204,7 +223,7 @@ $(BUILD)/check/quad_linear: $(BUILD)/tests/tools/quad_linear.o $(reference)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lgsl -lgslcblas -lquadmath -lm
 
-$(addprefix $(BUILD)/check/,compare_dump linearized event_errors): $(BUILD)/check/%: $(BUILD)/tests/tools/%.o $(archive)
+$(addprefix $(BUILD)/check/,compare_dump linearized event_errors library): $(BUILD)/check/%: $(BUILD)/tests/tools/%.o $(archive)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 

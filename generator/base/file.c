@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Whole files, read and written. */
+#include "base/catch.h"
 #include "base/file.h"
+#include "base/message.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -26,8 +28,7 @@ const char *file_remedy(int reason)
 
 static _Noreturn void file_fail(const char *path, const char *what)
 {
-    fprintf(stderr, "%s: error: %s: %s\n  remedy: %s\n", path, what, strerror(errno), file_remedy(errno));
-    exit(1);
+    diag_fail((Place){&(Source){.path = path}, 0, 0}, file_remedy(errno), "%s: %s", what, strerror(errno));
 }
 
 bool file_is_special(const char *path)
@@ -176,27 +177,32 @@ void file_write_both(const char *path, const Text *text, const char *other_path,
     move_in(&(Moving){.path = path}, text->s, text->size, other_path, other);
 }
 
+static void close_file(void *file)
+{
+    fclose(file);
+}
+
 char *file_read(Pool *pool, const char *path, size_t most, size_t *size)
 {
     bool standard = !strcmp(path, "-");
     FILE *file = standard ? stdin : fopen(path, "rb");
     if (!file)
         file_fail(path, "can't open");
+    if (!standard)
+        caught_own(close_file, file);
     Text text = {.pool = pool};
     char buffer[1 << 14];
     for (size_t n; text.size <= most && (n = fread(buffer, 1, sizeof buffer, file)) > 0;)
         text_add(&text, buffer, n);
     if (ferror(file))
         file_fail(path, "can't read");
-    if (text.size > most) {
-        fprintf(stderr,
-                "%s: error: larger than the %zu MB that are read of such a file\n"
-                "  remedy: is it the file that was meant?\n",
-                path, most >> 20);
-        exit(1);
-    }
-    if (!standard)
+    if (text.size > most)
+        diag_fail((Place){&(Source){.path = path}, 0, 0}, "is it the file that was meant?",
+                  "larger than the %zu MB that are read of such a file", most >> 20);
+    if (!standard) {
+        caught_disown(file);
         fclose(file);
+    }
     text_add(&text, "", 0);
     *size = text.size;
     return text.s;

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * Memory pools. */
 #include "base/pool.h"
+#include "base/catch.h"
+#include "base/message.h"
 
-#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { CHUNK = 1 << 16, ALIGN = 16 };
 
@@ -23,8 +22,12 @@ struct Pool {
 
 _Noreturn void out_of_memory(void)
 {
-    fputs("gicgen: error: out of memory\n", stderr);
-    exit(1);
+    diag_fail((Place){NULL, 0, 0}, NULL, "out of memory");
+}
+
+static void release(void *pool)
+{
+    pool_free(pool);
 }
 
 Pool *pool_new(void)
@@ -32,11 +35,13 @@ Pool *pool_new(void)
     Pool *pool = calloc(1, sizeof *pool);
     if (!pool)
         out_of_memory();
+    caught_own(release, pool);
     return pool;
 }
 
 void pool_free(Pool *pool)
 {
+    caught_disown(pool);
     for (Chunk *chunk = pool->chunk; chunk;) {
         Chunk *next = chunk->next;
         free(chunk);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Messages for people: a place, what is wrong there, the line with a caret, what to write instead. */
 #include "base/message.h"
+#include "base/catch.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,22 +45,52 @@ static size_t character(const char *s, const char *end, bool *shown)
     return valid ? size : 1;
 }
 
-static void print_character(const char *s, size_t size, bool shown)
+/* Where a message goes: to stderr at once, for memory may be out; or into a text, for one that is caught. */
+typedef struct Out {
+    bool kept;
+    bool full; /* there was no memory for all of it */
+    char *s;
+    size_t size, room;
+} Out;
+
+static void put(Out *out, const char *s, size_t size)
 {
-    if (shown)
+    if (!out->kept) {
         fwrite(s, 1, size, stderr);
-    else
-        fputc('?', stderr);
+        return;
+    }
+    if (out->size + size + 1 > out->room) {
+        const size_t room = 2 * (out->size + size + 1);
+        char *grown = realloc(out->s, room);
+        out->full = out->full || !grown;
+        if (!grown)
+            return;
+        out->s = grown;
+        out->room = room;
+    }
+    memcpy(out->s + out->size, s, size);
+    out->size += size;
+    out->s[out->size] = 0;
+}
+
+static void put_text(Out *out, const char *s)
+{
+    put(out, s, strlen(s));
+}
+
+static void put_character(Out *out, const char *s, size_t size, bool shown)
+{
+    put(out, shown ? s : "?", shown ? size : 1);
 }
 
 /* Names from a file may hold any byte: bytes that could control a terminal or start a new line become '?'. */
-static void print_clean(const char *s)
+static void put_clean(Out *out, const char *s)
 {
     const char *end = s + strlen(s);
     while (s < end) {
         bool shown;
         size_t size = character(s, end, &shown);
-        print_character(s, size, shown);
+        put_character(out, s, size, shown);
         s += size;
     }
 }
@@ -77,62 +108,101 @@ const char *diag_line(Place at)
 
 /* The source line of `at`, or a window of a long one, and a caret below the column. Tabs are repeated before the
  * caret, so that it stands right whatever their width. */
-static void print_line(Place at)
+static void put_line(Out *out, Place at)
 {
     const char *s = diag_line(at), *end = at.source->bytes + at.source->size;
     int first = at.column > WINDOW ? at.column - WINDOW_LEAD : 1;
     char blank[WINDOW + 1]; /* the space under the shown text; no Pool is used, because memory may be out */
     int blanks = 0;
-    fputs(first > 1 ? "  ..." : "  ", stderr);
+    put_text(out, first > 1 ? "  ..." : "  ");
     for (int column = 1; s < end && !line_break(s, end); ++column) {
         bool shown;
         size_t size = character(s, end, &shown);
         bool tab = *s == '\t';
         if (column >= first + WINDOW) {
-            fputs("...", stderr);
+            put_text(out, "...");
             break;
         }
         if (column >= first)
-            print_character(s, size, shown || tab);
+            put_character(out, s, size, shown || tab);
         if (column >= first && column < at.column)
             blank[blanks++] = tab ? '\t' : ' ';
         s += size;
     }
-    fprintf(stderr, "\n%s%.*s^\n", first > 1 ? "     " : "  ", blanks, blank);
+    put_text(out, first > 1 ? "\n     " : "\n  ");
+    put(out, blank, (size_t)blanks);
+    put_text(out, "^\n");
 }
 
-static void report(Place at, const char *kind, const char *remedy, const char *format, va_list args)
+static void put_message(Out *out, Place at, const char *kind, const char *remedy, const char *message)
+{
+    const bool placed = at.source && at.line > 0;
+    char number[2 * 12 + 4];
+    put_text(out, at.source ? at.source->path : "gicgen");
+    put_text(out, ":");
+    snprintf(number, sizeof number, "%d:%d:", at.line, at.column);
+    put_text(out, placed ? number : "");
+    put_text(out, " ");
+    put_text(out, kind);
+    put_text(out, ": ");
+    put_clean(out, message);
+    put_text(out, "\n");
+    if (placed && !at.source->hidden)
+        put_line(out, at);
+    if (at.source && at.source->mirrored) {
+        put_text(out, "  note: mirrored from '");
+        put_text(out, at.source->mirrored);
+        put_text(out, "'\n");
+    }
+    for (const Source *s = at.source; s && s->named_at.source; s = s->named_at.source) {
+        snprintf(number, sizeof number, ":%d:%d\n", s->named_at.line, s->named_at.column);
+        put_text(out, "  included at ");
+        put_text(out, s->named_at.source->path);
+        put_text(out, number);
+    }
+    if (remedy) {
+        put_text(out, "  remedy: ");
+        put_clean(out, remedy);
+        put_text(out, "\n");
+    }
+}
+
+/* Hand a message to who catches it. */
+static void tell(Place at, MessageKind kind, const char *remedy, const char *text, const Out *printed)
+{
+    Out clean = {.kept = true}, way = {.kept = true};
+    put_clean(&clean, text);
+    put_clean(&way, remedy ? remedy : "");
+    const bool full = printed->full || clean.full || way.full;
+    caught_tell(&(Message){.kind = kind,
+                           .file = at.source ? at.source->path : NULL,
+                           .line = at.line,
+                           .column = at.column,
+                           .text = full ? NULL : clean.s ? clean.s : "",
+                           .remedy = remedy ? way.s : NULL,
+                           .printed = printed->s});
+    free(clean.s);
+    free(way.s);
+}
+
+static void report(Place at, MessageKind kind, const char *remedy, const char *format, va_list args)
 {
     char message[MESSAGE];
+    Out out = {.kept = catching()};
     vsnprintf(message, sizeof message, format, args);
-    if (at.source)
-        fprintf(stderr, "%s:", at.source->path);
-    else
-        fputs("gicgen:", stderr);
-    if (at.source && at.line > 0)
-        fprintf(stderr, "%d:%d:", at.line, at.column);
-    fprintf(stderr, " %s: ", kind);
-    print_clean(message);
-    fputc('\n', stderr);
-    if (at.source && at.line > 0 && !at.source->hidden)
-        print_line(at);
-    if (at.source && at.source->mirrored)
-        fprintf(stderr, "  note: mirrored from '%s'\n", at.source->mirrored);
-    for (const Source *s = at.source; s && s->named_at.source; s = s->named_at.source)
-        fprintf(stderr, "  included at %s:%d:%d\n", s->named_at.source->path, s->named_at.line, s->named_at.column);
-    if (remedy) {
-        fputs("  remedy: ", stderr);
-        print_clean(remedy);
-        fputc('\n', stderr);
-    }
+    put_message(&out, at, kind == MESSAGE_ERROR ? "error" : "warning", remedy, message);
+    if (out.kept)
+        tell(at, kind, remedy, message, &out);
+    free(out.s);
 }
 
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    report(at, "error", remedy, format, args);
+    report(at, MESSAGE_ERROR, remedy, format, args);
     va_end(args);
+    caught_fail();
     exit(1);
 }
 
@@ -140,8 +210,17 @@ void diag_warn(Place at, const char *remedy, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    report(at, "warning", remedy, format, args);
+    report(at, MESSAGE_WARNING, remedy, format, args);
     va_end(args);
+}
+
+void diag_note(const char *text)
+{
+    Out out = {.kept = catching()};
+    put_text(&out, text);
+    if (out.kept)
+        caught_tell(&(Message){.kind = MESSAGE_NOTE, .text = out.full ? NULL : out.s, .printed = out.s});
+    free(out.s);
 }
 
 Place diag_place(const Source *source, size_t offset)

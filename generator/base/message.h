@@ -30,13 +30,16 @@ typedef struct Source {
     struct Named *named;  /* the files that this file names: source.c */
 } Source;
 
-/* Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
+/* Each of the following goes to who catches it, where someone does: catch.h.
+ * Print `path:line:col: error: <message>`, the source line with a caret under the column, in a mirror image
  * `  note: mirrored from '<entry>'`, in a file that others include where they do, and `  remedy: <remedy>` (remedy may
  * be NULL), all to stderr; exit with status 1.
  */
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */
 void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Print a text for people as it is, such as what another program said; the lines end in it. */
+void diag_note(const char *text);
 /* The source line of a place; the text after the line follows. */
 const char *diag_line(Place at);
 /* The place of a byte of a source: its line, and its column in characters (UTF-8). */
@@ -48,6 +51,8 @@ const char *diag_nearest(const char *word, const char *const *words, int count);
 
 /* Read a file as file_read() does. by: the file that names it; NULL: the user does. */
 Source *source_read(Pool *pool, const char *path, size_t most, const Source *by);
+/* The same from a text in memory, zero-terminated after `size` bytes, in place of the file. */
+Source *source_text(Pool *pool, const char *path, const char *text, size_t size);
 /* Exit with a message if the file to be written is this input or a file that it names. */
 void source_keep(const Source *source, const char *output);
 /* A hash of the contents of this file and of all files that it names. */

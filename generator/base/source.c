@@ -22,6 +22,17 @@ Source *source_read(Pool *pool, const char *path, size_t most, const Source *by)
     return source;
 }
 
+Source *source_text(Pool *pool, const char *path, const char *text, size_t size)
+{
+    Source *source = pool_alloc(pool, sizeof *source);
+    if (size > TEXT_MOST)
+        diag_fail((Place){&(Source){.path = path}, 0, 0}, "is it the text that was meant?",
+                  "larger than the %d MB that are read of such a text", TEXT_MOST >> 20);
+    *source = (Source){.path = path, .bytes = text, .size = size};
+    source->named = pool_alloc(pool, sizeof *source->named);
+    return source;
+}
+
 /* True if `path` names the same file as `source`. */
 static bool is_same(const Source *source, const struct stat *is)
 {

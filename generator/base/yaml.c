@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * YAML into a tree of items with their places, and checked access to it. An alias shares the tree of its anchor, so
  * a document is never larger than its file; a walk over the tree visits at most a few values for each byte. */
+#include "base/catch.h"
 #include "base/file.h"
 #include "base/yaml.h"
 
@@ -26,6 +27,8 @@ typedef struct Loader {
     Anchor *anchor;
     int anchors;
     size_t items; /* items so far, aliases counted as if written out */
+    yaml_event_t live[2 * NESTING + 8]; /* events that are not yet dropped, for failures that are caught */
+    int lives;
 } Loader;
 
 static Place place(const Loader *loader, yaml_mark_t mark)
@@ -63,6 +66,14 @@ static void next(Loader *loader, yaml_event_t *event)
 {
     if (!yaml_parser_parse(&loader->parser, event))
         syntax_fail(loader);
+    loader->live[loader->lives++] = *event;
+}
+
+/* Free the newest event. */
+static void drop(Loader *loader, yaml_event_t *event)
+{
+    --loader->lives;
+    yaml_event_delete(event);
 }
 
 static char *copy(Loader *loader, const void *bytes, size_t size)
@@ -234,7 +245,7 @@ static Item *list(Loader *loader, const yaml_event_t *start, Place at, int depth
         yaml_event_t event;
         next(loader, &event);
         if (event.type == YAML_SEQUENCE_END_EVENT) {
-            yaml_event_delete(&event);
+            drop(loader, &event);
             break;
         }
         int below = 0;
@@ -257,7 +268,7 @@ static Item *map(Loader *loader, const yaml_event_t *start, Place at, int depth,
         yaml_event_t event;
         next(loader, &event);
         if (event.type == YAML_MAPPING_END_EVENT) {
-            yaml_event_delete(&event);
+            drop(loader, &event);
             break;
         }
         int below = 0;
@@ -295,7 +306,7 @@ static Item *node(Loader *loader, yaml_event_t *event, int depth, int *height)
     case YAML_MAPPING_START_EVENT: item = map(loader, event, at, depth, height); break;
     default: item = scalar(loader, event, at);
     }
-    yaml_event_delete(event);
+    drop(loader, event);
     return item;
 }
 
@@ -304,6 +315,11 @@ static const Item *read_tree(Pool *pool, Source *source);
 const Item *doc_read(Pool *pool, const char *path)
 {
     return read_tree(pool, source_read(pool, path, TEXT_MOST, NULL));
+}
+
+const Item *doc_read_text(Pool *pool, const char *path, const char *text, size_t size)
+{
+    return read_tree(pool, source_text(pool, path, text, size));
 }
 
 const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key)
@@ -323,41 +339,53 @@ const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const c
     return read_tree(pool, source);
 }
 
+static void release_loader(void *released)
+{
+    Loader *loader = released;
+    while (loader->lives)
+        yaml_event_delete(&loader->live[--loader->lives]);
+    yaml_parser_delete(&loader->parser);
+}
+
 static const Item *read_tree(Pool *pool, Source *source)
 {
     if (source->size >= 3 && !memcmp(source->bytes, "\xef\xbb\xbf", 3)) { /* byte order mark: not a column */
         source->bytes += 3;
         source->size -= 3;
     }
-    Loader loader = {.pool = pool, .source = source};
+    Loader *loader = pool_alloc(pool, sizeof *loader);
+    loader->pool = pool;
+    loader->source = source;
     yaml_event_t event;
-    if (!yaml_parser_initialize(&loader.parser))
+    if (!yaml_parser_initialize(&loader->parser))
         out_of_memory();
-    yaml_parser_set_encoding(&loader.parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&loader.parser, (const unsigned char *)source->bytes, source->size);
+    caught_own(release_loader, loader);
+    yaml_parser_set_encoding(&loader->parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&loader->parser, (const unsigned char *)source->bytes, source->size);
     do {
-        next(&loader, &event);
+        next(loader, &event);
         if (event.type == YAML_STREAM_END_EVENT)
             diag_fail((Place){source, 1, 1},
                       "begin a model with `gicgen: 1` (models/FORMAT.md), a scene with `gicscene: 1` (models/SCENE.md)",
                       "the file is empty");
         yaml_event_type_t type = event.type;
-        yaml_event_delete(&event);
+        drop(loader, &event);
         if (type == YAML_DOCUMENT_START_EVENT)
             break;
     } while (true);
     int height = 0;
-    next(&loader, &event);
-    const Item *item = node(&loader, &event, 1, &height);
-    next(&loader, &event); /* the end of the document */
-    yaml_event_delete(&event);
-    next(&loader, &event);
+    next(loader, &event);
+    const Item *item = node(loader, &event, 1, &height);
+    next(loader, &event); /* the end of the document */
+    drop(loader, &event);
+    next(loader, &event);
     if (event.type != YAML_STREAM_END_EVENT)
-        diag_fail(place(&loader, event.start_mark),
+        diag_fail(place(loader, event.start_mark),
                   "one file, one document: remove the line `---` or `...` between them",
                   "a second document in the file");
-    yaml_event_delete(&event);
-    yaml_parser_delete(&loader.parser);
+    drop(loader, &event);
+    caught_disown(loader);
+    yaml_parser_delete(&loader->parser);
     return item;
 }
 

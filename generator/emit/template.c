@@ -25,8 +25,7 @@ const Source *template_source(Pool *pool, const char *templates, const char *nam
             source->size = file->size;
             return source;
         }
-    fprintf(stderr, "gicgen: error: template '%s' is not built in\n", name);
-    exit(1);
+    diag_fail((Place){NULL, 0, 0}, NULL, "template '%s' is not built in", name);
 }
 
 static bool word_character(char c)

@@ -42,6 +42,8 @@ typedef struct Open {
     const struct Open *from;
     Taken *taken;
     const char *path;
+    const char *text; /* in place of the file, [size]; NULL: the file has it */
+    size_t size;
     struct stat identity; /* the same file may have many paths */
     int depth;
 } Open;
@@ -232,7 +234,9 @@ static const Item *part_read(Pool *pool, const Item *item, const Open *from)
 static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
 {
     static const char *const key[] = {"gicgen", "bodies:", "joints:", "coordinates:", "forces:", "outputs:", NULL};
-    const Item *file = by ? doc_read_named(pool, open->path, by, key) : doc_read(pool, open->path);
+    const Item *file = by           ? doc_read_named(pool, open->path, by, key)
+                       : open->text ? doc_read_text(pool, open->path, open->text, open->size)
+                                    : doc_read(pool, open->path);
     open->taken->bytes += file->at.source->size;
     if (open->taken->bytes > TEXT_MOST)
         diag_fail((Place){file->at.source, 0, 0}, "include less",
@@ -249,6 +253,12 @@ static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
     }
     put_over(pool, out, file, NULL);
     return out;
+}
+
+const Item *text_included(Pool *pool, const char *path, const char *text, size_t size)
+{
+    const Open open = {.path = path, .text = text, .size = size, .taken = &(Taken){0}};
+    return file_read_whole(pool, &open, NULL);
 }
 
 const Item *file_included(Pool *pool, const char *path)

@@ -101,11 +101,11 @@ static void points_read(Reader *reader, const Item *map)
     }
 }
 
-const Model *model_read(Pool *pool, const char *path)
+static const Model *read_model(Pool *pool, const Item *whole)
 {
     Model *model = pool_alloc(pool, sizeof *model);
     Reader reader = {.pool = pool, .model = model};
-    const Item *file = file_mirrored(pool, file_included(pool, path));
+    const Item *file = file_mirrored(pool, whole);
     Value value[FILE_KEYS];
     *model = (Model){.source = file->at.source, .gravity = {0, 0, -9.81}, .tuning = tuning_new(pool)};
     /* read first: any number may be a formula of parameters */
@@ -143,4 +143,14 @@ const Model *model_read(Pool *pool, const char *path)
     model->drawn = model->body;
     tuning_close(model);
     return model;
+}
+
+const Model *model_read(Pool *pool, const char *path)
+{
+    return read_model(pool, file_included(pool, path));
+}
+
+const Model *model_read_text(Pool *pool, const char *path, const char *text, size_t size)
+{
+    return read_model(pool, text_included(pool, path, text, size));
 }

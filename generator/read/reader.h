@@ -189,6 +189,8 @@ const char *name_mirrored(Pool *pool, const char *name);
 const Item *file_mirrored(Pool *pool, const Item *file);
 /* A file and all files that it includes (FORMAT.md section 12), as if written as one; the version is checked. */
 const Item *file_included(Pool *pool, const char *path);
+/* The same where a text in memory is in place of the file. */
+const Item *text_included(Pool *pool, const char *path, const char *text, size_t size);
 /* The path of the file `name`, which `item` names, relative to the folder of `file`; ends in diag_fail if it can't be
  * read. use: its purpose in messages, "include". */
 const char *path_check(Pool *pool, const Item *item, const char *file, const char *name, const char *use,

@@ -19,10 +19,10 @@ bool effort_tell(Pool *pool, const Model *model, const Sequence *sequence, Solve
     const double memory = 0.5 * bodies + 0.0105 * numbers, code = 0.03 * bodies + 0.00018 * numbers;
     if (numbers < large)
         return false;
-    fprintf(stderr,
-            "gicgen: note: model '%s' is large, with %.0f numbers of motions and inertias: it will take about %.0f s, "
-            "%.0f MB of memory and %.0f MB of C\n",
-            model->name, numbers, seconds, memory, code);
+    diag_note(pool_print(pool,
+                         "gicgen: note: model '%s' is large, with %.0f numbers of motions and inertias: it will take "
+                         "about %.0f s, %.0f MB of memory and %.0f MB of C\n",
+                         model->name, numbers, seconds, memory, code));
     return true;
 }
 

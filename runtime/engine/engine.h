@@ -64,6 +64,8 @@ typedef struct Engine {
     Background *background;                     /* NULL: `code` will not be replaced */
     double compiling;                           /* s of CPU time for compiling the code; 0: not compiled now */
     size_t bytes;                               /* bytes of code and constants; 0: interpreted, or unknown */
+    void *library;                              /* the loaded object, for dlclose(), which programs leave to their
+                                                 * end; NULL: none */
     void *memory;                               /* freed by `close` */
     void (*close)(const struct Engine *engine); /* NULL: it has nothing but memory of the pool */
 } Engine;

@@ -42,6 +42,7 @@ typedef struct Build {
     const char *copy;            /* path for a copy of the object, NULL: none */
     double compiling;            /* s of CPU time of the compiler, 0: not needed */
     const gic_batch_model *batch;
+    void *library; /* the loaded object */
     Failure failure;
 } Build;
 
@@ -99,6 +100,7 @@ static const gic_model *load(Build *b, const char *path)
     if (code && code->abi_version == GIC_ABI_VERSION && code->real_size == b->real) {
         if (b->copy)
             object_copy(b->pool, path, b->copy);
+        b->library = library;
         return code;
     }
     b->failure = (Failure){pool_print(b->pool, "the compiled model does not fit: %s", gic_status_text(GIC_ERROR_ABI)),
@@ -140,7 +142,7 @@ static const gic_model *compile(Build *b, const char *folder)
     }
     if (status) {
         if (!b->batch_c.s)
-            fputs(said, stderr);
+            diag_note(said);
         b->failure = (Failure){pool_print(pool, "the C compiler '%s' failed on the generated code (status %d)%s",
                                           argv[0], status, b->batch_c.s ? "" : "; its messages are above"),
                                "is it a C99 compiler with libc headers (Debian: libc6-dev)? Try another one with --cc, "
@@ -232,6 +234,7 @@ static Engine *engine_of(Pool *pool, const Build *b, const EngineOptions *option
                        .standard = code->state,
                        .standard_count = code->slow_count + code->fast_count,
                        .compiling = b->compiling,
+                       .library = b->library,
                        .bytes = object_bytes(code)};
     return engine;
 }
@@ -272,8 +275,8 @@ const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *opt
     if (!code)
         diag_fail(program_place(), b.failure.remedy, "%s", b.failure.message);
     if (b.unkept && !options->quiet)
-        fprintf(stderr, "%s: note: the compiled model is not kept for the next run: %s\n", program_place().source->path,
-                b.unkept);
+        diag_note(pool_print(pool, "%s: note: the compiled model is not kept for the next run: %s\n",
+                             program_place().source->path, b.unkept));
     return engine_of(pool, &b, options, code);
 }
 

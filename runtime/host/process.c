@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Other programs, and signals that ask to stop. Signals are polled: there is no handler and no global variable. */
 #define _GNU_SOURCE /* program_invocation_short_name */
+#include "base/catch.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "host/host.h"
@@ -18,12 +19,18 @@ extern char **environ;
 Place program_place(void)
 {
     static Source program;
+    static const Source library = {.path = "gicrun"}; /* whose messages the library's are */
+    if (catching())
+        return (Place){&library, 0, 0};
     program.path = program_invocation_short_name;
     return (Place){&program, 0, 0};
 }
 
+/* A library leaves signals to its program, so that hold and release do nothing there. */
 void interrupt_hold(void)
 {
+    if (catching())
+        return;
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     signal(SIGCHLD, SIG_DFL); /* if SIGCHLD is inherited as ignored, a child's exit status is lost */
@@ -32,6 +39,8 @@ void interrupt_hold(void)
 
 bool interrupt_arrived(void)
 {
+    if (catching())
+        return false;
     sigset_t set = stop_signals(), pending;
     sigpending(&pending);
     for (int signal_number = 1; signal_number <= SIGNAL_MOST; ++signal_number)
@@ -42,6 +51,8 @@ bool interrupt_arrived(void)
 
 void interrupt_release(void)
 {
+    if (catching())
+        return;
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     sigprocmask(SIG_UNBLOCK, &set, NULL);
@@ -119,6 +130,12 @@ static int await(pid_t child)
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     int status;
+    if (catching()) {
+        pid_t ended;
+        while ((ended = waitpid(child, &status, 0)) < 0 && errno == EINTR)
+            continue;
+        return ended < 0 ? PROCESS_NOT_STARTED : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
     while (waitpid(child, &status, WNOHANG) != child) {
         int signal_number = sigwaitinfo(&set, NULL);
         if (signal_number < 0 || signal_number == SIGCHLD)

@@ -2,6 +2,7 @@
  * The engine `tcc`: generated code compiled by libtcc into memory of this process. It takes no file and no compiler,
  * and some milliseconds; the code is about half as fast as an optimizing compiler's, with the same bits. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "base/catch.h"
 #include "base/message.h"
 #include "base/text.h"
 #include "emit/emit.h"
@@ -20,6 +21,7 @@
 #include <errno.h>
 #include <libtcc.h>
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 #include <sys/mman.h>
 
@@ -28,6 +30,7 @@
 typedef struct Jit {
     TCCState *state; /* NULL: freed */
     void *pages;     /* NULL: they belong to the state */
+    bool inside;     /* libtcc is at work for it */
     size_t size;
 } Jit;
 
@@ -192,13 +195,37 @@ static int place(Jit *jit)
 #endif
 }
 
-static void jit_close(const Engine *engine)
+/* libtcc compiles for one thread at a time. */
+static pthread_mutex_t at_work = PTHREAD_MUTEX_INITIALIZER;
+
+static void jit_enter(Jit *jit)
 {
-    const Jit *jit = engine->memory;
+    pthread_mutex_lock(&at_work);
+    jit->inside = true;
+}
+
+static void jit_leave(Jit *jit)
+{
+    jit->inside = false;
+    pthread_mutex_unlock(&at_work);
+}
+
+static void jit_free(void *freed)
+{
+    Jit *jit = freed;
+    if (!jit->inside)
+        jit_enter(jit);
     if (jit->state)
         tcc_delete(jit->state);
+    jit_leave(jit);
     if (jit->pages)
         munmap(jit->pages, jit->size);
+}
+
+static void jit_close(const Engine *engine)
+{
+    caught_disown(engine->memory);
+    jit_free(engine->memory);
 }
 
 const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *options)
@@ -207,6 +234,8 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     Text said = {.pool = pool};
     Jit *jit = pool_alloc(pool, sizeof *jit);
     const double before = cpu_seconds();
+    caught_own(jit_free, jit);
+    jit_enter(jit);
     jit->state = tcc_new();
     if (!jit->state)
         diag_fail(program_place(), NULL, "no memory for tcc");
@@ -216,20 +245,26 @@ const Engine *engine_tcc(Pool *pool, const Model *model, const EngineOptions *op
     add_host_functions(jit->state);
     plant(jit->state);
     const int status = tcc_compile_string(jit->state, text) ? -1 : place(jit);
+    const int reason = errno;
+    jit_leave(jit);
     if (status < 0)
         diag_fail(program_place(), "use another engine: --engine cc or --engine tape",
                   "tcc can't compile the generated code: %s", said.s ? said.s : "it does not say why");
     if (status) {
         if (!options->quiet)
-            fprintf(stderr, "%s: note: the system refuses executable memory (%s), so the model is interpreted\n",
-                    program_place().source->path, strerror(errno));
-        tcc_delete(jit->state);
+            diag_note(pool_print(pool,
+                                 "%s: note: the system refuses executable memory (%s), so the model is interpreted\n",
+                                 program_place().source->path, strerror(reason)));
+        caught_disown(jit);
+        jit_free(jit);
         return engine_tape(pool, model, options);
     }
     const gic_model *code = tcc_get_symbol(jit->state, pool_print(pool, "%s_model", model->name));
     if (jit->pages) { /* the state is no longer needed */
+        jit_enter(jit);
         tcc_delete(jit->state);
         jit->state = NULL;
+        jit_leave(jit);
     }
     Engine *engine = pool_alloc(pool, sizeof *engine);
     *engine = (Engine){.name = "tcc",

@@ -308,13 +308,10 @@ static void warn_unstable(Pool *pool, const Equilibrium *found, Place at)
         }
 }
 
-void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
-                        const Equilibrium *found)
+double equilibrium_settle(Pool *pool, const Engine *engine, const Scene *scene, bool quiet, const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
     double *state = tape_array(found->self, code->state_offset);
-    const double *input = tape_array(found->self, code->input_offset);
-    const double *output = tape_array(found->self, code->output_offset);
     const Place at = {scene ? scene->source : found->model->source, 0, 0};
     const double *rounded = without_rounding(pool, engine, scene, found);
     if (rounded)
@@ -326,10 +323,21 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
                   engine->name, residual);
     if (status != GIC_OK)
         diag_fail(at, NULL, "no outputs: %s", instance_status(pool, code, &found->self->head, status));
-    if (!request->quiet) {
+    if (!quiet) {
         warn_ranges(found, at);
         warn_unstable(pool, found, at);
     }
+    return residual;
+}
+
+void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
+                        const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
+    const double *input = tape_array(found->self, code->input_offset);
+    const double *output = tape_array(found->self, code->output_offset);
+    const double residual = equilibrium_settle(pool, engine, scene, request->quiet, found);
     if (request->results && !strcmp(request->results, "-")) {
         write_state(pool, found, request->results);
         return;

@@ -94,8 +94,11 @@ bool equilibrium_set_in_motion(Pool *pool, const Scene *scene, const Equilibrium
 
 /* ---- equilibrium_report.c ------------------------------------------------------------------------------- */
 
-/* --equilibrium: tables, and with -o the state as a row that --eval reads. The residual by `engine` too, which must
- * respect the limit. */
+/* Make places that are 0 but for rounding exactly so, compute the outputs there, check the residual by `engine` too,
+ * which must respect the limit, and unless `quiet` warn of ranges and instability. Returns that residual; ends in
+ * diag_fail. */
+double equilibrium_settle(Pool *pool, const Engine *engine, const Scene *scene, bool quiet, const Equilibrium *found);
+/* --equilibrium: tables, and with -o the state as a row that --eval reads. */
 void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
                         const Equilibrium *found);
 
@@ -119,6 +122,12 @@ const Modes *modes_try(Pool *pool, const Linear *linear, const double *A);
 const Modes *modes_find(Pool *pool, const Linear *linear, const double *A);
 /* Warns where a rate jumps as a number passes its value: the modes are not those of either side then. */
 void modes_warn_jumps(const Linear *linear, Place at);
+/* The modes about the equilibrium, with the scene's velocity; *moves: it has one. Ends in diag_fail. */
+const Modes *modes_about(Pool *pool, const Scene *scene, bool quiet, const Equilibrium *found, bool *moves);
+/* Column k of a table of modes, with its unit (NULL: none), NULL: there is no such column; and a number in it, NAN: it
+ * does not apply. Modes from -zeros to count - 1; negative ones are the zeros. */
+const char *modes_column(Pool *pool, const Linear *linear, int k, const char **unit);
+double modes_value(const Modes *modes, int mode, int k);
 /* --modes: a table; or CSV with -o. About the equilibrium, with the scene's velocity. */
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found);
 

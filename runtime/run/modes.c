@@ -308,38 +308,52 @@ static void print_table(const Linear *linear, const Modes *modes)
            "their\nrates; x y z, roll pitch yaw: along and about the axes of the base\n");
 }
 
-/* A cell, empty if the number does not apply. */
-static void cell(Csv *csv, bool known, double value)
+/* Columns before the shares. */
+static const gic_signal column[] = {
+    {"real", "1/s"}, {"imaginary", "1/s"}, {"frequency", "Hz"}, {"damping", NULL}, {"time_constant", "s"}};
+
+enum { SHARES = sizeof column / sizeof *column };
+
+const char *modes_column(Pool *pool, const Linear *linear, int k, const char **unit)
 {
-    if (known)
-        csv_number(csv, value);
-    else
-        csv_text(csv, NULL);
+    *unit = k < SHARES ? column[k].unit : NULL;
+    if (k - SHARES >= linear->count - linear->places)
+        return NULL;
+    return k < SHARES ? column[k].name : pool_print(pool, "share.%s", share_name(linear, k - SHARES));
+}
+
+double modes_value(const Modes *modes, int mode, int k)
+{
+    const Mode zero = {0, 0, NULL}, *m = mode < 0 ? &zero : &modes->mode[mode];
+    const double size = hypot(m->real, m->imaginary);
+    switch (k) {
+    case 0: return m->real;
+    case 1: return m->imaginary;
+    case 2: return m->imaginary > 0 ? size / (2 * pi) : NAN;
+    case 3: return m->imaginary > 0 ? -m->real / size : NAN;
+    case 4: return m->real != 0 ? 1 / fabs(m->real) : NAN;
+    default: return m->share ? m->share[k - SHARES] : NAN;
+    }
 }
 
 static void write_csv(Pool *pool, const Linear *linear, const Modes *modes, const char *path)
 {
-    const int shares = linear->count - linear->places;
+    const int columns = SHARES + linear->count - linear->places;
     interrupt_hold();
     Csv csv = csv_open(pool, path);
-    csv_name(&csv, "real", "1/s");
-    csv_name(&csv, "imaginary", "1/s");
-    csv_name(&csv, "frequency", "Hz");
-    csv_name(&csv, "damping", NULL);
-    csv_name(&csv, "time_constant", "s");
-    for (int i = 0; i < shares; ++i)
-        csv_name(&csv, pool_print(pool, "share.%s", share_name(linear, i)), NULL);
+    for (int k = 0; k < columns; ++k) {
+        const char *unit, *name = modes_column(pool, linear, k, &unit);
+        csv_name(&csv, name, unit);
+    }
     csv_end_row(&csv);
-    for (int k = -modes->zeros; k < modes->count; ++k) {
-        const Mode zero = {0, 0, NULL}, *mode = k < 0 ? &zero : &modes->mode[k];
-        const double size = hypot(mode->real, mode->imaginary);
-        csv_number(&csv, mode->real);
-        csv_number(&csv, mode->imaginary);
-        cell(&csv, mode->imaginary > 0, size / (2 * pi));
-        cell(&csv, mode->imaginary > 0, -mode->real / size);
-        cell(&csv, mode->real != 0, 1 / fabs(mode->real));
-        for (int i = 0; i < shares; ++i)
-            cell(&csv, mode->share, mode->share ? mode->share[i] : 0);
+    for (int mode = -modes->zeros; mode < modes->count; ++mode) {
+        for (int k = 0; k < columns; ++k) {
+            const double value = modes_value(modes, mode, k);
+            if (isnan(value))
+                csv_text(&csv, NULL);
+            else
+                csv_number(&csv, value);
+        }
         csv_end_row(&csv);
     }
     csv_close(&csv);
@@ -388,18 +402,26 @@ void modes_warn_jumps(const Linear *linear, Place at)
         }
 }
 
-void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found)
+const Modes *modes_about(Pool *pool, const Scene *scene, bool quiet, const Equilibrium *found, bool *moves)
 {
     const Linear *linear = found->linear;
-    const bool moves = scene && equilibrium_set_in_motion(pool, scene, found);
-    const int status = moves ? linearize(linear, found->self, found->f, found->A) : GIC_OK;
+    *moves = scene && equilibrium_set_in_motion(pool, scene, found);
+    const int status = *moves ? linearize(linear, found->self, found->f, found->A) : GIC_OK;
     if (status != GIC_OK)
         diag_fail((Place){scene->source, 0, 0}, "check the velocities of `initial`",
                   "no small motions about the state in motion: %s",
                   instance_status(pool, found->engine->code, &found->self->head, status));
     const Modes *modes = modes_find(pool, linear, found->A);
-    if (!request->quiet)
+    if (!quiet)
         modes_warn_jumps(linear, (Place){scene ? scene->source : found->model->source, 0, 0});
+    return modes;
+}
+
+void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found)
+{
+    const Linear *linear = found->linear;
+    bool moves;
+    const Modes *modes = modes_about(pool, scene, request->quiet, found, &moves);
     if (request->results && strcmp(request->results, "-")) {
         write_csv(pool, linear, modes, request->results);
     } else if (request->results) {

@@ -12,6 +12,16 @@
 
 /* ---- gicrun.c: the command line */
 
+/* The rows of a run in memory: what the results file would have. */
+typedef struct RunColumns {
+    Pool *pool;
+    int columns;
+    int64_t rows;
+    gic_signal *signal; /* [columns] */
+    double *value;      /* [rows][columns] */
+    int64_t room;       /* rows that fit */
+} RunColumns;
+
 /* The options of the command line. */
 typedef struct Request {
     const char *model, *scene;    /* paths; scene may be NULL with `states` */
@@ -25,6 +35,7 @@ typedef struct Request {
     double travel;                /* --travel, m; 0: as usual */
     double at;                    /* --at, s; NAN: not given */
     const char *results;          /* "-": standard output; NULL: none */
+    RunColumns *columns;             /* for the library: the same in memory; NULL: not wanted */
     const char *picture;          /* --plot, or NULL */
     const char *with;             /* --with, or NULL */
     const struct CsvTable *other; /* what is in it */

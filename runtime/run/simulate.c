@@ -114,17 +114,53 @@ static int scene_marks(const Scene *scene)
     return scene->actions ? scene->actions->marks : 0;
 }
 
+/* Names and units of the results: the time, the scene's columns, its marks. */
+static gic_signal *result_signals(Pool *pool, const Scene *scene, int *count)
+{
+    const int most = 1 + scene->columns + (scene_marks(scene) ? scene->actions->count : 0);
+    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)most), *next = signal;
+    *next++ = (gic_signal){"time", "s"};
+    for (int i = 0; i < scene->columns; ++i)
+        *next++ = scene->signal[scene->column[i]];
+    for (int i = 0; scene_marks(scene) && i < scene->actions->count; ++i)
+        if (scene->actions->action[i].mark)
+            *next++ = (gic_signal){pool_print(pool, "mark.%s", scene->actions->action[i].mark), "1"};
+    *count = (int)(next - signal);
+    return signal;
+}
+
 static void write_header(Run *run)
 {
-    csv_name(&run->csv, "time", "s");
-    for (int i = 0; i < run->scene->columns; ++i) {
-        const gic_signal *signal = &run->scene->signal[run->scene->column[i]];
-        csv_name(&run->csv, signal->name, signal->unit);
-    }
-    for (int i = 0; scene_marks(run->scene) && i < run->scene->actions->count; ++i)
-        if (run->scene->actions->action[i].mark)
-            csv_name(&run->csv, pool_print(run->pool, "mark.%s", run->scene->actions->action[i].mark), "1");
+    int count;
+    const gic_signal *signal = result_signals(run->pool, run->scene, &count);
+    for (int i = 0; i < count; ++i)
+        csv_name(&run->csv, signal[i].name, signal[i].unit);
     csv_end_row(&run->csv);
+}
+
+/* A row of the results into memory. */
+static void keep_row(const Run *run, RunColumns *kept)
+{
+    const Scene *scene = run->scene;
+    if (!kept->signal) { /* names that outlive the code */
+        kept->signal = result_signals(kept->pool, scene, &kept->columns);
+        for (int i = 0; i < kept->columns; ++i)
+            kept->signal[i] = (gic_signal){pool_print(kept->pool, "%s", kept->signal[i].name),
+                                           pool_print(kept->pool, "%s", kept->signal[i].unit)};
+    }
+    const size_t row = sizeof(double) * (size_t)kept->columns;
+    if (kept->rows == kept->room) {
+        const int64_t room = 2 * kept->room + 64;
+        kept->value = pool_grow(kept->pool, kept->value, row * (size_t)kept->rows, row * (size_t)room);
+        kept->room = room;
+    }
+    double *value = kept->value + kept->columns * kept->rows++;
+    *value++ = gic_time(run->self);
+    for (int i = 0; i < scene->columns; ++i)
+        *value++ = scene_value(run->model, run->copy, scene->column[i]);
+    for (int i = 0; scene_marks(scene) && i < scene->actions->count; ++i)
+        if (scene->actions->action[i].mark)
+            *value++ = scene->actions->action[i].done;
 }
 
 /* The signals of a row of the picture, after the time. */
@@ -214,6 +250,8 @@ static void record(Run *run)
     const double time = gic_time(run->self);
     run->recorded = time;
     look_at_vehicle(run);
+    if (run->request->columns)
+        keep_row(run, run->request->columns);
     if (run->csv.file) {
         csv_time(&run->csv, time);
         for (int i = 0; i < scene->columns; ++i)

@@ -7,6 +7,7 @@
  *
  * No step goes over the beginning or the end of a contact: one that meets it is taken back, and shorter ones by
  * Runge-Kutta go near; the last bit, too short for a force that begins in it to count, goes across. */
+#include "base/catch.h"
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
 #include "run/contact_watch.h"
@@ -102,6 +103,11 @@ static int right_hand_side(double time, const double *state, double *rate, void 
     return GSL_FAILURE;
 }
 
+static void release(void *variable)
+{
+    variable_close(variable);
+}
+
 Variable *variable_open(const gic_model *model, int32_t method, double tolerance)
 {
     const gsl_odeiv2_step_type *type = method == METHOD_ADAMS ? gsl_odeiv2_step_msadams : gsl_odeiv2_step_rkck;
@@ -129,8 +135,10 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     variable->fresh = true;
     variable->hunted = -INFINITY;
     if (variable->integrated && variable->settled && variable->before && variable->whole && variable->start &&
-        variable->trial && variable->probe && variable->contacts && variable->driver && variable->towards)
+        variable->trial && variable->probe && variable->contacts && variable->driver && variable->towards) {
+        caught_own(release, variable);
         return variable;
+    }
     variable_close(variable);
     return NULL;
 }
@@ -139,6 +147,7 @@ void variable_close(Variable *variable)
 {
     if (!variable)
         return;
+    caught_disown(variable);
     if (variable->driver)
         gsl_odeiv2_driver_free(variable->driver);
     if (variable->towards)

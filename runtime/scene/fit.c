@@ -2,6 +2,7 @@
  * Checks whether a scene fits a model. If not, the message names the models beside it that the scene fits. Other
  * models are read in child processes, because an error in a file ends the process that reads it. */
 #define _DEFAULT_SOURCE /* scandir */
+#include "base/catch.h"
 #include "base/file.h"
 #include "base/yaml.h"
 #include "engine/engine.h"
@@ -158,6 +159,20 @@ static bool fits(const Fit *fit)
 
 /* ---- models beside it ------------------------------------------------------------------------------------------- */
 
+typedef struct Trial {
+    const char *scene, *model;
+    bool good;
+} Trial;
+
+static void try_files(void *tried)
+{
+    Trial *trial = tried;
+    Pool *pool = pool_new();
+    const Item *root = doc_read(pool, trial->scene);
+    const Fit fit = fit_of(pool, root, model_read(pool, trial->model));
+    trial->good = fits(&fit) && map_at(root, "gicscene");
+}
+
 /* In a child process: true if the scene in a file fits the model in another file. Files with errors do not. */
 static bool files_fit(const char *scene, const char *model)
 {
@@ -170,10 +185,9 @@ static bool files_fit(const char *scene, const char *model)
         const int nowhere = open("/dev/null", O_WRONLY);
         if (nowhere < 0 || dup2(nowhere, STDERR_FILENO) < 0)
             _exit(1);
-        Pool *pool = pool_new();
-        const Item *root = doc_read(pool, scene);
-        const Fit fit = fit_of(pool, root, model_read(pool, model));
-        _exit(fits(&fit) && map_at(root, "gicscene") ? 0 : 1);
+        Messages messages = {NULL, NULL};
+        Trial trial = {scene, model, false};
+        _exit(caught(&messages, try_files, &trial) && trial.good ? 0 : 1);
     }
     int status;
     return waitpid(child, &status, 0) == child && WIFEXITED(status) && !WEXITSTATUS(status);

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * libgic: models, instances, scenes and what gicrun finds out about them, for programs. Link with -lgic (pkg-config
+ * gic). It is a C interface of its own: no other header is needed, and structures that may grow begin with their size.
+ *
+ * Everything belongs to a library object, which is no global: a program may have several. Things in it are named by
+ * handles. A handle is never given twice, so that a call with one that is closed ends in GICL_WRONG and a message. All
+ * functions may be called from any thread at once; two calls that use one instance, batch or result at the same time
+ * are a mistake, which the second one reports.
+ *
+ * Every function with `said` returns a status and writes nothing to the terminal. What gicrun would have printed is in
+ * `said` (NULL: nobody wants it), which each call empties first. Units are SI unless a name says otherwise.
+ *
+ *     gicl_library *lib = gicl_open();
+ *     gicl_messages *said = gicl_messages_new();
+ *     gicl_handle model, car;
+ *     if (gicl_model_open(lib, "car.veh", NULL, &model, said) || gicl_instance_new(lib, model, NULL, &car, said))
+ *         ... gicl_message_get(said, 0, &message)
+ *     gicl_step(lib, car, 0.005, GICL_AB3, 100, said);
+ *     gicl_close(lib);
+ */
+#ifndef GIC_H
+#define GIC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined __GNUC__
+#define GICL_API __attribute__((visibility("default")))
+#else
+#define GICL_API
+#endif
+
+/* Increased when a program must be compiled anew; that of the library itself, and gicgen's version as text. */
+#define GICL_VERSION 1
+GICL_API int gicl_version(void);
+GICL_API const char *gicl_release(void);
+
+/* Statuses. Negative ones are those of generated code (gic_runtime.h): the call changed nothing. */
+enum {
+    GICL_OK = 0,
+    GICL_FAILED = 1, /* a file, a model or a run has a mistake */
+    GICL_WRONG = 2   /* the call has one: a closed handle, another kind of thing, a wrong size or name */
+};
+
+typedef struct gicl_library gicl_library;
+typedef uint64_t gicl_handle; /* 0 is none */
+
+/* ---- messages ----------------------------------------------------------------------------------------------- */
+
+typedef struct gicl_messages gicl_messages;
+
+enum { GICL_ERROR = 0, GICL_WARNING = 1, GICL_NOTE = 2 };
+
+typedef struct gicl_message {
+    int kind;
+    const char *file; /* as it was named; NULL: the message is about none */
+    int line, column; /* from 1; 0: the file as a whole */
+    const char *text, *remedy; /* remedy: NULL: none */
+    const char *printed; /* all of it, lines as gicrun prints them */
+} gicl_message;
+
+/* A list for one thread at a time; NULL: no memory. */
+GICL_API gicl_messages *gicl_messages_new(void);
+GICL_API void gicl_messages_free(gicl_messages *said);
+/* How many there are; and one of them, from 0: 1, or 0 if there is no such message. Texts stay until the next call. */
+GICL_API int gicl_message_count(const gicl_messages *said);
+GICL_API int gicl_message_get(const gicl_messages *said, int index, gicl_message *message);
+
+/* ---- the library -------------------------------------------------------------------------------------------- */
+
+/* NULL: no memory. */
+GICL_API gicl_library *gicl_open(void);
+/* Frees everything in it; no other call may be at work. GICL_WRONG: NULL. */
+GICL_API int gicl_close(gicl_library *library);
+/* Close one thing of any kind. Instances and batches of a closed model go on. */
+GICL_API int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages *said);
+
+/* ---- models ------------------------------------------------------------------------------------------------- */
+
+/* How a model is computed; words are those of gicrun's options. NULL and 0 are the defaults. */
+typedef struct gicl_options {
+    size_t size;           /* sizeof(gicl_options) */
+    const char *engine;    /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
+                            * gicrun's cache; "tape": interpreted. All three give the same bits */
+    const char *solve;     /* "auto", "reduced", "articulated", "augmented" */
+    const char *recovery;  /* "auto", "newton", "closed" */
+    const char *compiler;  /* of "cc": a command */
+    const char *flags;     /* more options for it */
+    const char *integrator; /* instead of the scenes': "ab3", "rk4", "adams", "rkck" */
+    double tolerance;      /* of variable steps, instead of the scenes' */
+    int general;           /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
+} gicl_options;
+
+/* Read and check a model. name: that of the text in messages; files that it includes are sought from the folder in it. */
+GICL_API int gicl_model_open(gicl_library *library, const char *path, const gicl_options *options, gicl_handle *model,
+                             gicl_messages *said);
+GICL_API int gicl_model_text(gicl_library *library, const char *name, const char *text, size_t size,
+                             const gicl_options *options, gicl_handle *model, gicl_messages *said);
+/* The C that gicgen writes for it, and its header `<model>.h`; they stay until the model is closed. */
+GICL_API int gicl_generate(gicl_library *library, gicl_handle model, const char **c, const char **h,
+                           gicl_messages *said);
+
+/* What has names. Arrays of an instance have these orders. */
+enum {
+    GICL_STATE,     /* FORMAT.md section 10 */
+    GICL_RATE,      /* of the state, at the start of the last step */
+    GICL_INPUT,     /* FORMAT.md section 8 */
+    GICL_OUTPUT,    /* as gicl_outputs() left them */
+    GICL_PARAMETER, /* tunable ones; geometric ones act at gicl_set_up() only */
+    GICL_PORT,      /* forces and torques from outside */
+    GICL_KINDS
+};
+
+/* How many there are of a kind; and name and unit of one, from 0. The first of these calls compiles the model. */
+GICL_API int gicl_count(gicl_library *library, gicl_handle model, int kind, int *count, gicl_messages *said);
+GICL_API int gicl_signal(gicl_library *library, gicl_handle model, int kind, int index, const char **name,
+                         const char **unit, gicl_messages *said);
+/* The index of a name. GICL_WRONG: there is none; the message has the nearest one. */
+GICL_API int gicl_find(gicl_library *library, gicl_handle model, int kind, const char *name, int *index,
+                       gicl_messages *said);
+
+/* ---- instances ---------------------------------------------------------------------------------------------- */
+
+enum { GICL_AB3 = 0, GICL_RK4 = 1 };
+
+/* One vehicle, set up. scene: a path, whose road, parameters and initial state it gets, and whose inputs at time 0; they
+ * then are the caller's. NULL: the model at design, on a flat road. */
+GICL_API int gicl_instance_new(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *instance,
+                               gicl_messages *said);
+/* Back to that start, at time 0. parameter: [count], all of the model's; NULL with 0: those of scene or model. */
+GICL_API int gicl_set_up(gicl_library *library, gicl_handle instance, const double *parameter, int count,
+                         gicl_messages *said);
+/* An array of the instance itself, [count] numbers, which stays until it is closed. After changing a state call
+ * gicl_restart(). */
+GICL_API int gicl_view(gicl_library *library, gicl_handle instance, int kind, double **data, int *count,
+                       gicl_messages *said);
+/* Forget the integrator's history; the time becomes `time`, s. */
+GICL_API int gicl_restart(gicl_library *library, gicl_handle instance, double time, gicl_messages *said);
+GICL_API int gicl_time(gicl_library *library, gicl_handle instance, double *time, gicl_messages *said);
+/* `steps` steps of `step` seconds with constant inputs. Ends at the first that fails. */
+GICL_API int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int64_t steps,
+                       gicl_messages *said);
+/* The rate of a state at a time, with the instance's inputs; both [count], the number of states. The instance's own
+ * state stays; where Newton's iteration begins moves, so that later digits may differ by rounding. */
+GICL_API int gicl_rhs(gicl_library *library, gicl_handle instance, double time, const double *state, double *rate,
+                      int count, gicl_messages *said);
+/* Compute the outputs of the present state, on a copy: they leave no trace in later steps. */
+GICL_API int gicl_outputs(gicl_library *library, gicl_handle instance, gicl_messages *said);
+
+/* A snapshot: [size] bytes, for instances of the same model, options and gicgen alone; others, and bytes that were
+ * changed, are refused. The road stays that of the instance. */
+GICL_API int gicl_snapshot_size(gicl_library *library, gicl_handle instance, size_t *size, gicl_messages *said);
+GICL_API int gicl_snapshot(gicl_library *library, gicl_handle instance, void *bytes, size_t size, gicl_messages *said);
+GICL_API int gicl_restore(gicl_library *library, gicl_handle instance, const void *bytes, size_t size,
+                          gicl_messages *said);
+
+/* ---- batches ------------------------------------------------------------------------------------------------ */
+
+/* `vehicles` instances side by side, each with the bits that it has alone. Scene as above. */
+GICL_API int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles,
+                            gicl_handle *batch, gicl_messages *said);
+/* An array of all of them: number i of vehicle v is at data[v * stride + i]; i below `count`. */
+GICL_API int gicl_batch_view(gicl_library *library, gicl_handle batch, int kind, double **data, int *count,
+                             size_t *stride, gicl_messages *said);
+/* Steps of all; status: [vehicles], written; NULL: not wanted. One that fails keeps its last state, and disturbs no
+ * other; the call then returns the status of the first that did. */
+GICL_API int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int64_t steps,
+                             int32_t *status, gicl_messages *said);
+/* Outputs of all, as gicl_outputs(). */
+GICL_API int gicl_batch_outputs(gicl_library *library, gicl_handle batch, int32_t *status, gicl_messages *said);
+/* Back to the start, at time 0, where which[v] is not 0; NULL: all. Parameters are those in the batch's array. */
+GICL_API int gicl_batch_reset(gicl_library *library, gicl_handle batch, const uint8_t *which, gicl_messages *said);
+/* After changing states: forget the history of these vehicles. Times stay. */
+GICL_API int gicl_batch_restart(gicl_library *library, gicl_handle batch, const uint8_t *which, gicl_messages *said);
+
+/* ---- what gicrun finds out ---------------------------------------------------------------------------------- */
+
+/* A scene run from begin to end: array "columns", with the bits of gicrun's results. Where the run ends early the status
+ * is GICL_FAILED and *result, if it is not 0, has the rows up to there. */
+GICL_API int gicl_run(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *result,
+                      gicl_messages *said);
+/* Static equilibrium near the initial state of a scene (NULL: the model's), as gicrun --equilibrium: arrays "state",
+ * "input", "output", a row each. */
+GICL_API int gicl_equilibrium(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *result,
+                              gicl_messages *said);
+/* Small motions about it: array "modes" with columns real, imaginary, frequency, damping, time_constant and shares;
+ * numbers that do not apply are NaN. */
+GICL_API int gicl_modes(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *result,
+                        gicl_messages *said);
+/* The linear model, SCENE.md section 8: arrays A to F, N, f, z0, u0, y0, p0. at: a time of the scene's run, s; NaN:
+ * about the equilibrium. */
+GICL_API int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, double at,
+                            gicl_handle *result, gicl_messages *said);
+
+/* One array of a result, row-major; it stays until the result is closed. */
+typedef struct gicl_array {
+    const char *name;
+    int64_t rows;
+    int columns;
+    const double *data;
+    const char *const *row_name, *const *row_unit;       /* [rows]; NULL: rows have no names */
+    const char *const *column_name, *const *column_unit; /* [columns]; NULL: there are none */
+} gicl_array;
+
+GICL_API int gicl_array_count(gicl_library *library, gicl_handle result, int *count, gicl_messages *said);
+/* size: sizeof(gicl_array). */
+GICL_API int gicl_array_get(gicl_library *library, gicl_handle result, int index, gicl_array *array, size_t size,
+                            gicl_messages *said);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the files of the library share: things behind handles, and calls into code that ends in failures. */
+#ifndef LIBRARY_LIBRARY_PRIVATE_H
+#define LIBRARY_LIBRARY_PRIVATE_H
+
+#include "base/catch.h"
+#include "base/pool.h"
+#include "engine/engine.h"
+#include "host/gic.h"
+#include "model/model.h"
+#include "scene/scene.h"
+#include "subset/method.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+struct gicl_messages {
+    Messages list;
+};
+
+typedef enum ThingKind { THING_MODEL, THING_INSTANCE, THING_BATCH, THING_RESULT, THING_KINDS } ThingKind;
+
+/* ---- library.c: handles */
+
+/* A thing of a library while a call uses it. */
+typedef struct Use {
+    gicl_library *library;
+    gicl_handle handle;
+    void *thing;
+} Use;
+
+/* Begin a call: empties `said`, finds the thing. Calls that use a model may overlap, others not. Returns GICL_OK, or
+ * GICL_WRONG with a message. */
+int use_begin(Use *use, gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said);
+/* End it; returns `status`. */
+int use_end(const Use *use, int status);
+/* A handle for a new thing, which its kind's free function frees; 0: no memory. */
+gicl_handle handle_new(gicl_library *library, ThingKind kind, void *thing);
+/* Run work(context) where numbers are read and written as in C; a failure adds its messages: GICL_FAILED. */
+int call_work(const gicl_library *library, gicl_messages *said, void (*work)(void *context), void *context);
+/* A mistake of the caller: GICL_WRONG with a message. */
+int call_wrong(gicl_messages *said, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The message of a status of generated code, which it returns; what: "step", with the time. */
+int call_status(gicl_messages *said, const gic_model *code, const gic_head *self, int status, const char *what);
+
+/* ---- model.c */
+
+typedef struct OpenModel {
+    Pool *pool;
+    const Model *model;
+    const char *name; /* in messages: the path */
+    EngineOptions options;
+    const char *engine_name, *integrator;
+    double tolerance;
+    bool general;
+    pthread_mutex_t lock;  /* of what follows, and of calls of interpreted engines, whose instances share scratch */
+    const Engine *engine;  /* NULL: not needed yet */
+    Pool *engine_pool;
+    const char *c, *h;     /* NULL: not yet generated */
+    atomic_int users;      /* the handle, instances and batches */
+} OpenModel;
+
+/* The model's code for any scene, compiled by the first call. */
+int model_engine(const gicl_library *library, OpenModel *model, gicl_messages *said);
+void model_keep(OpenModel *model);
+void model_let(void *model);
+/* Around calls of an engine's functions. */
+void model_enter(OpenModel *model);
+void model_leave(OpenModel *model);
+/* Names of a kind, and where the array is in an instance. NULL: no such kind. */
+const gic_signal *model_signals(const gic_model *code, int kind, int *count, size_t *offset);
+
+/* ---- start.c: where instances begin */
+
+typedef struct Start {
+    OpenModel *model;
+    const Scene *scene; /* NULL: the model at design */
+} Start;
+
+/* Read the scene (a path, or NULL), into `pool`; ends in diag_fail. */
+Start start_read(Pool *pool, OpenModel *model, const char *scene);
+/* Bring an instance there. parameter: NULL: those of scene or model. Returns a status. */
+int start_go(const Start *start, gic_head *self, const double *parameter);
+
+/* ---- instance.c, batch.c, result.c */
+
+void instance_free(void *instance);
+void batch_free(void *batch);
+void result_free(void *result);
+
+#endif

@@ -1,0 +1,381 @@
+# SPDX-License-Identifier: MIT
+"""Vehicle models of gicgen in Python: runtime/python/README.md.
+
+    import gicgen
+    model = gicgen.Model("car.veh")
+    columns = model.run("lane_change.scene")        # columns["time"], columns.units
+    car = model.instance("lane_change.scene")
+    car.inputs["rack"] = 0.01
+    car.step(0.005, 100)
+"""
+import ctypes
+import math
+import os
+
+import numpy
+
+from . import _library
+from ._arrays import Named, Table, view
+from ._library import Error, Handle, RunError, VERSION as __version__, WrongCall, call
+
+__all__ = ["Batch", "Error", "Instance", "Linear", "Model", "Named", "RunError", "Table", "WrongCall"]
+
+_METHODS = {"ab3": 0, "rk4": 1}
+_KINDS = {"states": (_library.STATE, "state"), "rates": (_library.RATE, "rate"), "inputs": (_library.INPUT, "input"),
+          "outputs": (_library.OUTPUT, "output"), "parameters": (_library.PARAMETER, "parameter"),
+          "ports": (_library.PORT, "port")}
+
+
+def _bytes(text):
+    return None if text is None else os.fsencode(text)
+
+
+def _method(name):
+    if name not in _METHODS:
+        raise ValueError(f"method: 'ab3' or 'rk4' is wanted, not {name!r}")
+    return _METHODS[name]
+
+
+def _number(value, what):
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what}: a number is wanted, not {value!r}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{what}: a finite number is wanted, not {value!r}")
+    return number
+
+
+def _vector(value, count, what):
+    """A contiguous copy-free array of `count` finite numbers."""
+    array = numpy.ascontiguousarray(value, dtype=float)
+    if array.shape != (count,):
+        raise ValueError(f"{what}: shape ({count},) is wanted, not {array.shape}")
+    if not numpy.isfinite(array).all():
+        raise ValueError(f"{what}: finite numbers are wanted")
+    return array
+
+
+def _texts(pointer, count):
+    return [pointer[i].decode() for i in range(count)] if pointer else None
+
+
+class Model:
+    """A model from a .veh file, or from `text`, in which included files are sought from the folder of `name`. Options
+    are those of gicrun: engine "tcc", "cc" or "tape" (the same bits; "cc" is the fastest and takes longest to begin),
+    solve, recovery, compiler and its flags, integrator and tolerance instead of the scenes', general."""
+
+    def __init__(self, path=None, *, text=None, name="model.veh", engine=None, solve=None, recovery=None, compiler=None,
+                 flags=None, integrator=None, tolerance=0.0, general=False):
+        if (path is None) == (text is None):
+            raise TypeError("a path or a text is wanted, one of them")
+        options = _library.Options(ctypes.sizeof(_library.Options), _bytes(engine), _bytes(solve), _bytes(recovery),
+                                   _bytes(compiler), _bytes(flags), _bytes(integrator), tolerance, general)
+        handle = Handle()
+        if path is not None:
+            call("model_open", _bytes(path), ctypes.byref(options), ctypes.byref(handle))
+        else:
+            data = text.encode()
+            call("model_text", _bytes(name), data, len(data), ctypes.byref(options), ctypes.byref(handle))
+        self.warnings = [message["printed"] for message in _library.messages()]
+        self._owned = _library.Owned(handle)
+        self._names = {}
+
+    def close(self):
+        """Instances and batches of it go on."""
+        self._owned = None
+
+    @property
+    def _handle(self):
+        if self._owned is None:
+            raise WrongCall([{"text": "the model is closed", "printed": "the model is closed"}], _library.WRONG)
+        return self._owned.handle
+
+    def _signals(self, kind):
+        """Names and units."""
+        if kind not in self._names:
+            number, count = _KINDS[kind][0], ctypes.c_int()
+            call("count", self._handle, number, ctypes.byref(count))
+            names, units = [], []
+            for i in range(count.value):
+                name, unit = ctypes.c_char_p(), ctypes.c_char_p()
+                call("signal", self._handle, number, i, ctypes.byref(name), ctypes.byref(unit))
+                names.append(name.value.decode())
+                units.append((unit.value or b"").decode())
+            self._names[kind] = tuple(names), tuple(units)
+        return self._names[kind]
+
+    states = property(lambda self: self._signals("states")[0], doc="names, in the order of arrays")
+    inputs = property(lambda self: self._signals("inputs")[0], doc="names, in the order of arrays")
+    outputs = property(lambda self: self._signals("outputs")[0], doc="names, in the order of arrays")
+    parameters = property(lambda self: self._signals("parameters")[0], doc="names of the tunable ones")
+    ports = property(lambda self: self._signals("ports")[0], doc="names, in the order of arrays")
+
+    def units(self, kind):
+        """Units by name, of "states", "inputs", "outputs", "parameters" or "ports"."""
+        if kind not in _KINDS:
+            raise KeyError(f"no kind {kind!r}: there are {', '.join(_KINDS)}")
+        return dict(zip(*self._signals(kind)))
+
+    def code(self):
+        """The C that gicgen writes, and its header."""
+        c, h = ctypes.c_char_p(), ctypes.c_char_p()
+        call("generate", self._handle, ctypes.byref(c), ctypes.byref(h))
+        return c.value.decode(), h.value.decode()
+
+    def instance(self, scene=None):
+        return Instance(self, scene)
+
+    def batch(self, vehicles, scene=None):
+        return Batch(self, vehicles, scene)
+
+    def _result(self, name, *arguments):
+        """Arrays of a result by name: data, names and units of rows, of columns; and the exception that ended it."""
+        handle, failure, arrays = Handle(), None, {}
+        try:
+            call(name, self._handle, *arguments, ctypes.byref(handle))
+            self.warnings = [message["printed"] for message in _library.messages()]
+        except Error as error:
+            if not handle:
+                raise
+            failure = error
+        owned, count = _library.Owned(handle), ctypes.c_int()
+        call("array_count", handle, ctypes.byref(count))
+        for i in range(count.value):
+            a = _library.Array()
+            call("array_get", handle, i, ctypes.byref(a), ctypes.sizeof(a))
+            shape = (a.rows, a.columns)
+            data = view(owned, ctypes.cast(a.data, ctypes.c_void_p).value, shape, (8 * a.columns, 8))
+            data.flags.writeable = False
+            arrays[a.name.decode()] = (data, _texts(a.row_name, a.rows), _texts(a.row_unit, a.rows),
+                                       _texts(a.column_name, a.columns), _texts(a.column_unit, a.columns))
+        return arrays, failure
+
+    def run(self, scene):
+        """A scene from begin to end: columns with the bits of gicrun's results. If it ends early, RunError has the rows
+        up to there."""
+        arrays, failure = self._result("run", _bytes(scene))
+        data, _, _, names, units = arrays["columns"]
+        columns = Table(data, names, units)
+        if failure:
+            ended = RunError(_library.messages() or [], failure.status)
+            ended.__dict__.update(failure.__dict__)
+            ended.args = failure.args
+            ended.columns = columns
+            raise ended
+        return columns
+
+    def equilibrium(self, scene=None):
+        """Static equilibrium near the initial state of a scene or of the model: `.states`, `.inputs`, `.outputs`."""
+        arrays, _ = self._result("equilibrium", _bytes(scene))
+        return Equilibrium(arrays)
+
+    def modes(self, scene=None):
+        """Small motions about it: a table with columns real, imaginary, frequency, damping, time_constant and shares; a
+        row each, NaN where a number does not apply."""
+        data, _, _, names, units = self._result("modes", _bytes(scene))[0]["modes"]
+        return Table(data, names, units)
+
+    def linearize(self, scene=None, at=None):
+        """The linear model about the equilibrium, or about the time `at` (s) of the run of the scene."""
+        if at is not None and scene is None:
+            raise TypeError("at: a time of a scene's run, and no scene is given")
+        time = math.nan if at is None else _number(at, "at")
+        return Linear(self._result("linearize", _bytes(scene), time)[0])
+
+    def __repr__(self):
+        return "<gicgen.Model>"
+
+
+class Equilibrium:
+    """States, inputs and outputs at rest, by name; read only."""
+
+    def __init__(self, arrays):
+        for name in ("state", "input", "output"):
+            data, _, _, names, units = arrays[name]
+            setattr(self, name + "s", Named(data[0], names, units, name))
+
+
+class Linear:
+    """dz/dt = f + A z + B u + E p, y = y0 + C z + D u + F p, of changes z, u, p; N: neutral directions. Names of z, u, y,
+    p are `states`, `inputs`, `outputs`, `parameters`. `control.ss(*linear.matrices, **linear.labels)` is the same for
+    python-control."""
+
+    def __init__(self, arrays):
+        for name, (data, *_) in arrays.items():
+            setattr(self, name, data[:, 0] if name in ("f", "z0", "u0", "y0", "p0") else data)
+        self.time = float(self.time[0, 0])
+        self.states, self.state_units = tuple(arrays["A"][3]), tuple(arrays["A"][4])
+        self.inputs, self.input_units = tuple(arrays["B"][3]), tuple(arrays["B"][4])
+        self.outputs, self.output_units = tuple(arrays["C"][1]), tuple(arrays["C"][2])
+        self.parameters, self.parameter_units = tuple(arrays["E"][3]), tuple(arrays["E"][4])
+
+    @property
+    def matrices(self):
+        return self.A, self.B, self.C, self.D
+
+    @property
+    def labels(self):
+        return {"states": list(self.states), "inputs": list(self.inputs), "outputs": list(self.outputs)}
+
+
+class Instance:
+    """One vehicle: `states`, `rates`, `inputs`, `outputs`, `parameters`, `ports` are views of its memory, by name.
+
+    A scene gives the road, the initial state, parameters, and the inputs at time 0, which then are yours. Setting states
+    by name or place forgets the integrator's history; who writes into `states.array` calls restart()."""
+
+    def __init__(self, model, scene=None):
+        handle = Handle()
+        call("instance_new", model._handle, _bytes(scene), ctypes.byref(handle))
+        self._owned = _library.Owned(handle)
+        self._views = {}
+        for name, (kind, word) in _KINDS.items():
+            data, count = ctypes.c_void_p(), ctypes.c_int()
+            call("view", handle, kind, ctypes.byref(data), ctypes.byref(count))
+            names, units = model._signals(name)
+            array = view(self._owned, data.value, (count.value,), (8,))
+            self._views[name] = Named(array, names, units, word, self.restart if name == "states" else None)
+
+    def close(self):
+        """Arrays taken from it stay valid."""
+        self._owned = None
+        self._views = {}
+
+    @property
+    def _handle(self):
+        if self._owned is None:
+            raise WrongCall([{"text": "the instance is closed", "printed": "the instance is closed"}], _library.WRONG)
+        return self._owned.handle
+
+    def _view(self, name):
+        return self._views[name] if self._handle else None
+
+    states = property(lambda self: self._view("states"))
+    rates = property(lambda self: self._view("rates"))
+    inputs = property(lambda self: self._view("inputs"))
+    parameters = property(lambda self: self._view("parameters"))
+    ports = property(lambda self: self._view("ports"))
+
+    @property
+    def outputs(self):
+        """Computed when asked for, at the present state."""
+        call("outputs", self._handle)
+        return self._view("outputs")
+
+    @property
+    def time(self):
+        time = ctypes.c_double()
+        call("time", self._handle, ctypes.byref(time))
+        return time.value
+
+    def restart(self, time=None):
+        """Forget the integrator's history; `time`: the time from now on, s."""
+        call("restart", self._handle, self.time if time is None else _number(time, "time"))
+
+    def set_up(self, parameters=None):
+        """Back to the start, at time 0, with parameters: a dictionary of changes, or all of them."""
+        if parameters is None:
+            call("set_up", self._handle, None, 0)
+            return
+        own = self.parameters
+        if isinstance(parameters, dict):
+            values = own.array.copy()
+            changed = Named(values, own.names, own.units, own.kind)
+            for name, value in parameters.items():
+                changed[name] = value
+        else:
+            values = _vector(parameters, len(own), "parameters")
+        call("set_up", self._handle, values.ctypes.data, len(values))
+
+    def step(self, step, steps=1, method="ab3"):
+        """`steps` steps of `step` seconds, inputs constant."""
+        call("step", self._handle, _number(step, "step"), _method(method), steps)
+
+    def rhs(self, time, states):
+        """Rates of states, with the present inputs: a right-hand side for scipy.integrate.solve_ivp."""
+        count = len(self._views["states"]) if self._handle else 0
+        values, rates = _vector(states, count, "states"), numpy.empty(count)
+        call("rhs", self._handle, _number(time, "time"), values.ctypes.data, rates.ctypes.data, count)
+        return rates
+
+    def snapshot(self):
+        """All of the vehicle but its road, as bytes."""
+        size = ctypes.c_size_t()
+        call("snapshot_size", self._handle, ctypes.byref(size))
+        out = ctypes.create_string_buffer(size.value)
+        call("snapshot", self._handle, out, size.value)
+        return out.raw
+
+    def restore(self, snapshot):
+        call("restore", self._handle, bytes(snapshot), len(snapshot))
+
+
+class Batch:
+    """Many vehicles, each with the bits that it has alone. The arrays of `states`, `inputs` and so on are
+    [vehicles, numbers]; `status` has the status of each after the last call, 0: good."""
+
+    def __init__(self, model, vehicles, scene=None):
+        handle = Handle()
+        if not isinstance(vehicles, int) or vehicles < 1:
+            raise ValueError(f"vehicles: a whole number from 1 on is wanted, not {vehicles!r}")
+        call("batch_new", model._handle, _bytes(scene), vehicles, ctypes.byref(handle))
+        self._owned, self.vehicles = _library.Owned(handle), vehicles
+        self.status = numpy.zeros(vehicles, dtype=numpy.int32)
+        self._views = {}
+        for name, (kind, word) in _KINDS.items():
+            data, count, stride = ctypes.c_void_p(), ctypes.c_int(), ctypes.c_size_t()
+            call("batch_view", handle, kind, ctypes.byref(data), ctypes.byref(count), ctypes.byref(stride))
+            names, units = model._signals(name)
+            array = view(self._owned, data.value, (vehicles, count.value), (8 * stride.value, 8))
+            self._views[name] = Named(array, names, units, word, self.restart if name == "states" else None)
+
+    close = Instance.close
+    _handle = Instance._handle
+    _view = Instance._view
+    states, rates, inputs = Instance.states, Instance.rates, Instance.inputs
+    parameters, ports = Instance.parameters, Instance.ports
+
+    def __len__(self):
+        return self.vehicles
+
+    def _which(self, which):
+        """A mask as bytes; None: all."""
+        if which is None:
+            return None
+        mask = numpy.ascontiguousarray(which, dtype=numpy.uint8)
+        if mask.shape != (self.vehicles,):
+            raise ValueError(f"which: shape ({self.vehicles},) is wanted, not {mask.shape}")
+        return mask
+
+    def step(self, step, steps=1, method="ab3", check=True):
+        """Steps of all. A vehicle that fails keeps its last state and disturbs no other; then RunError is raised about the
+        first, or with check=False nothing: see `status`."""
+        self._checked("batch_step", check, _number(step, "step"), _method(method), steps, self.status.ctypes.data)
+
+    def _checked(self, name, check, *arguments):
+        try:
+            call(name, self._handle, *arguments)
+        except RunError:
+            if check:
+                raise
+
+    @property
+    def outputs(self):
+        """Computed when asked for; those of a vehicle that has none stay as they were."""
+        self.look()
+        return self._view("outputs")
+
+    def look(self, check=False):
+        """Compute the outputs; `status` says of which vehicles."""
+        self._checked("batch_outputs", check, self.status.ctypes.data)
+
+    def reset(self, which=None):
+        """Back to the start, at time 0, with the present parameters: all, or where the mask is not 0."""
+        mask = self._which(which)
+        call("batch_reset", self._handle, None if mask is None else mask.ctypes.data)
+
+    def restart(self, which=None):
+        """Forget the integrator's history, after states have changed."""
+        mask = self._which(which)
+        call("batch_restart", self._handle, None if mask is None else mask.ctypes.data)
