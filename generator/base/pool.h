@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Memory comes from a Pool that lives as long as the program's main context: nothing is freed one by one. */
+ * Memory comes from a Pool that lives as long as the program's main context: nothing is freed one by one. A pool made
+ * in a call that fails is freed with it: catch.h. */
 #ifndef BASE_POOL_H
 #define BASE_POOL_H
 
@@ -16,7 +17,7 @@ void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy in
 char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 char *pool_vprint(Pool *pool, const char *format, va_list args);
 
-/* Print that memory is out and exit with status 1; every allocation of a Pool ends here if it fails. */
+/* Say that memory is out and exit with status 1, or end what catches that; every allocation of a Pool ends here if it fails. */
 _Noreturn void out_of_memory(void);
 
 /* Make room for one more element after the first `count` of `array`; the capacity doubles. */

@@ -16,7 +16,7 @@
  *     gicl_handle model, car;
  *     if (gicl_model_open(lib, "car.veh", NULL, &model, said) || gicl_instance_new(lib, model, NULL, &car, said))
  *         ... gicl_message_get(said, 0, &message)
- *     gicl_step(lib, car, 0.005, GICL_AB3, 100, said);
+ *     gicl_step(lib, car, 0.005, GICL_AB3, 1, 100, said);
  *     gicl_close(lib);
  */
 #ifndef GIC_H
@@ -86,7 +86,8 @@ GICL_API int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages 
 typedef struct gicl_options {
     size_t size;           /* sizeof(gicl_options) */
     const char *engine;    /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
-                            * gicrun's cache; "tape": interpreted. All three give the same bits */
+                            * gicrun's cache; "tape": interpreted. All three give the same bits, runs of scenes
+                            * with `general` */
     const char *solve;     /* "auto", "reduced", "articulated", "augmented" */
     const char *recovery;  /* "auto", "newton", "closed" */
     const char *compiler;  /* of "cc": a command */
@@ -142,8 +143,9 @@ GICL_API int gicl_view(gicl_library *library, gicl_handle instance, int kind, do
 /* Forget the integrator's history; the time becomes `time`, s. */
 GICL_API int gicl_restart(gicl_library *library, gicl_handle instance, double time, gicl_messages *said);
 GICL_API int gicl_time(gicl_library *library, gicl_handle instance, double *time, gicl_messages *said);
-/* `steps` steps of `step` seconds with constant inputs. Ends at the first that fails. */
-GICL_API int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int64_t steps,
+/* `steps` steps of `step` seconds with constant inputs; ratio: of AB3, fast steps of wheels and powertrain in a step, 1:
+ * one. Ends at the first that fails. */
+GICL_API int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int ratio, int64_t steps,
                        gicl_messages *said);
 /* The rate of a state at a time, with the instance's inputs; both [count], the number of states. The instance's own
  * state stays; where Newton's iteration begins moves, so that later digits may differ by rounding. */
@@ -169,8 +171,8 @@ GICL_API int gicl_batch_view(gicl_library *library, gicl_handle batch, int kind,
                              size_t *stride, gicl_messages *said);
 /* Steps of all; status: [vehicles], written; NULL: not wanted. One that fails keeps its last state, and disturbs no
  * other; the call then returns the status of the first that did. */
-GICL_API int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int64_t steps,
-                             int32_t *status, gicl_messages *said);
+GICL_API int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int ratio,
+                             int64_t steps, int32_t *status, gicl_messages *said);
 /* Outputs of all, as gicl_outputs(). */
 GICL_API int gicl_batch_outputs(gicl_library *library, gicl_handle batch, int32_t *status, gicl_messages *said);
 /* Back to the start, at time 0, where which[v] is not 0; NULL: all. Parameters are those in the batch's array. */

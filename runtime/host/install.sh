@@ -23,8 +23,9 @@ if [ "$1" = --remove ]; then
         exit 1
     fi
     while IFS= read -r file; do rm -f "$root/$file"; done <"$list"
+    rm -rf "$root"/lib/python3*/dist-packages/gicgen/__pycache__
     rm -f "$list"
-    for folder in "$root/share/gicgen" "$root/lib/gicgen"; do
+    for folder in "$root/share/gicgen" "$root/lib/gicgen" "$root"/lib/python3*/dist-packages/gicgen; do
         [ ! -d "$folder" ] || find "$folder" -depth -type d -exec rmdir {} + 2>/dev/null || true
     done
     exit 0
@@ -50,6 +51,18 @@ umask 022
 for program in gicgen gicrun gicsweep gicbench; do put 755 "$BUILD/$program" bin; done
 for header in gic_runtime gic_road gic_batch gic_lanes; do put 644 runtime/$header.h include; done
 put 644 "$BUILD/install/libgic_runtime.a" lib
+# the library for programs and for Python, whose package finds it from where it is
+put 644 runtime/host/gic.h include
+put 644 "$BUILD/libgic.a" lib
+cp "$BUILD/libgic.so" "$work/libgic.so.1"
+put 644 "$work/libgic.so.1" lib
+ln -sf libgic.so.1 "$root/lib/libgic.so"
+echo lib/libgic.so >>"$work/list"
+# Debian's Python looks there
+python=$([ -x /usr/bin/python3 ] && echo /usr/bin/python3 || echo python3)
+packages=lib/$([ "$PREFIX" = /usr ] && echo python3 ||
+    "$python" -c 'import sys; print("python3.%d" % sys.version_info[1])' 2>/dev/null || echo python3)/dist-packages
+for file in runtime/python/gicgen/*.py; do put 644 "$file" "$packages/gicgen"; done
 [ -z "$PLUGIN" ] || put 644 "$PLUGIN" lib/gicgen
 put 644 runtime/gic_runtime.c share/gicgen
 put 644 runtime/gic_road.c share/gicgen
@@ -60,8 +73,10 @@ for file; do
     esac
 done
 mkdir "$work/pc"
-cp generator/gicgen.pc.in "$work/pc/gicgen.pc"
-place "$work/pc/gicgen.pc" lib/pkgconfig
+for name in generator/gicgen runtime/library/gic; do
+    cp "$name.pc.in" "$work/pc/${name##*/}.pc"
+    place "$work/pc/${name##*/}.pc" lib/pkgconfig
+done
 # of an earlier version too, so that uninstalling leaves nothing of it
 if [ -f "$list" ]; then cat "$list" >>"$work/list"; fi
 sort -u "$work/list" >"$work/installed"
@@ -76,3 +91,5 @@ among "$PATH" "$PREFIX/bin" ||
 known=$PKG_CONFIG_PATH:$(pkg-config --variable pc_path pkg-config 2>/dev/null || echo /usr/local/lib/pkgconfig)
 among "$known" "$PREFIX/lib/pkgconfig" ||
     echo "pkg-config finds it with:     export PKG_CONFIG_PATH=\"$PREFIX/lib/pkgconfig:\$PKG_CONFIG_PATH\""
+"$python" -c "import sys; sys.exit('$PREFIX/$packages' not in sys.path)" 2>/dev/null ||
+    echo "Python finds it with:         export PYTHONPATH=\"$PREFIX/$packages:\$PYTHONPATH\""

@@ -124,8 +124,8 @@ static void note(const ManyInstances *many, int v, const gic_head *self, int sta
     call_status(said, many->start.model->engine->code, self, status, what);
 }
 
-int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int64_t steps, int32_t *each,
-                    gicl_messages *said)
+int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int ratio, int64_t steps,
+                    int32_t *each, gicl_messages *said)
 {
     Use use;
     int first = use_begin(&use, library, batch, THING_BATCH, said);
@@ -133,12 +133,14 @@ int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int m
         return first;
     const ManyInstances *many = use.thing;
     const gic_model *code = many->start.model->engine->code;
+    if (steps < 0)
+        return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
     model_enter(many->start.model);
     for (int v = 0; v < many->vehicles; ++v) {
         gic_head *self = vehicle(many, v);
         int status = GIC_OK;
         for (int64_t i = 0; i < steps && status == GIC_OK; ++i)
-            status = gic_step(code, self, step, method);
+            status = start_step(code, self, step, method, ratio);
         note(many, v, self, status, each, &first, said);
     }
     model_leave(many->start.model);

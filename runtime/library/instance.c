@@ -154,7 +154,8 @@ int gicl_time(gicl_library *library, gicl_handle instance, double *time, gicl_me
     return use_end(&use, GICL_OK);
 }
 
-int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int64_t steps, gicl_messages *said)
+int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int ratio, int64_t steps,
+              gicl_messages *said)
 {
     Use use;
     OneInstance *one;
@@ -166,7 +167,7 @@ int gicl_step(gicl_library *library, gicl_handle instance, double step, int meth
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
     model_enter(one->start.model);
     for (int64_t i = 0; i < steps && status == GIC_OK; ++i)
-        status = gic_step(code, one->self, step, method);
+        status = start_step(code, one->self, step, method, ratio);
     call_status(said, code, one->self, status, "step");
     model_leave(one->start.model);
     return use_end(&use, status);

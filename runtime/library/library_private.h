@@ -71,7 +71,7 @@ void model_leave(OpenModel *model);
 /* Names of a kind, and where the array is in an instance. NULL: no such kind. */
 const gic_signal *model_signals(const gic_model *code, int kind, int *count, size_t *offset);
 
-/* ---- start.c: where instances begin */
+/* ---- start.c: where instances begin, and how they go on */
 
 typedef struct Start {
     OpenModel *model;
@@ -82,6 +82,9 @@ typedef struct Start {
 Start start_read(Pool *pool, OpenModel *model, const char *scene);
 /* Bring an instance there. parameter: NULL: those of scene or model. Returns a status. */
 int start_go(const Start *start, gic_head *self, const double *parameter);
+
+/* One step of an instance, by gic_step() or gic_step_dual(). Returns a status. */
+int start_step(const gic_model *code, gic_head *self, double step, int method, int ratio);
 
 /* ---- instance.c, batch.c, result.c */
 

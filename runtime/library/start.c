@@ -35,3 +35,10 @@ int start_go(const Start *start, gic_head *self, const double *parameter)
     self->user = NULL;
     return status;
 }
+
+int start_step(const gic_model *code, gic_head *self, double step, int method, int ratio)
+{
+    if (ratio != 1 && method != GIC_AB3)
+        return GIC_ERROR_ARGUMENT;
+    return ratio == 1 ? gic_step(code, self, step, method) : gic_step_dual(code, self, step, ratio);
+}

@@ -23,7 +23,7 @@ check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
 for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_batch.h include/gic_lanes.h \
-    lib/libgic_runtime.a lib/gicgen/mumps.so \
+    lib/libgic_runtime.a lib/gicgen/mumps.so include/gic.h lib/libgic.a lib/libgic.so lib/libgic.so.1 lib/pkgconfig/gic.pc \
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
     share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
@@ -91,6 +91,39 @@ check 'gicrun works' gicrun "$there/share/gicgen/models/pendulum.veh" \
     "$there/share/gicgen/models/scenes/pendulum.scene" -o run.csv
 check 'its results are there' grep -q '^time' run.csv
 check 'gicbench works' gicbench --version
+
+# ---- the library -------------------------------------------------------------------------------------------
+
+cat >library.c <<'C'
+#include <gic.h>
+#include <stdio.h>
+int main(int count, char **word)
+{
+    gicl_library *lib = gicl_open();
+    gicl_handle model, result;
+    gicl_array columns;
+    if (count < 3 || gicl_model_open(lib, word[1], 0, &model, 0) || gicl_run(lib, model, word[2], &result, 0) ||
+        gicl_array_get(lib, result, 0, &columns, sizeof columns, 0))
+        return 1;
+    printf("%lld rows\n", (long long)columns.rows);
+    return gicl_close(lib);
+}
+C
+config_library() { pkg-config --define-variable=prefix="$there" "$@" gic; }
+link_library() { eval "cc -std=c99 -Wall -Wextra -Werror -pedantic $(config_library --cflags) library.c $1 -o $2"; }
+rows() { "$@" "$there/share/gicgen/models/pendulum.veh" "$there/share/gicgen/models/scenes/pendulum.scene" | grep -q '^[1-9][0-9]* rows$'; }
+check 'a program with the shared library' link_library "$(config_library --libs)" shared_library
+check 'runs' rows env LD_LIBRARY_PATH="$there/lib" ./shared_library
+static_library=$(config_library --static --libs | sed 's/-lgic /-l:libgic.a /')
+check 'a program with the static library' link_library "$static_library" static_library
+check 'runs too' rows ./static_library
+foreign() { nm -D --defined-only "$there/lib/libgic.so.1" | grep -v ' gicl_'; nm --defined-only "$there/lib/libgic.a" 2>/dev/null | grep ' [TDBRCVW] ' | grep -v ' gicl_'; }
+check 'both show names of gic.h alone' [ -z "$(foreign)" ]
+dist=$(echo "$there"/lib/python3*/dist-packages)
+check 'Python finds package and library' env PYTHONPATH="$dist" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
+import gicgen
+model = gicgen.Model('$there/share/gicgen/models/pendulum.veh')
+assert len(model.run('$there/share/gicgen/models/scenes/pendulum.scene')) > 10"
 
 # ---- the plug-in with MUMPS --------------------------------------------------------------------------------
 

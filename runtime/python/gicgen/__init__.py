@@ -15,10 +15,11 @@ import os
 import numpy
 
 from . import _library
-from ._arrays import Named, Table, view
+from ._arrays import Named, Table, UnknownName, view
 from ._library import Error, Handle, RunError, VERSION as __version__, WrongCall, call
 
-__all__ = ["Batch", "Error", "Instance", "Linear", "Model", "Named", "RunError", "Table", "WrongCall"]
+__all__ = ["Batch", "Error", "Instance", "Linear", "Model", "Named", "RunError", "Table", "UnknownName",
+           "WrongCall"]
 
 _METHODS = {"ab3": 0, "rk4": 1}
 _KINDS = {"states": (_library.STATE, "state"), "rates": (_library.RATE, "rate"), "inputs": (_library.INPUT, "input"),
@@ -62,7 +63,7 @@ def _texts(pointer, count):
 
 class Model:
     """A model from a .veh file, or from `text`, in which included files are sought from the folder of `name`. Options
-    are those of gicrun: engine "tcc", "cc" or "tape" (the same bits; "cc" is the fastest and takes longest to begin),
+    are those of gicrun: engine "tcc", "cc" or "tape" (the same bits, runs of scenes with `general`; "cc" is the fastest and takes longest to begin),
     solve, recovery, compiler and its flags, integrator and tolerance instead of the scenes', general."""
 
     def __init__(self, path=None, *, text=None, name="model.veh", engine=None, solve=None, recovery=None, compiler=None,
@@ -114,7 +115,7 @@ class Model:
     def units(self, kind):
         """Units by name, of "states", "inputs", "outputs", "parameters" or "ports"."""
         if kind not in _KINDS:
-            raise KeyError(f"no kind {kind!r}: there are {', '.join(_KINDS)}")
+            raise UnknownName(f"no kind {kind!r}: there are {', '.join(_KINDS)}")
         return dict(zip(*self._signals(kind)))
 
     def code(self):
@@ -288,9 +289,9 @@ class Instance:
             values = _vector(parameters, len(own), "parameters")
         call("set_up", self._handle, values.ctypes.data, len(values))
 
-    def step(self, step, steps=1, method="ab3"):
-        """`steps` steps of `step` seconds, inputs constant."""
-        call("step", self._handle, _number(step, "step"), _method(method), steps)
+    def step(self, step, steps=1, method="ab3", ratio=1):
+        """`steps` steps of `step` seconds, inputs constant; ratio: of ab3, fast steps of wheels and powertrain in each."""
+        call("step", self._handle, _number(step, "step"), _method(method), ratio, steps)
 
     def rhs(self, time, states):
         """Rates of states, with the present inputs: a right-hand side for scipy.integrate.solve_ivp."""
@@ -322,6 +323,7 @@ class Batch:
         call("batch_new", model._handle, _bytes(scene), vehicles, ctypes.byref(handle))
         self._owned, self.vehicles = _library.Owned(handle), vehicles
         self.status = numpy.zeros(vehicles, dtype=numpy.int32)
+        self._status_at = self.status.ctypes.data
         self._views = {}
         for name, (kind, word) in _KINDS.items():
             data, count, stride = ctypes.c_void_p(), ctypes.c_int(), ctypes.c_size_t()
@@ -348,10 +350,17 @@ class Batch:
             raise ValueError(f"which: shape ({self.vehicles},) is wanted, not {mask.shape}")
         return mask
 
-    def step(self, step, steps=1, method="ab3", check=True):
+    def step(self, step, steps=1, method="ab3", ratio=1, check=True):
         """Steps of all. A vehicle that fails keeps its last state and disturbs no other; then RunError is raised about the
         first, or with check=False nothing: see `status`."""
-        self._checked("batch_step", check, _number(step, "step"), _method(method), steps, self.status.ctypes.data)
+        # short, since between two steps of many vehicles the processor has forgotten all of it
+        if type(step) is not float or step - step != 0:
+            step = _number(step, "step")
+        number = 0 if method == "ab3" else _method(method)
+        status = _library.batch_step(_library.library, self._handle, step, number, ratio, steps, self._status_at,
+                                     _library.said.list)
+        if status and (check or status > 0):
+            _library.raise_status(status)
 
     def _checked(self, name, check, *arguments):
         try:

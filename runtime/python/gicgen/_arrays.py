@@ -16,15 +16,22 @@ def view(owner, address, shape, strides):
     return numpy.ndarray(shape, dtype=float, buffer=memory, strides=strides)
 
 
+class UnknownName(KeyError):
+    """A name that is not there; the text has the nearest one."""
+
+    def __str__(self):
+        return self.args[0]
+
+
 def place(names, kind, name):
-    """The index of a name; an unknown one raises KeyError, with the nearest name."""
+    """The index of a name; an unknown one raises UnknownName, with the nearest name."""
     try:
         return names.index(name)
     except ValueError:
         pass
     near = difflib.get_close_matches(str(name), names, 1)
     hint = f"is '{near[0]}' meant?" if near else f"there are {', '.join(names)}" if names else "there is none"
-    raise KeyError(f"no {kind} '{name}': {hint}")
+    raise UnknownName(f"no {kind} '{name}': {hint}")
 
 
 class Named:
@@ -43,7 +50,8 @@ class Named:
         return key
 
     def __getitem__(self, key):
-        return self.array[self._place(key)]
+        found = self.array[self._place(key)]
+        return found if numpy.ndim(found) else float(found)
 
     def __setitem__(self, key, value):
         at = self._place(key)

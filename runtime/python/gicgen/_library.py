@@ -102,7 +102,7 @@ _ARGUMENTS = {
     "view": [Handle, ctypes.c_int, _P, _P],
     "restart": [Handle, ctypes.c_double],
     "time": [Handle, _P],
-    "step": [Handle, ctypes.c_double, ctypes.c_int, ctypes.c_int64],
+    "step": [Handle, ctypes.c_double, ctypes.c_int, ctypes.c_int, ctypes.c_int64],
     "rhs": [Handle, ctypes.c_double, _P, _P, ctypes.c_int],
     "outputs": [Handle],
     "snapshot_size": [Handle, _P],
@@ -110,7 +110,7 @@ _ARGUMENTS = {
     "restore": [Handle, _P, ctypes.c_size_t],
     "batch_new": [Handle, ctypes.c_char_p, ctypes.c_int, _P],
     "batch_view": [Handle, ctypes.c_int, _P, _P, _P],
-    "batch_step": [Handle, ctypes.c_double, ctypes.c_int, ctypes.c_int64, _P],
+    "batch_step": [Handle, ctypes.c_double, ctypes.c_int, ctypes.c_int, ctypes.c_int64, _P],
     "batch_outputs": [Handle, _P],
     "batch_reset": [Handle, _P],
     "batch_restart": [Handle, _P],
@@ -158,12 +158,20 @@ def messages():
     return out
 
 
-def call(name, *arguments, allow=()):
-    """Call a function; a status that is neither OK nor allowed raises an exception."""
+def call(name, *arguments):
+    """Call a function; a status other than OK raises an exception."""
     status = getattr(_c, "gicl_" + name)(_library, *arguments, _said.list)
-    if status == OK or status in allow:
-        return status
+    if status != OK:
+        raise_status(status)
+
+
+def raise_status(status):
+    """The exception of a status."""
     raise (WrongCall if status == WRONG else RunError if status < 0 else Error)(messages(), status)
+
+
+# of a step of a batch, which is called often: the function, the library, and where messages of a thread are
+batch_step, library, said = _c.gicl_batch_step, ctypes.c_void_p(_library), _said
 
 
 class Owned:

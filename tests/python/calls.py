@@ -1,0 +1,246 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""calls.py: the Python package by unittest, from the folder of the sources: results are those of gicrun, views are
+the instance's memory, wrong calls raise exceptions that say what was expected, environments keep Gymnasium's rules."""
+import gc
+import math
+import threading
+import unittest
+
+import numpy
+
+import gicgen
+from gicgen.env import VectorEnv
+
+QUARTER, SCENE = "models/quarter_car.veh", "models/scenes/quarter_car.scene"
+TIRES, COAST = "models/hmmwv_tires.veh", "models/scenes/tires_coast.scene"
+
+
+def check_env(make):
+    """The rules of a vector environment; make() makes one, always the same."""
+    env = make()
+    n = env.num_envs
+    try:
+        env.step(env.action_space.sample())
+        raise AssertionError("a step before reset()")
+    except RuntimeError:
+        pass
+
+    def trace(env, seed):
+        env.action_space.seed(7)
+        seen, info = env.reset(seed=seed)
+        assert isinstance(info, dict) and seen.shape == env.observation_space.shape
+        out, ended = [seen], 0
+        for _ in range(25):
+            action = env.action_space.sample()
+            assert env.action_space.contains(action)
+            seen, reward, terminated, truncated, info = env.step(action)
+            assert env.observation_space.contains(seen) and seen.dtype == env.observation_space.dtype
+            assert numpy.isfinite(seen).all() and numpy.isfinite(reward).all()
+            assert reward.shape == terminated.shape == truncated.shape == (n,)
+            assert terminated.dtype == truncated.dtype == bool and not (terminated & truncated).any()
+            done = terminated | truncated
+            assert ("final_obs" in info) == bool(done.any())
+            if done.any():
+                assert numpy.array_equal(info["_final_obs"], done)
+                assert not numpy.array_equal(info["final_obs"][done], seen[done]), "no new episode"
+                assert numpy.array_equal(info["final_obs"][~done], seen[~done])
+            ended += done.sum()
+            out.append(numpy.column_stack([seen, reward, terminated, truncated]))
+        assert ended > 0, "no episode ended"
+        return out
+
+    def same(a, b):
+        return all(numpy.array_equal(x, y) for x, y in zip(a, b))
+
+    first = trace(env, 3)
+    assert same(first, trace(env, 3)), "the same seed, another course"
+    assert same(first, trace(make(), 3)), "the same seed in another environment, another course"
+    assert not same(first, trace(env, 4)), "another seed, the same course"
+    assert not same([first[0][:1]], [first[0][1:2]]), "vehicles begin alike"
+    for bad in (numpy.zeros((n + 1, 1)), numpy.full(env.action_space.shape, math.nan)):
+        try:
+            env.step(bad)
+            raise AssertionError("a wrong action")
+        except ValueError as error:
+            assert "wanted" in str(error)
+    env.close()
+
+
+class Calls(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = gicgen.Model(QUARTER)
+
+    def car(self):
+        return self.model.instance(SCENE)
+
+    def test_run_is_a_run_step_by_step(self):
+        columns, car = gicgen.Model(QUARTER, general=True).run(SCENE), self.car()
+        self.assertEqual(columns.units["carriage.z"], "m")
+        for row, time in enumerate(columns["time"]):
+            self.assertEqual(car.time, time)
+            for name in ("carriage.z", "wheel.x", "tire.fz"):
+                self.assertEqual(car.outputs[name], columns[name][row])
+            car.step(0.002, 5, "rk4")
+
+    def test_views(self):
+        car = self.car()
+        array = car.states.array
+        self.assertEqual(car.states["bounce"], 0.05)
+        car.states["bounce"] = 0.04
+        self.assertEqual(array[0], 0.04)
+        array[0] = 0.03
+        self.assertEqual(car.states["bounce"], 0.03)
+        self.assertEqual(list(car.states[["bounce", "spring"]]), [0.03, 0.26])
+        car.close()
+        gc.collect()
+        self.assertEqual(array[0], 0.03)
+        with self.assertRaisesRegex(gicgen.WrongCall, "closed"):
+            car.step(0.001)
+        model = gicgen.Model(QUARTER)
+        other = model.instance()
+        model.close()
+        other.step(0.001, 3)
+        with self.assertRaisesRegex(gicgen.WrongCall, "closed"):
+            model.instance()
+        table = gicgen.Model(QUARTER).run(SCENE)["carriage.z"]
+        gc.collect()
+        self.assertTrue(numpy.isfinite(table).all())
+        with self.assertRaises(ValueError):
+            table[0] = 1
+
+    def test_integrator_of_ones_own(self):
+        """car.rhs with the arguments of scipy's solve_ivp: RK4 by hand has the runtime's motion to rounding."""
+        car, other = self.car(), self.car()
+        y, h = car.states[:].copy(), 0.002
+        for i in range(50):
+            t = i * h
+            a = other.rhs(t, y)
+            b = other.rhs(t + h / 2, y + h / 2 * a)
+            c = other.rhs(t + h / 2, y + h / 2 * b)
+            d = other.rhs(t + h, y + h * c)
+            y = y + h / 6 * (a + 2 * b + 2 * c + d)
+        car.step(h, 50, "rk4")
+        numpy.testing.assert_allclose(y, car.states[:], rtol=1e-11)
+        try:
+            from scipy.integrate import solve_ivp
+        except ImportError:
+            return
+        found = solve_ivp(other.rhs, (0, 0.1), self.car().states[:], rtol=1e-10, atol=1e-12)
+        numpy.testing.assert_allclose(found.y[:, -1], y, atol=2e-6)
+
+    def test_files_with_mistakes(self):
+        with self.assertRaises(gicgen.Error) as caught:
+            gicgen.Model("tests/data/mistakes/body_key_unknown.veh")
+        error = caught.exception
+        self.assertEqual((error.file, error.line, error.column), ("tests/data/mistakes/body_key_unknown.veh", 9, 9))
+        self.assertIn("mass", error.remedy)
+        with self.assertRaises(gicgen.Error) as caught:
+            gicgen.Model(text="gicgen: 1\nmodel: a b\n", name="mine.veh")
+        self.assertEqual(caught.exception.file, "mine.veh")
+        with self.assertRaisesRegex(gicgen.Error, "No such file"):
+            self.model.run("no.scene")
+        with self.assertRaisesRegex(gicgen.Error, "a scene is wanted"):
+            self.model.run(QUARTER)
+        with self.assertRaisesRegex(gicgen.Error, "engine"):
+            gicgen.Model(QUARTER, engine="fortran")
+
+    def test_wrong_calls(self):
+        car, batch = self.car(), self.model.batch(3, SCENE)
+        for call, kind, words in (
+                (lambda: car.states["bonce"], KeyError, "is 'bounce' meant"),
+                (lambda: car.inputs["x"], KeyError, "there is none"),
+                (lambda: self.model.run(SCENE)["carriage.zz"], KeyError, "is 'carriage.z' meant"),
+                (lambda: car.states.__setitem__("bounce", math.nan), ValueError, "finite"),
+                (lambda: car.states.__setitem__("bounce", "high"), TypeError, "number"),
+                (lambda: car.states.__setitem__(slice(None), [1, 2]), ValueError, r"shape \(4,\) is wanted, not \(2,\)"),
+                (lambda: car.rhs(0, [1, 2, 3]), ValueError, r"shape \(4,\) is wanted, not \(3,\)"),
+                (lambda: car.rhs(0, [1, 2, 3, math.inf]), ValueError, "finite"),
+                (lambda: car.step(math.nan), ValueError, "step: a finite number"),
+                (lambda: car.step(0.001, -1), ValueError, "negative"),
+                (lambda: car.step(0.001, method="euler"), ValueError, "'ab3' or 'rk4'"),
+                (lambda: car.step(-1), gicgen.RunError, "out of range"),
+                (lambda: car.restart(math.inf), ValueError, "time: a finite number"),
+                (lambda: car.set_up([1.0]), ValueError, r"shape \(0,\)"),
+                (lambda: car.set_up({"k": 1}), KeyError, "no parameter 'k'"),
+                (lambda: car.restore(b"123"), gicgen.WrongCall, "bytes"),
+                (lambda: batch.states.__setitem__("bounce", [1, 2]), ValueError, r"shape \(3,\) is wanted, not \(2,\)"),
+                (lambda: batch.reset([1, 0]), ValueError, r"shape \(3,\)"),
+                (lambda: self.model.batch(0), ValueError, "whole number from 1"),
+                (lambda: self.model.linearize(at=1), TypeError, "scene"),
+                (lambda: self.model.units("wheels"), KeyError, "there are states"),
+                (lambda: gicgen.Model(), TypeError, "path or a text")):
+            with self.assertRaisesRegex(kind, words):
+                call()
+
+    def test_run_that_ends_early(self):
+        with open("build_long.scene", "w") as file:
+            file.write("gicscene: 1\nduration: 5\nstep: 0.2\n")
+        with self.assertRaises(gicgen.RunError) as caught:
+            self.model.run("build_long.scene")
+        self.assertGreater(len(caught.exception.columns), 0)
+        self.assertIn("the run ends at", str(caught.exception))
+
+    def test_batch(self):
+        batch = self.model.batch(4, SCENE)
+        self.assertEqual(batch.states.array.shape, (4, 4))
+        batch.states["bounce"] = [0.05, 0.04, 0.03, 0.02]
+        batch.step(0.001, 100, "rk4")
+        for v in range(4):
+            car = self.car()
+            car.states["bounce"] = [0.05, 0.04, 0.03, 0.02][v]
+            car.step(0.001, 100, "rk4")
+            self.assertTrue(numpy.array_equal(batch.states[v], car.states[:]))
+        self.assertEqual(batch.outputs["tire.fz"].shape, (4,))
+        batch.states.array[1, 0] = math.nan
+        with self.assertRaisesRegex(gicgen.RunError, "vehicle 1"):
+            batch.step(0.001)
+        batch.step(0.001, check=False)
+        self.assertEqual(list(batch.status != 0), [False, True, False, False])
+        batch.reset([0, 1, 0, 0])
+        batch.step(0.001)
+        self.assertEqual(batch.states[1, 0] != batch.states[0, 0], True)
+
+    def test_linear(self):
+        linear, modes = self.model.linearize(), self.model.modes()
+        self.assertEqual(linear.A.shape, (4, 4))
+        self.assertEqual(len(linear.states), 4)
+        self.assertEqual(linear.C.shape, (len(linear.outputs), 4))
+        poles = numpy.sort(numpy.linalg.eigvals(linear.A).real)
+        numpy.testing.assert_allclose(numpy.unique(poles.round(6)), numpy.sort(modes["real"]).round(6))
+        rest = self.model.equilibrium()
+        numpy.testing.assert_allclose(self.model.instance().rhs(0, rest.states[:]), 0, atol=1e-8)
+
+    def test_threads(self):
+        def work(out):
+            model = gicgen.Model(QUARTER)
+            out.append(model.run(SCENE)["carriage.z"].sum())
+            for _ in range(5):
+                try:
+                    gicgen.Model("no.veh")
+                except gicgen.Error as error:
+                    assert error.file == "no.veh"
+                else:
+                    raise AssertionError
+        out = []
+        threads = [threading.Thread(target=work, args=(out,)) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(out), 8)
+        self.assertEqual(len(set(out)), 1)
+
+    def test_env(self):
+        model = gicgen.Model(TIRES)
+        check_env(lambda: VectorEnv(
+            model, 3, scene=COAST, actions={"rack": (-0.02, 0.02)}, observations=["chassis.y", "chassis_attitude.yaw"],
+            reward=lambda seen, action: -seen[:, 0] ** 2, terminated=lambda seen, action: abs(seen[:, 0]) > 0.8,
+            step=0.004, ratio=4, substeps=5, horizon=10, scatter={"r.y": 0.5}))
+        with self.assertRaisesRegex(KeyError, "is 'rack' meant"):
+            VectorEnv(model, 2, actions={"rak": (0, 1)}, observations=[], reward=None)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_python.sh GICRUN: the Python package (runtime/python) on Debian's Python: its calls, its examples, a step of
+# a batch against C, and pip without a network.
+build=$(cd "$(dirname "$1")" && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+root=$(cd "$(dirname "$0")/../.." && pwd)
+ln -s "$root/models" "$root/tests" "$work/"
+cd "$work" || exit 1
+GICGEN_LIBRARY=$build/libgic.so
+PYTHONPATH=$root/runtime/python
+export GICGEN_LIBRARY PYTHONPATH
+python() { /usr/bin/python3 "$@" >"$work/out" 2>"$work/err"; }
+
+check 'calls' python tests/python/calls.py
+check 'all of them' grep -q '^OK$' "$work/err"
+for example in "$root"/runtime/python/examples/*.py; do
+    check "$(basename "$example")" python "$example"
+    check 'it says something' [ -s "$work/out" ]
+done
+check 'there are five' [ "$(find "$root/runtime/python/examples" -name '*.py' | wc -l)" -eq 5 ]
+
+# 1,024 vehicles: at most 2 % more than in C
+steps=$work/steps.so
+check 'the steps in C' ${CC:-cc} -O2 -shared -fPIC -I"$root/runtime" -o "$steps" "$root/tests/python/batch_steps.c" "$GICGEN_LIBRARY"
+cost() { python tests/python/batch_cost.py "$steps" models/quarter_car.veh models/scenes/quarter_car.scene 1024 0.001 "$1" && awk '{ exit !($3 < 1.02) }' "$work/out"; }
+# the machine has other work too: a second look before it counts
+step_costs() { cost 15 || cost 60; }
+check 'a step of a batch costs what it costs in C' step_costs
+
+unset PYTHONPATH
+without_network() { /usr/bin/python3 -m pip --version >/dev/null 2>&1 || return 0; /usr/bin/python3 -m pip install -q --no-index --no-deps --target "$work/site" "$root/runtime/python"; }
+check 'pip install without a network' without_network
+unset GICGEN_LIBRARY
+[ ! -d "$work/site" ] || check 'what it installed works' env PYTHONPATH="$work/site" /usr/bin/python3 -c "
+import gicgen
+assert gicgen.__file__.startswith('$work/site')
+gicgen.Model('models/pendulum.veh').instance().step(0.001)"
+check 'the sources stay as they are' [ ! -e "$root/runtime/python/build" -a ! -e "$root/runtime/python/gicgen.egg-info" ]
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
