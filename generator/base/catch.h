@@ -13,8 +13,8 @@ typedef enum MessageKind { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE } Messag
 /* What a program would have printed to stderr, in parts and as a whole. */
 typedef struct Message {
     MessageKind kind;
-    const char *file; /* as the user gave it; NULL: the message is about none */
-    int line, column; /* from 1; 0: the file as a whole */
+    const char *file;          /* as the user gave it; NULL: the message is about none */
+    int line, column;          /* from 1; 0: the file as a whole */
     const char *text, *remedy; /* remedy: NULL: none */
     const char *printed;
     struct Message *next;

@@ -178,7 +178,9 @@ static void tell(Place at, MessageKind kind, const char *remedy, const char *tex
                            .file = at.source ? at.source->path : NULL,
                            .line = at.line,
                            .column = at.column,
-                           .text = full ? NULL : clean.s ? clean.s : "",
+                           .text = full      ? NULL
+                                   : clean.s ? clean.s
+                                             : "",
                            .remedy = remedy ? way.s : NULL,
                            .printed = printed->s});
     free(clean.s);

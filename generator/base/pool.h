@@ -17,7 +17,8 @@ void *pool_grow(Pool *pool, void *old, size_t old_size, size_t size); /* copy in
 char *pool_print(Pool *pool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 char *pool_vprint(Pool *pool, const char *format, va_list args);
 
-/* Say that memory is out and exit with status 1, or end what catches that; every allocation of a Pool ends here if it fails. */
+/* Say that memory is out and exit with status 1, or end what catches that; every allocation of a Pool ends here if it
+ * fails. */
 _Noreturn void out_of_memory(void);
 
 /* Make room for one more element after the first `count` of `array`; the capacity doubles. */

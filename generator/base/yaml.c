@@ -26,7 +26,7 @@ typedef struct Loader {
     yaml_parser_t parser;
     Anchor *anchor;
     int anchors;
-    size_t items; /* items so far, aliases counted as if written out */
+    size_t items;                       /* items so far, aliases counted as if written out */
     yaml_event_t live[2 * NESTING + 8]; /* events that are not yet dropped, for failures that are caught */
     int lives;
 } Loader;

@@ -58,10 +58,10 @@ enum { GICL_ERROR = 0, GICL_WARNING = 1, GICL_NOTE = 2 };
 
 typedef struct gicl_message {
     int kind;
-    const char *file; /* as it was named; NULL: the message is about none */
-    int line, column; /* from 1; 0: the file as a whole */
+    const char *file;          /* as it was named; NULL: the message is about none */
+    int line, column;          /* from 1; 0: the file as a whole */
     const char *text, *remedy; /* remedy: NULL: none */
-    const char *printed; /* all of it, lines as gicrun prints them */
+    const char *printed;       /* all of it, lines as gicrun prints them */
 } gicl_message;
 
 /* A list for one thread at a time; NULL: no memory. */
@@ -84,20 +84,21 @@ GICL_API int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages 
 
 /* How a model is computed; words are those of gicrun's options. NULL and 0 are the defaults. */
 typedef struct gicl_options {
-    size_t size;           /* sizeof(gicl_options) */
-    const char *engine;    /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
-                            * gicrun's cache; "tape": interpreted. All three give the same bits, runs of scenes
-                            * with `general` */
-    const char *solve;     /* "auto", "reduced", "articulated", "augmented" */
-    const char *recovery;  /* "auto", "newton", "closed" */
-    const char *compiler;  /* of "cc": a command */
-    const char *flags;     /* more options for it */
+    size_t size;          /* sizeof(gicl_options) */
+    const char *engine;   /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
+                           * gicrun's cache; "tape": interpreted. All three give the same bits, runs of scenes
+                           * with `general` */
+    const char *solve;    /* "auto", "reduced", "articulated", "augmented" */
+    const char *recovery; /* "auto", "newton", "closed" */
+    const char *compiler; /* of "cc": a command */
+    const char *flags;    /* more options for it */
     const char *integrator; /* instead of the scenes': "ab3", "rk4", "adams", "rkck" */
-    double tolerance;      /* of variable steps, instead of the scenes' */
-    int general;           /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
+    double tolerance;       /* of variable steps, instead of the scenes' */
+    int general;            /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
 } gicl_options;
 
-/* Read and check a model. name: that of the text in messages; files that it includes are sought from the folder in it. */
+/* Read and check a model. name: that of the text in messages; files that it includes are sought from the folder in it.
+ */
 GICL_API int gicl_model_open(gicl_library *library, const char *path, const gicl_options *options, gicl_handle *model,
                              gicl_messages *said);
 GICL_API int gicl_model_text(gicl_library *library, const char *name, const char *text, size_t size,
@@ -129,8 +130,8 @@ GICL_API int gicl_find(gicl_library *library, gicl_handle model, int kind, const
 
 enum { GICL_AB3 = 0, GICL_RK4 = 1 };
 
-/* One vehicle, set up. scene: a path, whose road, parameters and initial state it gets, and whose inputs at time 0; they
- * then are the caller's. NULL: the model at design, on a flat road. */
+/* One vehicle, set up. scene: a path, whose road, parameters and initial state it gets, and whose inputs at time 0;
+ * they then are the caller's. NULL: the model at design, on a flat road. */
 GICL_API int gicl_instance_new(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *instance,
                                gicl_messages *said);
 /* Back to that start, at time 0. parameter: [count], all of the model's; NULL with 0: those of scene or model. */
@@ -143,8 +144,8 @@ GICL_API int gicl_view(gicl_library *library, gicl_handle instance, int kind, do
 /* Forget the integrator's history; the time becomes `time`, s. */
 GICL_API int gicl_restart(gicl_library *library, gicl_handle instance, double time, gicl_messages *said);
 GICL_API int gicl_time(gicl_library *library, gicl_handle instance, double *time, gicl_messages *said);
-/* `steps` steps of `step` seconds with constant inputs; ratio: of AB3, fast steps of wheels and powertrain in a step, 1:
- * one. Ends at the first that fails. */
+/* `steps` steps of `step` seconds with constant inputs; ratio: of AB3, fast steps of wheels and powertrain in a step,
+ * 1: one. Ends at the first that fails. */
 GICL_API int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int ratio, int64_t steps,
                        gicl_messages *said);
 /* The rate of a state at a time, with the instance's inputs; both [count], the number of states. The instance's own
@@ -182,8 +183,8 @@ GICL_API int gicl_batch_restart(gicl_library *library, gicl_handle batch, const 
 
 /* ---- what gicrun finds out ---------------------------------------------------------------------------------- */
 
-/* A scene run from begin to end: array "columns", with the bits of gicrun's results. Where the run ends early the status
- * is GICL_FAILED and *result, if it is not 0, has the rows up to there. */
+/* A scene run from begin to end: array "columns", with the bits of gicrun's results. Where the run ends early the
+ * status is GICL_FAILED and *result, if it is not 0, has the rows up to there. */
 GICL_API int gicl_run(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *result,
                       gicl_messages *said);
 /* Static equilibrium near the initial state of a scene (NULL: the model's), as gicrun --equilibrium: arrays "state",
@@ -196,8 +197,8 @@ GICL_API int gicl_modes(gicl_library *library, gicl_handle model, const char *sc
                         gicl_messages *said);
 /* The linear model, SCENE.md section 8: arrays A to F, N, f, z0, u0, y0, p0. at: a time of the scene's run, s; NaN:
  * about the equilibrium. */
-GICL_API int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, double at,
-                            gicl_handle *result, gicl_messages *said);
+GICL_API int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, double at, gicl_handle *result,
+                            gicl_messages *said);
 
 /* One array of a result, row-major; it stays until the result is closed. */
 typedef struct gicl_array {

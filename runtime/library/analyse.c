@@ -56,9 +56,9 @@ static const Model *read_scene(const Work *work, const Scene **scene)
 {
     Pool *pool = work->result->pool;
     const OpenModel *open = work->open;
-    *scene = work->path ? scene_read(pool, pool_print(pool, "%s", work->path), open->model, open->integrator,
-                                     open->tolerance)
-                        : NULL;
+    *scene = work->path
+                 ? scene_read(pool, pool_print(pool, "%s", work->path), open->model, open->integrator, open->tolerance)
+                 : NULL;
     return scene_rig(pool, open->model, scene);
 }
 
@@ -177,8 +177,10 @@ static int analyse(gicl_library *library, gicl_handle model, const char *scene, 
         return status;
     Work work = {.open = use.thing, .path = scene, .at = at};
     if (!result || (wanted && !scene))
-        return use_end(&use, call_wrong(said, NULL, "%s must not be NULL", result ? "the scene" : "the place for the "
-                                                                                                  "handle"));
+        return use_end(&use, call_wrong(said, NULL, "%s must not be NULL",
+                                        result ? "the scene"
+                                               : "the place for the "
+                                                 "handle"));
     status = call_work(library, said, make_result, &work);
     if (status != GICL_OK)
         return use_end(&use, status);

@@ -184,8 +184,8 @@ int gicl_rhs(gicl_library *library, gicl_handle instance, double time, const dou
         return status;
     const int n = code->slow_count + code->fast_count;
     if (!state || !rate || count != n)
-        return use_end(&use, call_wrong(said, NULL, "state and rate must have %d numbers, not %d", n,
-                                        state && rate ? count : 0));
+        return use_end(
+            &use, call_wrong(said, NULL, "state and rate must have %d numbers, not %d", n, state && rate ? count : 0));
     model_enter(one->start.model);
     status = code->rhs(one->self, time, state, rate);
     call_status(said, code, one->self, status, "right-hand side");
@@ -217,7 +217,7 @@ int gicl_outputs(gicl_library *library, gicl_handle instance, gicl_messages *sai
 /* Begin of a snapshot; the instance follows. */
 typedef struct SnapshotHead {
     char mark[8];
-    uint64_t code; /* a hash of what the instance's numbers mean */
+    uint64_t code;  /* a hash of what the instance's numbers mean */
     uint64_t bytes; /* a hash of the instance */
 } SnapshotHead;
 

@@ -54,11 +54,11 @@ typedef struct OpenModel {
     const char *engine_name, *integrator;
     double tolerance;
     bool general;
-    pthread_mutex_t lock;  /* of what follows, and of calls of interpreted engines, whose instances share scratch */
-    const Engine *engine;  /* NULL: not needed yet */
+    pthread_mutex_t lock; /* of what follows, and of calls of interpreted engines, whose instances share scratch */
+    const Engine *engine; /* NULL: not needed yet */
     Pool *engine_pool;
-    const char *c, *h;     /* NULL: not yet generated */
-    atomic_int users;      /* the handle, instances and batches */
+    const char *c, *h; /* NULL: not yet generated */
+    atomic_int users;  /* the handle, instances and batches */
 } OpenModel;
 
 /* The model's code for any scene, compiled by the first call. */

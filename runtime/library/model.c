@@ -123,13 +123,12 @@ int gicl_model_open(gicl_library *library, const char *path, const gicl_options 
     const int status = check_opening(library, path, options, handle, said);
     if (status == GICL_OK && !strcmp(path, "-"))
         return call_wrong(said, "read it and call gicl_model_text()", "the model must be a file");
-    return status == GICL_OK
-               ? finish_opening(library, &(Opening){.path = path, .options = options}, handle, said)
-               : status;
+    return status == GICL_OK ? finish_opening(library, &(Opening){.path = path, .options = options}, handle, said)
+                             : status;
 }
 
-int gicl_model_text(gicl_library *library, const char *name, const char *text, size_t size,
-                    const gicl_options *options, gicl_handle *handle, gicl_messages *said)
+int gicl_model_text(gicl_library *library, const char *name, const char *text, size_t size, const gicl_options *options,
+                    gicl_handle *handle, gicl_messages *said)
 {
     const int status = check_opening(library, name ? text : NULL, options, handle, said);
     Opening opening = {.path = name, .text = text, .size = size, .options = options};

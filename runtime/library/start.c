@@ -10,8 +10,8 @@ Start start_read(Pool *pool, OpenModel *model, const char *scene)
 {
     if (!scene)
         return (Start){model, NULL};
-    const Scene *read = scene_read(pool, pool_print(pool, "%s", scene), model->model, model->integrator,
-                                   model->tolerance);
+    const Scene *read =
+        scene_read(pool, pool_print(pool, "%s", scene), model->model, model->integrator, model->tolerance);
     scene_no_rig(read);
     return (Start){model, equilibrium_start(pool, model->model, read, model->options.solve)};
 }

@@ -35,7 +35,7 @@ typedef struct Request {
     double travel;                /* --travel, m; 0: as usual */
     double at;                    /* --at, s; NAN: not given */
     const char *results;          /* "-": standard output; NULL: none */
-    RunColumns *columns;             /* for the library: the same in memory; NULL: not wanted */
+    RunColumns *columns;          /* for the library: the same in memory; NULL: not wanted */
     const char *picture;          /* --plot, or NULL */
     const char *with;             /* --with, or NULL */
     const struct CsvTable *other; /* what is in it */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * batch_cost.py makes a shared object of it and calls it: steps of a batch in C, in the same process and memory. Returns a
- * status. */
+ * batch_cost.py makes a shared object of it and calls it: steps of a batch in C, in the same process and memory.
+ * Returns a status. */
 #include "host/gic.h"
 
 int batch_steps(gicl_library *library, gicl_handle batch, double step, int steps);

@@ -72,9 +72,7 @@ static gicl_handle instance(const Lib *lib, gicl_handle of, const char *in)
 
 /* ---- numbers ------------------------------------------------------------------------------------------------- */
 
-/* The pendulum has a closed solution for what is asked of it: w'' = -g/l sin w in the file's own numbers is not known
- * here, but energy is: RK4 with short steps keeps the sum that the outputs do not have; so engines are compared with one
- * another, bit for bit, and a snapshot with the run it was taken of. */
+/* Engines share no more than the formulation, and agree bit for bit. */
 static void test_engines_agree(void **state)
 {
     const Lib *lib = *state;
@@ -262,9 +260,12 @@ static long resident(void)
 
 static void test_failures_leave_nothing(void **state)
 {
-    static const char *const bad[] = {"tests/data/mistakes/body_key_unknown.veh", "tests/data/mistakes/bytes_nul.veh",
-                                      "tests/data/mistakes/coordinate_range.veh", "tests/data/mistakes/empty.veh",
-                                      "no/such/file.veh", "models"};
+    static const char *const bad[] = {"tests/data/mistakes/body_key_unknown.veh",
+                                      "tests/data/mistakes/bytes_nul.veh",
+                                      "tests/data/mistakes/coordinate_range.veh",
+                                      "tests/data/mistakes/empty.veh",
+                                      "no/such/file.veh",
+                                      "models"};
     const Lib *lib = *state;
     gicl_handle handle;
     const gicl_handle m = model(lib, quarter, "tcc");
