@@ -56,6 +56,18 @@ if ./wrong 2>leak || ! grep -q 'detected memory leaks' leak; then
     export ASAN_OPTIONS
 fi
 
+# ---- the library: its calls, threads and failures, and all broken models in one process ---------------------------
+
+make -C "$root" --no-print-directory -s -j2 WERROR=-Werror BUILD="$debug" CFLAGS="-O1 -g -fsanitize=address,undefined \
+    -fno-sanitize-recover=all -fno-omit-frame-pointer" "$debug/check/test_library" "$debug/check/library" >"$work/said" 2>&1 &&
+    (cd "$root" && "$debug/check/test_library") >"$work/out" 2>"$work/said"
+status=$?
+[ $status -ne 0 ] || : >"$work/said"
+check $status "calls of the library"
+"$debug/check/library" open "$root"/tests/data/mistakes/*.veh 2>"$work/refused"
+[ $? -eq 1 ] && ! grep 'runtime error:\|Sanitizer' "$work/refused" >"$work/said"
+check $? "the library refuses broken models and leaves nothing of them"
+
 # ---- gicgen -------------------------------------------------------------------------------------------------------
 
 models=$root/models

@@ -8,6 +8,7 @@
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -290,6 +291,82 @@ static void test_failures_leave_nothing(void **state)
 #endif
 }
 
+/* ---- memory that ends ---------------------------------------------------------------------------------------- */
+
+/* Allocations of our code until one fails, in this thread; 0: none does. Later ones succeed again. */
+static _Thread_local long until;
+static _Thread_local bool failed;
+
+static bool fails(void)
+{
+    if (until == 0 || --until > 0)
+        return false;
+    failed = true;
+    return true;
+}
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    return fails() ? NULL : __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    return fails() ? NULL : __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    return fails() ? NULL : __real_realloc(old, size);
+}
+
+/* All kinds of calls, by the engine that needs no libtcc. The status of the first that fails. */
+static int many_calls(gicl_library *lib, gicl_messages *said)
+{
+    const gicl_options options = {.size = sizeof options, .engine = "tape"};
+    gicl_handle m, car, batch, result;
+    const char *c, *h;
+    int status = gicl_model_open(lib, quarter, &options, &m, said);
+    if (!status)
+        status = gicl_generate(lib, m, &c, &h, said);
+    if (!status)
+        status = gicl_instance_new(lib, m, scene, &car, said);
+    if (!status)
+        status = gicl_step(lib, car, 0.001, GICL_AB3, 1, 3, said);
+    if (!status)
+        status = gicl_batch_new(lib, m, NULL, 3, &batch, said);
+    if (!status)
+        status = gicl_run(lib, m, scene, &result, said);
+    return status;
+}
+
+static void test_no_memory(void **state)
+{
+    const Lib *lib = *state;
+    int rounds = 0;
+    do {
+        gicl_library *own = gicl_open();
+        failed = false;
+        until = ++rounds;
+        const int status = many_calls(own, lib->said);
+        until = 0;
+        /* a warning may be lost without a failure, nothing else */
+        if (status != GICL_OK) {
+            assert_true(failed);
+            assert_non_null(strstr(last(lib->said), "memory"));
+        }
+        assert_int_equal(gicl_close(own), GICL_OK);
+    } while (failed);
+    assert_true(rounds > 30);
+}
+
 static void test_text(void **state)
 {
     const Lib *lib = *state;
@@ -389,6 +466,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_batch, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_wrong_calls, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_failures_leave_nothing, open_lib, close_lib),
+        cmocka_unit_test_setup_teardown(test_no_memory, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_text, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_threads, open_lib, close_lib),
     };
