@@ -21,6 +21,15 @@ for example in "$root"/runtime/python/examples/*.py; do
 done
 check 'there are five' [ "$(find "$root/runtime/python/examples" -name '*.py' | wc -l)" -eq 5 ]
 
+# piece LANGUAGE PAGE: what stands between fences of that language on a page
+piece() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$root/$2" | sed '/^```/d'; }
+piece python runtime/PYTHON.md >page.py
+check 'the piece on its page' sh -c 'grep -q import page.py && /usr/bin/python3 page.py >"$1" 2>&1' sh "$work/err"
+piece c runtime/README.md >page.c
+check 'the program on the page of the library' cc -std=c99 -Wall -Wextra -Werror -I"$root/runtime/host" -o page page.c "$GICGEN_LIBRARY"
+ln -s "$GICGEN_LIBRARY" libgic.so.1
+check 'runs' sh -c 'LD_LIBRARY_PATH=. ./page | grep -q "^bounce after 0.2 s: [0-9.-]* m$"'
+
 # 1,024 vehicles: at most 2 % more than in C
 steps=$work/steps.so
 check 'the steps in C' cc -O2 -shared -fPIC -I"$root/runtime" -o "$steps" "$root/tests/python/batch_steps.c" "$GICGEN_LIBRARY"
