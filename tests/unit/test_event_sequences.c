@@ -113,7 +113,8 @@ static Exact follow(const Mass *mass)
             at.time += t;
             left = end;
         } else {
-            const long double w = mass->omega[left], side = left ? 1 : -1, c = side * a / (w * w), v = side * at.v;
+            const long double w = mass->omega[left == 1], side = left == 1 ? 1 : -1;
+            const long double c = side * a / (w * w), v = side * at.v;
             const long double half = fmaxl(atan2l(v, -w * c) / w, 0); /* of the contact */
             at.shortest = fminl(at.shortest, 2 * half);
             at.grazes += half < 1e-6L;
