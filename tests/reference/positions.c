@@ -205,7 +205,7 @@ static bool continue_to(Solver *solver, Configuration *trial)
     quad tangent = correct(solver, trial);
     if (tangent > 0.3)
         return false;
-    for (quad last = tangent; last > (solver->coarse ? 1e-6 : 1e-16);) {
+    for (quad last = tangent; last > (solver->coarse ? 1e-6 : CLOSE);) {
         quad size = correct(solver, trial);
         if (!(size < 0.25 * last))
             return false;
@@ -227,9 +227,12 @@ static bool polish(Solver *solver, const State *state)
     Configuration *good = solver->configuration;
     for (int c = 0; c < model->coordinates; ++c)
         good->w[c] = state->w[c];
-    /* places have the rounding of their distance from the origin */
+    /* places have the rounding of their distance from the origin, which a thread divides by its ratio */
     const quad far = fabsq(good->q[0][0]) + fabsq(good->q[0][1]) + fabsq(good->q[0][2]);
-    const quad enough = far > 1000 ? ROUGHLY / 1000 * far : ROUGHLY;
+    quad enough = far > 1000 ? ROUGHLY / 1000 * far : ROUGHLY;
+    for (int i = 0; i < model->joints; ++i)
+        if (model->joint[i].type == SCREW || model->joint[i].type == RACK_AND_PINION)
+            enough = fmaxq(enough, ROUGHLY / 100 * far / fabsq((quad)model->joint[i].offset));
     for (int i = 0; i < 20; ++i) {
         rows_evaluate(model, good, solver->row);
         const bool is_enough = residual(solver, good) < enough;

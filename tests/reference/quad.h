@@ -8,11 +8,13 @@
 #include <quadmath.h>
 
 /* With -DREFERENCE_LONG in extended precision of 64 bits, which is enough to judge double precision by where nothing is
- * near singular, and twenty times as fast. ROUGHLY: a number that is rounding, with some digits to spare. */
+ * near singular, and twenty times as fast. ROUGHLY: a number that is rounding, with some digits to spare. CLOSE: so small
+ * a correction that the next one may be rounding, also where a small ratio of a thread divides it. */
 #ifdef REFERENCE_LONG
 #include <math.h>
 typedef long double quad;
 #define ROUGHLY 1e-17
+#define CLOSE 1e-14
 #define acosq acosl
 #define asinq asinl
 #define atan2q atan2l
@@ -34,6 +36,7 @@ typedef long double quad;
 #else
 typedef __float128 quad;
 #define ROUGHLY 1e-28
+#define CLOSE 1e-16
 #endif
 
 quad quad_dot(const quad *a, const quad *b, int size);
