@@ -217,5 +217,9 @@ int gicl_modes(gicl_library *library, gicl_handle model, const char *scene, gicl
 int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, double at, gicl_handle *result,
                    gicl_messages *said)
 {
+    if (result)
+        *result = 0;
+    if (!isnan(at) && !(at >= 0 && isfinite(at)))
+        return call_wrong(said, NULL, "the time must be finite and at least 0, or NaN for rest");
     return analyse(library, model, scene, !isnan(at), at, find_linear, result, said);
 }

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 """calls.py: the Python package by unittest, from the folder of the sources: results are those of gicrun, views are
 the instance's memory, wrong calls raise exceptions that say what was expected, environments keep Gymnasium's rules."""
+import copy
 import gc
 import math
+import pickle
 import threading
 import unittest
 
@@ -158,7 +160,16 @@ class Calls(unittest.TestCase):
                 (lambda: car.rhs(0, [1, 2, 3]), ValueError, r"shape \(4,\) is wanted, not \(3,\)"),
                 (lambda: car.rhs(0, [1, 2, 3, math.inf]), ValueError, "finite"),
                 (lambda: car.step(math.nan), ValueError, "step: a finite number"),
-                (lambda: car.step(0.001, -1), ValueError, "negative"),
+                (lambda: car.step(0.001, -1), ValueError, "steps: a whole number from 0"),
+                (lambda: car.step(0.001, 2**64 + 1), ValueError, "steps: a whole number from 0"),
+                (lambda: car.step(0.001, 1.5), TypeError, "steps: a whole number is wanted, not 1.5"),
+                (lambda: car.step(0.001, ratio=2**32 + 1), ValueError, "ratio: a whole number from 1"),
+                (lambda: batch.step(0.001, 2**64), ValueError, "steps: a whole number from 0"),
+                (lambda: batch.step(0.001, ratio=0), ValueError, "ratio: a whole number from 1"),
+                (lambda: copy.deepcopy(car), TypeError, "can not be copied"),
+                (lambda: pickle.dumps(self.model), TypeError, "can not be copied"),
+                (lambda: self.model.batch(2**32 + 2), ValueError, "vehicles: a whole number from 1 to 16777216"),
+                (lambda: self.model.linearize(SCENE, at=-1), gicgen.WrongCall, "at least 0"),
                 (lambda: car.step(0.001, method="euler"), ValueError, "'ab3' or 'rk4'"),
                 (lambda: car.step(-1), gicgen.RunError, "out of range"),
                 (lambda: car.restart(math.inf), ValueError, "time: a finite number"),

@@ -10,6 +10,7 @@
 """
 import ctypes
 import math
+import operator
 import os
 
 import numpy
@@ -45,6 +46,25 @@ def _number(value, what):
     if not math.isfinite(number):
         raise ValueError(f"{what}: a finite number is wanted, not {value!r}")
     return number
+
+
+def _count(value, what, least, most):
+    """A whole number within what the library's counts can have."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what}: a whole number is wanted, not {value!r}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{what}: a whole number from {least} to {most} is wanted, not {value!r}")
+    return number
+
+
+def _steps(value):
+    return _count(value, "steps", 0, 2**63 - 1)
+
+
+def _ratio(value):
+    return _count(value, "ratio", 1, 2**31 - 1)
 
 
 def _vector(value, count, what):
@@ -291,7 +311,8 @@ class Instance:
 
     def step(self, step, steps=1, method="ab3", ratio=1):
         """`steps` steps of `step` seconds, inputs constant; ratio: of ab3, fast steps of wheels and powertrain in each."""
-        call("step", self._handle, _number(step, "step"), _method(method), ratio, steps)
+        call("step", self._handle, _number(step, "step"), _method(method), _ratio(ratio),
+             _steps(steps))
 
     def rhs(self, time, states):
         """Rates of states, with the present inputs: a right-hand side for scipy.integrate.solve_ivp."""
@@ -309,6 +330,8 @@ class Instance:
         return out.raw
 
     def restore(self, snapshot):
+        if not isinstance(snapshot, (bytes, bytearray, memoryview)):
+            raise TypeError(f"snapshot: bytes as snapshot() gives them are wanted, not {type(snapshot).__name__}")
         call("restore", self._handle, bytes(snapshot), len(snapshot))
 
 
@@ -318,8 +341,7 @@ class Batch:
 
     def __init__(self, model, vehicles, scene=None):
         handle = Handle()
-        if not isinstance(vehicles, int) or vehicles < 1:
-            raise ValueError(f"vehicles: a whole number from 1 on is wanted, not {vehicles!r}")
+        vehicles = _count(vehicles, "vehicles", 1, 2**24)
         call("batch_new", model._handle, _bytes(scene), vehicles, ctypes.byref(handle))
         self._owned, self.vehicles = _library.Owned(handle), vehicles
         self.status = numpy.zeros(vehicles, dtype=numpy.int32)
@@ -356,6 +378,8 @@ class Batch:
         # short, since between two steps of many vehicles the processor has forgotten all of it
         if type(step) is not float or step - step != 0:
             step = _number(step, "step")
+        if type(steps) is not int or type(ratio) is not int or steps >> 63 or ratio >> 31 or not ratio:
+            steps, ratio = _steps(steps), _ratio(ratio)
         number = 0 if method == "ab3" else _method(method)
         status = _library.batch_step(_library.library, self._handle, step, number, ratio, steps, self._status_at,
                                      _library.said.list)

@@ -180,5 +180,9 @@ class Owned:
     def __init__(self, handle):
         self.handle = handle
 
+    def __reduce_ex__(self, protocol):
+        raise TypeError("models and vehicles can not be copied or pickled: snapshot() and restore() take the state of a "
+                        "vehicle to another instance of its model")
+
     def __del__(self):
         _c.gicl_free(_library, self.handle, None)
