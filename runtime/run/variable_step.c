@@ -389,7 +389,16 @@ static int return_to_change(Variable *variable, gic_head *self)
     return status;
 }
 
-/* What controllers hold changes now; *end: not beyond the next time of theirs. */
+/* Times that differ by less (s) are the same to all controllers. */
+static double same_time(const gic_model *model, double time)
+{
+    double period = INFINITY;
+    for (int32_t c = 0; c < model->controller_count; ++c)
+        period = fmin(period, model->controller[c].period);
+    return 1e-9 * period + 1e-15 * fabs(time);
+}
+
+/* What controllers hold changes now; *end: not beyond the next time of theirs, but at it, where that is the same. */
 static int sample(Variable *variable, gic_head *self, double *end)
 {
     const gic_model *model = variable->model;
@@ -397,7 +406,8 @@ static int sample(Variable *variable, gic_head *self, double *end)
     double next, *state = array_of(self, model->state_offset);
     memcpy(variable->settled, state, size);
     const int status = gic_sample(model, self, &next);
-    *end = fmin(*end, next);
+    if (next < *end - same_time(model, *end))
+        *end = next;
     variable->fresh = variable->fresh || memcmp(variable->settled, state, size);
     return status;
 }

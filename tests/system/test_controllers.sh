@@ -196,6 +196,43 @@ scene 0.01 0.1 1 'integrator: rk4'
 "$gicrun" -q two.veh a.scene -o two.csv 2>said && awk -F, 'NR > 1 && ($2 != $5 || $3 != $6) { wrong = 1 } END { exit !(NR == 12 && $2 > 0.5 && !wrong) }' two.csv
 verdict $? 'a part with a controller twice, by prefixes'
 
+# ---- rows at sampling times are those before the sample, whatever rounding makes of either
+# counted PERIOD OFFSET OUTPUT_STEP INTEGRATOR: the number of samples so far against whole numbers
+counted() {
+    cat >count.veh <<END
+gicgen: 1
+model: count
+base: ground
+gravity: [0, 0, 0]
+bodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {slide: {type: prismatic, bodies: [ground, car], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, car], axis: [1, 0, 0], range: [-9, 9]}}
+controllers: {c: {period: $1, offset: $2, rules: {n: "c.n + 1"}}}
+forces: {push: {type: force, coordinate: x, value: "0.001 * c.n"}}
+signals: {n: {value: c.n, unit: "1"}}
+outputs: {n: {type: signal, signal: n}}
+END
+    printf 'gicscene: 1\nduration: 3\nstep: 0.01\noutput_step: %s\nintegrator: %s\n' "$3" "$4" >count.scene
+    "$gicrun" -q count.veh count.scene -o count.csv 2>said &&
+        python3 - "$1" "$2" "$3" <<'END' >>said
+import csv, math, sys
+from fractions import Fraction
+period, offset, step = map(Fraction, sys.argv[1:])
+rows = list(csv.reader(open("count.csv")))[1:]
+assert len(rows) == 3 // step + 1, len(rows)
+for i, row in enumerate(rows):
+    before = max(0, math.ceil((i * step - offset) / period))
+    assert float(row[1]) == before, (i, row, before)
+END
+    verdict $? "samples before rows: period $1, offset $2, rows $3, $4"
+}
+for integrator in rkck adams ab3; do
+    counted 0.02 0 0.1 $integrator
+    counted 0.02 0 0.07 $integrator
+    counted 0.01 0.1 0.07 $integrator
+    counted 0.03 0 0.01 $integrator
+done
+
 # ---- mistakes
 # refused PLACE MESSAGE REMEDY CONTROLLERS [MORE]: one message and no output
 refused() {
