@@ -8,8 +8,8 @@
 #include <quadmath.h>
 
 /* With -DREFERENCE_LONG in extended precision of 64 bits, which is enough to judge double precision by where nothing is
- * near singular, and twenty times as fast. ROUGHLY: a number that is rounding, with some digits to spare. CLOSE: so small
- * a correction that the next one may be rounding, also where a small ratio of a thread divides it. */
+ * near singular, and twenty times as fast. ROUGHLY: a number that is rounding, with some digits to spare. CLOSE: so
+ * small a correction that the next one may be rounding, also where a small ratio of a thread divides it. */
 #ifdef REFERENCE_LONG
 #include <math.h>
 typedef long double quad;
