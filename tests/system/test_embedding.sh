@@ -108,7 +108,7 @@ memory='mem(cpy|set|move|cmp)|__stack_chk_fail'
 for name in $compiled; do
     for real in double float; do
         f=$([ $real = float ] && echo f)
-        mathematics="(sqrt|sin|cos|sincos|tan|atan2|asin|acos|atan|exp|log|tanh|pow|fabs|floor)$f"
+        mathematics="(sqrt|sin|cos|sincos|tan|atan2|asin|acos|atan|exp|log|tanh|pow|fabs|floor|ceil|round)$f"
         foreign=$(nm -u "$name.$real.o" | awk '{ print $2 }' | grep -Evx "gic_.*|$mathematics|$memory")
         [ -z "$foreign" ]
         verdict $? "$name in $real precision needs $foreign"
