@@ -60,7 +60,7 @@ fi
 
 make -C "$root" --no-print-directory -s -j2 WERROR=-Werror BUILD="$debug" CFLAGS="-O1 -g -fsanitize=address,undefined \
     -fno-sanitize-recover=all -fno-omit-frame-pointer" "$debug/check/test_library" "$debug/check/library" >"$work/said" 2>&1 &&
-    (cd "$root" && GICGEN_CACHE= "$debug/check/test_library") >"$work/out" 2>"$work/said"
+    (cd "$root" && GICGEN_CACHE='' "$debug/check/test_library") >"$work/out" 2>"$work/said"
 status=$?
 [ $status -ne 0 ] || : >"$work/said"
 check $status "calls of the library"
