@@ -92,6 +92,23 @@ static int state_coordinate(const Making *m, int state, bool *rate)
     return -1;
 }
 
+/* What a controller holds, or will when its delay ends: a group of the rule's name has both, as names are those of
+ * values or of groups. NULL: no state of a rule. */
+static const char *rule_state_name(const Making *m, int fast)
+{
+    const Model *model = m->model;
+    for (int i = 0; i < model->controllers; ++i)
+        for (int j = 0; j < model->controller[i].rules; ++j) {
+            const ControlRule *rule = &model->controller[i].rule[j];
+            const int way = fast - model->state[rule->state].fast;
+            if (way == 0)
+                return pool_print(m->pool, "state.%s.value", rule->name);
+            if (way > 0 && way <= rule->waiting)
+                return pool_print(m->pool, "state.%s.delayed_%d", rule->name, way);
+        }
+    return NULL;
+}
+
 /* Name, description and nominal value of a state. */
 static void name_state(Making *m, int state, const char **name, const char **description, double *nominal)
 {
@@ -109,6 +126,8 @@ static void name_state(Making *m, int state, const char **name, const char **des
         if (m->model->coordinate[w].type != COORDINATE_ANGLE)
             *nominal = 0.1; /* m, or m/s: travel of suspensions */
     } else if (state >= m->f->plan->states) {
+        const char *held = rule_state_name(m, state - m->f->plan->states);
+        *name = held ? held : *name;
         *description = pool_print(m->pool, "fast state '%s'", own);
         *nominal = path_ends(own, ".spin") ? 10 : path_ends(own, ".speed") ? 100 : 1;
         if (path_ends(own, ".slip_x") || path_ends(own, ".slip_y"))
@@ -353,7 +372,10 @@ static void add_outputs(Making *m)
     for (int i = 0; i < m->model->outputs; ++i) {
         const Output *output = &m->model->output[i];
         for (int c = 0; c < output->count; ++c) {
-            Variable *v = add(m, KIND_OUTPUT, index++, output->component[c], output->unit[c],
+            /* of a rule: beside what it holds */
+            const char *name =
+                output->sampled ? pool_print(m->pool, "state.%s", output->component[c]) : output->component[c];
+            Variable *v = add(m, KIND_OUTPUT, index++, name, output->unit[c],
                               pool_print(m->pool, "output '%s' (%s)", output->name, output_type_name[output->type]));
             const bool wheel =
                 output->type == OUTPUT_WHEEL || output->type == OUTPUT_TIRE || output->type == OUTPUT_CONTACT;
