@@ -308,7 +308,7 @@ gic_real gic_time(const void *self);
 /* AB3: a number after a step from its value, its rate there and its rates at the two steps before; weight: step / 12.
  * For numbers, vectors and complex numbers. */
 #define GIC_ADAMS_BASHFORTH(value, weight, rate, past, older) \
-    ((value) + (weight) * (GIC_R(23.0) * (rate)-GIC_R(16.0) * (past) + GIC_R(5.0) * (older)))
+    ((value) + (weight) * (GIC_R(23.0) * (rate) + GIC_R(-16.0) * (past) + GIC_R(5.0) * (older)))
 
 /* Forget the integrator's history after state or inputs have jumped; the time becomes `time`. */
 #define gic_restart GIC_NAME(gic_restart)

@@ -15,30 +15,22 @@ typedef struct Platform {
 } Platform;
 
 #if defined __x86_64__
-#define HERE \
-    { \
-        "linux64", "x86_64-linux" \
-    }
+#define HERE_2 "linux64"
+#define HERE_3 "x86_64-linux"
 #elif defined __aarch64__
-#define HERE \
-    { \
-        "aarch64-linux", "aarch64-linux" \
-    }
+#define HERE_2 "aarch64-linux"
+#define HERE_3 "aarch64-linux"
 #elif defined __i386__
-#define HERE \
-    { \
-        "linux32", "x86-linux" \
-    }
+#define HERE_2 "linux32"
+#define HERE_3 "x86-linux"
 #else
-#define HERE \
-    { \
-        "linux", "linux" \
-    }
+#define HERE_2 "linux"
+#define HERE_3 "linux"
 #endif
 
 /* Stripped and without an identity of its own, so that the same source gives the same bytes. */
 static const Platform platform[] = {
-    {HERE, NULL, "-Wl,--build-id=none", "so"},
+    {{HERE_2, HERE_3}, NULL, "-Wl,--build-id=none", "so"},
 #ifndef __aarch64__
     {{"aarch64-linux", "aarch64-linux"}, "aarch64-linux-gnu-gcc", "-Wl,--build-id=none", "so"},
 #endif
