@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * gic_runtime: fixed-step integrators, orientation, tables and inputs for generated models. The same source is
- * compiled for either number type, so constants go through GIC_R and functions of <math.h> through MATH. It is one
- * file, longer than others here, so that people who embed a model copy and compile one file beside the generated one.
+ * gic_runtime: fixed-step integrators with what happens within steps (gears, contacts, samples of controllers),
+ * orientation, tables and inputs for generated models. The same source is compiled for either number type, so constants
+ * go through GIC_R and functions of <math.h> through MATH. It is one file, longer than others here, so that people who
+ * embed a model copy and compile one file beside the generated one.
  */
 #include "gic_runtime.h"
 

@@ -34,7 +34,23 @@ def place(names, kind, name):
     raise UnknownName(f"no {kind} '{name}': {hint}")
 
 
-class Named:
+class _ByName:
+    """What dict() and loops need of something that has `names`."""
+
+    def __iter__(self):
+        return iter(self.names)
+
+    def __contains__(self, name):
+        return name in self.names
+
+    def keys(self):
+        return self.names
+
+    def items(self):
+        return [(name, self[name]) for name in self.names]
+
+
+class Named(_ByName):
     """Numbers by name, `inputs["rack"]`, or by place, `inputs[0]`, `inputs[:]`. The last axis of `array` has the names;
     of a batch the first is that of vehicles. Values that are set must be finite and fit."""
 
@@ -72,18 +88,6 @@ class Named:
     def __len__(self):
         return len(self.names)
 
-    def __iter__(self):
-        return iter(self.names)
-
-    def __contains__(self, name):
-        return name in self.names
-
-    def keys(self):
-        return self.names
-
-    def items(self):
-        return [(name, self[name]) for name in self.names]
-
     def __array__(self, dtype=None, copy=None):
         return numpy.array(self.array, dtype=dtype)
 
@@ -91,7 +95,7 @@ class Named:
         return f"<{self.kind}s {dict(self.items())}>"
 
 
-class Table:
+class Table(_ByName):
     """Columns with names and units. `table["time"]` is one; `data` all of them, [rows, columns]; `units` those by name.
     `pandas.DataFrame(dict(table))` makes a data frame of it."""
 
@@ -103,18 +107,6 @@ class Table:
 
     def __len__(self):
         return len(self.data)
-
-    def __iter__(self):
-        return iter(self.names)
-
-    def __contains__(self, name):
-        return name in self.names
-
-    def keys(self):
-        return self.names
-
-    def items(self):
-        return [(name, self[name]) for name in self.names]
 
     def __repr__(self):
         return f"<{len(self.data)} rows of {', '.join(self.names)}>"
