@@ -138,8 +138,9 @@ void sheet_cornering(Sheet *sheet)
         const double slip = (z[linear->places + Y] + yaw * lever) / v;
         sheet_add(sheet, section, pool_print(sheet->pool, "%s.yaw_gain", name), "Yaw rate by the steer angle", "1/s",
                   yaw / angle);
+        /* wheels behind are steered out of the curve, so that their angle counts with the other sign */
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.understeer", name), "Understeer gradient", "rad s^2/m",
-                  angle / lateral - sheet->wheelbase / (v * v));
+                  axle->ahead * angle / lateral - sheet->wheelbase / (v * v));
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.roll_gradient", name), "Roll gradient", "rad s^2/m",
                   z[ROLL] / lateral);
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.sideslip_gradient", name), "Side-slip gradient", "rad s^2/m",
