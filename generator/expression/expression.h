@@ -332,6 +332,8 @@ double linear_least_pivot(int n, double *A);
 /* How far A is from having perpendicular rows, these scaled to norm 1: norm of the inverse (Frobenius) over sqrt(n), 1
  * at best; HUGE_VAL when singular. */
 double linear_condition(int n, const double *A);
+/* The same with the units of rows and columns that are best for it: spectral radius of |A^-1| |A| (Bauer 1963). */
+double linear_condition_in_best_units(int n, const double *A);
 /* Determinant of A with its rows scaled to largest entries of 1; 0 when singular. A is destroyed. */
 double linear_determinant(int n, double *A);
 

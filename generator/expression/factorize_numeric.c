@@ -105,9 +105,23 @@ double linear_least_pivot(int n, double *A)
     return least;
 }
 
+/* Columns of the inverse of A one after the other. False when singular. */
+static bool invert(int n, const double *A, double *columns)
+{
+    memset(columns, 0, (size_t)(n * n) * sizeof *columns);
+    for (int k = 0; k < n; ++k) {
+        double copy[n * n + 1], *b = columns + n * k;
+        memcpy(copy, A, (size_t)(n * n) * sizeof *copy);
+        b[k] = 1;
+        if (!linear_solve_numeric(n, copy, b))
+            return false;
+    }
+    return true;
+}
+
 double linear_condition(int n, const double *A)
 {
-    double rows[n * n + 1], squares = 0;
+    double rows[n * n + 1], inverse[n * n + 1], squares = 0;
     for (int i = 0; i < n; ++i) {
         double size = 0;
         for (int j = 0; j < n; ++j)
@@ -115,15 +129,36 @@ double linear_condition(int n, const double *A)
         for (int j = 0; j < n; ++j)
             rows[n * i + j] = A[n * i + j] / (size > 0 ? size : 1);
     }
-    for (int k = 0; k < n; ++k) { /* a column of the inverse */
-        double copy[n * n + 1], b[n + 1];
-        memcpy(copy, rows, (size_t)(n * n) * sizeof *copy);
-        memset(b, 0, sizeof b);
-        b[k] = 1;
-        if (!linear_solve_numeric(n, copy, b))
-            return HUGE_VAL;
-        for (int i = 0; i < n; ++i)
-            squares += b[i] * b[i];
-    }
+    if (!invert(n, rows, inverse))
+        return HUGE_VAL;
+    for (int i = 0; i < n * n; ++i)
+        squares += inverse[i] * inverse[i];
     return sqrt(squares / n);
+}
+
+double linear_condition_in_best_units(int n, const double *A)
+{
+    const int iterations = 200; /* the estimate falls as 1 + n / iterations where units alone are far apart */
+    double inverse[n * n + 1], x[n + 1], moved[n + 1], largest = 1;
+    if (!invert(n, A, inverse))
+        return HUGE_VAL;
+    for (int i = 0; i < n; ++i)
+        x[i] = 1;
+    for (int k = 0; k < iterations; ++k) {
+        double next[n + 1];
+        memset(next, 0, sizeof next);
+        largest = 0;
+        for (int i = 0; i < n; ++i) {
+            moved[i] = 0;
+            for (int j = 0; j < n; ++j)
+                moved[i] += fabs(A[n * i + j]) * x[j];
+            for (int j = 0; j < n; ++j)
+                next[j] += fabs(inverse[n * i + j]) * moved[i];
+        }
+        for (int i = 0; i < n; ++i)
+            largest = fmax(largest, next[i]);
+        for (int i = 0; i < n; ++i)
+            x[i] = next[i] / largest;
+    }
+    return largest;
 }

@@ -30,12 +30,23 @@ static const double reserve = 0.5;
 /* A drawing with tuned geometry is singular if its determinant is less than this share of the file's. */
 static const double drawing_loss = 1e-4;
 
+static bool is_geared(const Work *w, const Connection *tie)
+{
+    return !tie->is_coordinate && joint_is_geared(w->model->joint[tie->index].type);
+}
+
+/* A screw turns a body far on a short way. That is a matter of the units of ways and angles, not of the distance from a
+ * singular configuration: then the best units count. */
 double subset_condition(const Work *w, int s)
 {
     double A[w->n * w->n];
+    bool geared = false;
     for (int i = 0; i < w->n * w->n; ++i)
         A[i] = ex_value(w->dag, w->J[i], s) / (i % w->n % 6 < 3 ? w->size : 1);
-    return linear_condition(w->n, A);
+    for (int i = 0; i < w->connections; ++i)
+        geared = geared || is_geared(w, &w->connection[i]);
+    const double condition = linear_condition(w->n, A);
+    return geared ? fmin(condition, linear_condition_in_best_units(w->n, A)) : condition;
 }
 
 double subset_singular_share(const Work *w, int s)
@@ -63,12 +74,24 @@ static double scale_of_design(const Work *w, int member, int determinant, int un
     return reserve / at_file;
 }
 
-/* The determinant of J without constant factors; a constant if all are constant. */
-static Ex varying_determinant(Dag *dag, const Factors *factors)
+/* True if this factor of the determinant is the guard of a screw or rack: the cosine of how far its turn is from that
+ * of its way, 1 wherever the joint holds. */
+static bool is_guard_of_gear(const Work *w, Ex factor)
 {
+    for (int r = 0; r < w->n; ++r)
+        if (is_geared(w, &w->connection[w->row_of[r]]) && w->row[r].guard == factor)
+            return true;
+    return false;
+}
+
+/* The determinant of J without constant factors; a constant if all are constant. */
+static Ex varying_determinant(const Work *w, const Factors *factors)
+{
+    Dag *dag = w->dag;
     Ex determinant = ex_literal(dag, 1);
     for (int first = 0; first < factors->n; first = factors_block_end(factors, first))
-        if (dag->node[factors->determinant[first]].level == LEVEL_VARIABLE)
+        if (dag->node[factors->determinant[first]].level == LEVEL_VARIABLE &&
+            !is_guard_of_gear(w, factors->determinant[first]))
             determinant = ex_mul(dag, determinant, factors->determinant[first]);
     return determinant;
 }
@@ -98,7 +121,7 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
             block_check(&formula->solve, w->row[r].guard, false, tie->is_coordinate ? determinant_loss : 0,
                         GIC_ERROR_SINGULAR);
     }
-    const Ex determinant = varying_determinant(dag, factors);
+    const Ex determinant = varying_determinant(w, factors);
     if (dag->node[determinant].level < LEVEL_VARIABLE)
         return 0;
     const Ex scale = subset_constant(w, scale_of_design, (int)determinant, 0);

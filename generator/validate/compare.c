@@ -117,6 +117,13 @@ static void unit_rates_of_base(Comparison *c, int axis)
     }
 }
 
+/* Differences of rows whose terms all vanish are those of poses, which are solved to their rounding, times velocities
+ * or squares of them: rad/s where motion is the largest speed, of a row that compares angles. */
+static double row_floor(const Comparison *c, double motion)
+{
+    return 1e-3 * motion / fmin(c->world->size, 1);
+}
+
 static void compare_partials(Comparison *c)
 {
     World *world = c->world;
@@ -394,7 +401,7 @@ static void compare_motion(Comparison *c)
     for (int t = 0; t < c->world->ties; ++t)
         world_gamma(c->world, t);
     compare_rows(c, KIND_ACCELERATION, (const double(*)[BODY_Q])c->world->qdd, c->world->xdd, true,
-                 1e-3 * c->swing * fmin(c->world->size, 1));
+                 row_floor(c, c->swing));
     find_push(c);
     find_balance(c, tau, scale, drive);
     for (int i = 0; i < n; ++i)
@@ -584,8 +591,7 @@ bool compare_state(Comparison *c)
         if (!world_rows(world, t))
             compare(c, KIND_POSE, tie_name(c, t), 1, 1);
     }
-    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false,
-                 1e-3 * c->speed * fmin(world->size, 1));
+    compare_rows(c, KIND_VELOCITY, (const double(*)[BODY_Q])world->qd, world->xd, false, row_floor(c, c->speed));
     compare_partials(c);
     if (!forces_exist(c))
         return false;

@@ -141,6 +141,67 @@ for file in geared batch tangent; do
     verdict $? "no warnings: $file.c"
 done
 
+# ---- ball screws: leads from 1 mm to 5 m, all at rest or alone, so that accelerations vanish or not
+# nut RATIO COORDINATE: a nut of 5 kg on a spindle of 0.01 kg m^2
+nut() {
+    cat <<END
+gicgen: 1
+model: nut
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  spindle: {mass: 2, com: [0, 0, 0], inertia: [0.01, 0.1, 0.1]}
+  nut: {mass: 5, com: [0.1, 0, 0], inertia: [0.1, 0.1, 0.1]}
+joints:
+  bearing: {type: revolute, bodies: [ground, spindle], point: [0, 0, 0], axis: [1, 0, 0]}
+  guide: {type: prismatic, bodies: [ground, nut], axis: [1, 0, 0]}
+  thread: {type: screw, bodies: [nut, spindle], point: [0, 0, 0], axis: [1, 0, 0], ratio: $1}
+coordinates:
+  $2
+inputs: {push: {unit: N}}
+forces: {push: {type: load, body: nut, force: [push, 0, 0]}}
+outputs:
+  nut: {type: position, body: nut}
+  spin: {type: angular_velocity, body: spindle}
+END
+}
+way='s: {type: translation, bodies: [ground, nut], axis: [1, 0, 0], range: [-1, 1]}'
+# Spindles of up to half a radian a step. F (5 + 0.01 / ratio^2) = a; from the speed v: s = v t + a t^2 / 2
+for lead in '1.5915494309189535e-4 0.05 0.1' '7.957747154594768e-4 0.4 0.1' '-0.005 0.5 1' '0.1 0.25 0' '1 1 1'; do
+    read -r ratio speed push <<END
+$lead
+END
+    nut "$ratio" "$way" >nut.veh
+    scene 0.2 0.001 "initial: {rates: {s: $speed}}" "inputs: {push: $push}" >nut.scene
+    "$gicrun" -q nut.veh nut.scene -o nut.csv 2>err &&
+        awk -F, -v r="$ratio" -v v="$speed" -v f="$push" 'NR > 1 { a = f / (5 + 0.01 / r ^ 2); d = $2 - 0.1 - v * $1 - a * $1 * $1 / 2; if (!(d * d <= 1e-26)) bad = 1 } END { exit bad || NR != 4 }' nut.csv
+    verdict $? "a ball screw of ratio $ratio at $speed m/s"
+done
+# one body on a screw: gravity across or none, the axis along x, z or askew, drawn at its mass centre or beside
+for axis in '[1, 0, 0]' '[0, 0, 1]' '[0.6, 0, 0.8]'; do
+    for gravity in '[0, 0, 0]' '[0, 0, -9.81]' '[0, 0, 1.62]'; do
+        for ratio in 0.1 1 -1 0.005; do
+            cat >bolt.veh <<END
+gicgen: 1
+model: bolt
+gravity: $gravity
+base: ground
+bodies:
+  bolt: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  guide: {type: cylindrical, bodies: [ground, bolt], point: [0, 0, 0], axis: $axis}
+  thread: {type: screw, bodies: [ground, bolt], point: [0, 0, 0], axis: $axis, ratio: $ratio}
+coordinates:
+  turn: {type: angle, bodies: [ground, bolt], axis: $axis, range: [-100, 100]}
+outputs:
+  turn: {type: coordinate, coordinate: turn}
+END
+            "$gicgen" bolt.veh -o bolt.c 2>err
+            verdict $? "a bolt along $axis, gravity $gravity, ratio $ratio"
+        done
+    done
+done
+
 # ---- mistakes
 # refused PLACE MESSAGE REMEDY JOINT: one message and no output
 refused() {
