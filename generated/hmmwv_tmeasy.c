@@ -2032,7 +2032,7 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t69 = -t55;
         const gic_real t70 = contact[HMMWV_TMEASY_CONTACT_LOAD] * R(-0.007048499999999999) *
             GIC_TANH(fast[HMMWV_TMEASY_FAST_SPIN]);
-        const gic_real t71 = t55 * (GIC_SQRT(GIC_MAX(contact[HMMWV_TMEASY_CONTACT_DEFLECTION], R(0.0)) * R(3.7592)) *
+        const gic_real t71 = t55 * (GIC_SQRT(GIC_MAX(contact[HMMWV_TMEASY_CONTACT_DEFLECTION], R(1e-16)) * R(3.7592)) *
             t67);
         force[HMMWV_TMEASY_TIRE_FX] = t68;
         force[HMMWV_TMEASY_TIRE_FY] = t69;

@@ -5,6 +5,9 @@
 #include "model/tire_numbers.h"
 #include "vehicle/wheel.h"
 
+/* m; less than the rounding of any wheel's place */
+static const double least_deflection = 1e-16;
+
 #define NUMBER(name) (tire->number[TMEASY_##name])
 /* A force at p times the nominal load; a slip or length there. */
 #define FORCE(name) force_at(dag, p, NUMBER(name), NUMBER(name##_TWICE))
@@ -110,7 +113,8 @@ void tmeasy_forces(Dag *dag, const Tire *tire, const Rolling *rolling, Ex force[
     force[TIRE_FX] = ex_mul(dag, H, sx);
     force[TIRE_FY] = ex_mul(dag, H, sy);
     force[TIRE_MX] = 0;
-    Ex contact = ex_op(dag, OP_MAX, rolling->deflection, 0, 0);
+    /* of a wheel that just touches, the length alone has no derivative; with the force it has: 0 */
+    Ex contact = ex_op(dag, OP_MAX, rolling->deflection, literal(dag, least_deflection), 0);
     Ex length = ex_sqrt(dag, ex_mul(dag, literal(dag, 8 * tire->radius), contact));
     Ex trail = relative_trail(dag, ex_op(dag, OP_ABS, rolling->tangent, 0, 0), SLIP(trail), SLIP(sq0), SLIP(sqe));
     force[TIRE_MZ] = ex_neg(dag, ex_mul(dag, ex_mul(dag, trail, length), force[TIRE_FY]));

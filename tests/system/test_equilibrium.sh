@@ -215,6 +215,35 @@ for angle in 4.64 4.70 4.78; do
     check "from $angle rad it falls" near "$turns" 0 1e-9
 done
 
+# a wheel that just touches, where the length of its contact has no derivative
+cat >"$work/touch.veh" <<'END'
+gicgen: 1
+model: touch
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  sled: {mass: 100, com: [0, 0, 0.5], inertia: [10, 10, 10]}
+  lift: {mass: 50, com: [0, 0, 0.5], inertia: [5, 5, 5]}
+joints:
+  track: {type: prismatic, bodies: [ground, sled], axis: [1, 0, 0]}
+  post: {type: prismatic, bodies: [sled, lift], axis: [0, 0, 1]}
+coordinates:
+  along: {type: translation, bodies: [ground, sled], axis: [1, 0, 0], range: [-100, 100]}
+  height: {type: translation, bodies: [sled, lift], axis: [0, 0, 1], range: [-0.5, 1]}
+forces:
+  spring: {type: spring_damper, coordinate: height, stiffness: 10000, damping: 100}
+tires:
+  all: {type: tmeasy, radius: 0.5, stiffness: 200000, damping: 200, load: 4000, dfx0: [80000, 150000],
+        fxm: [4000, 7000], fxs: [3000, 5500], dfy0: [70000, 120000], fym: [3800, 6500], fys: [3100, 5200],
+        sxm: [0.12, 0.14], sxs: [0.5, 0.6], sym: [0.18, 0.22], sys: [0.6, 0.7],
+        trail: [0.15, 0.14], sq0: [0.2, 0.24], sqe: [0.4, 0.5]}
+wheels:
+  wheel: {body: lift, center: [0, 0, 0.5], tire: all, spin_inertia: 1.5}
+END
+run --equilibrium "$work/touch.veh" -o "$work/rest"
+check 'a wheel that just touches' exits 0
+check 'it rests there' near "$(column "$work/rest" height)" 0 1e-12
+
 # where there is none
 # refused TEXT REMEDY [SCENE]: status 1, nothing printed or written
 refused() {
