@@ -6,10 +6,27 @@
 #include "model/tunable.h"
 
 #include <math.h>
+#include <string.h>
+
+/* The laws of a limit, NULL among them. */
+static int laws_of(const Limit *limit, const Law *law[BUSHING_NUMBERS])
+{
+    if (limit->matrix) {
+        memcpy(law, limit->matrix, BUSHING_NUMBERS * sizeof *law);
+        return BUSHING_NUMBERS;
+    }
+    law[0] = limit->law;
+    law[1] = limit->less;
+    return 2;
+}
 
 void limit_add(Pool *pool, Model *model, const Limit *limit)
 {
-    if (law_is_tunable(limit->law, model) || (limit->less && law_is_tunable(limit->less, model)))
+    const Law *law[BUSHING_NUMBERS];
+    bool tunable = false;
+    for (int i = laws_of(limit, law) - 1; i >= 0; --i)
+        tunable = tunable || (law[i] && law_is_tunable(law[i], model));
+    if (tunable)
         *POOL_PUSH(pool, model->limit, model->limits) = *limit;
 }
 
@@ -53,12 +70,48 @@ static bool holds(double number, bool zero)
     return isfinite(number) && (zero ? number >= 0 : number > 0);
 }
 
+/* The pivots of the elimination must not be negative. */
+bool limit_semidefinite(const double matrix[BUSHING_NUMBERS])
+{
+    const double least = 1e-9; /* of an element on the diagonal: numbers of a file have some digits */
+    double a[BUSHING_NUMBERS], diagonal[BUSHING_AXES];
+    memcpy(a, matrix, sizeof a);
+    for (int i = 0; i < BUSHING_AXES; ++i)
+        diagonal[i] = a[bushing_place(i, i)];
+    bool good = true;
+    for (int k = 0; k < BUSHING_AXES; ++k) {
+        const double pivot = a[bushing_place(k, k)];
+        const bool gone = pivot <= least * diagonal[k];
+        good = good && pivot >= -least * diagonal[k];
+        for (int i = k + 1; i < BUSHING_AXES && gone; ++i)
+            good = good && fabs(a[bushing_place(i, k)]) <= sqrt(least * diagonal[i] * diagonal[k]);
+        for (int i = k + 1; i < BUSHING_AXES && !gone; ++i)
+            for (int j = k + 1; j <= i; ++j)
+                a[bushing_place(i, j)] -= a[bushing_place(i, k)] * a[bushing_place(j, k)] / pivot;
+    }
+    return good;
+}
+
+/* Does a limit hold for values of the tunable parameters? number: of which it is one */
+static bool limit_holds(const Limit *limit, const Model *model, const double *value, double *number)
+{
+    if (limit->matrix) {
+        double a[BUSHING_NUMBERS];
+        *number = 0;
+        for (int i = 0; i < BUSHING_NUMBERS; ++i)
+            a[i] = limit->matrix[i] ? number_with(limit->matrix[i], model, value) : 0;
+        return limit_semidefinite(a);
+    }
+    *number = number_with(limit->law, model, value);
+    return holds(limit->less ? *number - number_with(limit->less, model, value) : *number, limit->zero);
+}
+
 bool limit_broken(const Model *model, const double *value, BrokenLimit *broken)
 {
     for (int i = 0; i < model->limits; ++i) {
         const Limit *limit = &model->limit[i];
-        const double number = number_with(limit->law, model, value);
-        if (!holds(limit->less ? number - number_with(limit->less, model, value) : number, limit->zero)) {
+        double number;
+        if (!limit_holds(limit, model, value, &number)) {
             *broken = (BrokenLimit){limit->text, limit, 0, number};
             return true;
         }
@@ -77,7 +130,11 @@ bool limit_broken(const Model *model, const double *value, BrokenLimit *broken)
 
 bool limit_follows(const Model *model, const BrokenLimit *broken, int index)
 {
-    const Limit *limit = broken->limit;
-    return limit ? follows(limit->law, model, index) || (limit->less && follows(limit->less, model, index))
-                 : tuned_follows(model, broken->formula, index);
+    const Law *law[BUSHING_NUMBERS];
+    if (!broken->limit)
+        return tuned_follows(model, broken->formula, index);
+    for (int i = laws_of(broken->limit, law) - 1; i >= 0; --i)
+        if (law[i] && follows(law[i], model, index))
+            return true;
+    return false;
 }

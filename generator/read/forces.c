@@ -243,7 +243,7 @@ static const Law *constant_law(Reader *reader, const Item *item, const char *wha
     bound_check(key, item, what, number);
     if (key->bound != BOUND_NONE)
         limit_add(reader->pool, reader->model,
-                  &(Limit){law, NULL, key->bound == BOUND_NOT_NEGATIVE, bound_text(reader->pool, key, what)});
+                  &(Limit){law, NULL, key->bound == BOUND_NOT_NEGATIVE, bound_text(reader->pool, key, what), NULL});
     return law;
 }
 
@@ -287,7 +287,7 @@ static void read_stop(Reader *reader, const Entry *entry, const Value *value, Fo
     if (low && high)
         limit_add(reader->pool, reader->model,
                   &(Limit){force->high, force->low, false,
-                           pool_print(reader->pool, "high of %s must be above low", entry->what)});
+                           pool_print(reader->pool, "high of %s must be above low", entry->what), NULL});
     if (table && table_value(&model->table[force->table], 0) != 0)
         diag_fail(table->at, "begin the table with 0 at 0",
                   "table of %s: '%s' is %.9g at 0, a jump where contact begins", entry->what, table->text,
@@ -367,30 +367,18 @@ static void read_aero(Reader *reader, const Entry *entry, const Value *value, Fo
                 : literal_law(reader, force_key[ELEMENT_DENSITY].fallback, 0);
 }
 
-/* Refuse a matrix by which the bushing would give energy: the pivots of its elimination must not be negative. */
+/* Refuse a matrix by which the bushing would give energy, here and for values that a scene gives. */
 static void semidefinite_check(Reader *reader, const Item *item, const char *what,
                                const Law *const law[BUSHING_NUMBERS])
 {
-    static const double least = 1e-9; /* of an element on the diagonal: numbers of a file have some digits */
-    double a[BUSHING_NUMBERS], diagonal[BUSHING_AXES];
+    double a[BUSHING_NUMBERS];
     for (int i = 0; i < BUSHING_NUMBERS; ++i)
         a[i] = law[i] ? law_number(law[i], reader->model) : 0;
-    for (int i = 0; i < BUSHING_AXES; ++i)
-        diagonal[i] = a[bushing_place(i, i)];
-    bool good = true;
-    for (int k = 0; k < BUSHING_AXES; ++k) {
-        const double pivot = a[bushing_place(k, k)];
-        const bool gone = pivot <= least * diagonal[k];
-        good = good && pivot >= -least * diagonal[k];
-        for (int i = k + 1; i < BUSHING_AXES && gone; ++i)
-            good = good && fabs(a[bushing_place(i, k)]) <= sqrt(least * diagonal[i] * diagonal[k]);
-        for (int i = k + 1; i < BUSHING_AXES && !gone; ++i)
-            for (int j = k + 1; j <= i; ++j)
-                a[bushing_place(i, j)] -= a[bushing_place(i, k)] * a[bushing_place(j, k)] / pivot;
-    }
-    if (!good)
+    if (!limit_semidefinite(a))
         diag_fail(item->at, "check the signs and the order of the axes: x, y, z, then about x, y, z",
                   "%s: the matrix is not positive semidefinite: some motions would be pushed on", what);
+    const Limit limit = {.matrix = law, .text = pool_print(reader->pool, "%s must be positive semidefinite", what)};
+    limit_add(reader->pool, reader->model, &limit);
 }
 
 /* Six numbers, one an axis, or the lower triangle of a symmetric matrix. */

@@ -235,6 +235,9 @@ static void ratio_set(const Reader *reader, const Value *ratio, const Entry *ent
         diag_fail(ratio->item->at, "write the way for a turn by 1 rad, m, or hold it by another joint",
                   "ratio of %s is 0: nothing would move", entry->what);
     joint->offset = rack ? -ratio->number[0] : ratio->number[0];
+    if (tuned)
+        tuning_require(reader->model->tuning, ex_mul(dag, tuned, tuned), false,
+                       pool_print(reader->pool, "ratio of %s must not be 0", entry->what));
     if (rack && tuned)
         tuned = ex_neg(dag, tuned);
     tuning_set(reader->model->tuning, &joint->offset, &tuned, 1);

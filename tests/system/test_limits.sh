@@ -25,15 +25,22 @@ parameters:
   damp: {value: 600, unit: Ns/m, tunable: true}
   mass: {value: 2, unit: kg, tunable: true}
   spring: {value: 100, unit: N/m, tunable: true}
+  couple: {value: 10, unit: N/m, tunable: true}
+  lead: {value: 0.5, unit: m, tunable: true}
 bodies:
   m: {mass: mass, com: [0, 0, 0], inertia: [1, 1, 1]}
+  wheel: {mass: 1, com: [0, 1, 0], inertia: [1, 1, 1]}
 joints:
   g: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+  axle: {type: revolute, bodies: [ground, wheel], point: [0, 1, 0], axis: [0, 1, 0]}
+  teeth: {type: rack_and_pinion, bodies: [m, wheel], point: [0, 1, 0], axes: [[0, 1, 0], [1, 0, 0]], ratio: lead}
 coordinates:
   x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-9, 9]}
 forces:
   end: {type: stop, coordinate: x, low: low, high: high, stiffness: stiff, damping: damp, fade: fade}
   soft: {type: spring_damper, coordinate: x, stiffness: spring, damping: damp}
+  rubber: {type: bushing, bodies: [ground, m], point: [0, 0, 0],
+           stiffness: [[100], [couple, 400], [0, 0, 1], [0, 0, 0, 1], [0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 1]]}
   far: {type: stop, coordinate: x, high: 5, stiffness: 2 * stiff + 1, fade: 2 * spare}
 outputs:
   x: {type: coordinate, coordinate: x}
@@ -76,6 +83,9 @@ damp -5 damping of force 'end' must not be negative
 spring -1e-9 stiffness of force 'soft' must not be negative
 mass 0 mass of body 'm' must be greater than zero
 mass -1 mass of body 'm' must be greater than zero
+couple 201 stiffness of force 'rubber' must be positive semidefinite
+couple -300 stiffness of force 'rubber' must be positive semidefinite
+lead 0 ratio of joint 'teeth' must not be 0
 END
 
 # at the edges
@@ -90,6 +100,9 @@ stiff 0
 damp 0
 spring 0
 fade 0.0101
+couple 200
+couple -200
+lead -0.5
 high 0.05
 END
 
