@@ -64,7 +64,7 @@ static int repeat_until(const Going *going, double time, gic_head *self)
     memcpy(self, going->before, going->code.size);
     variable_restart(going->variable);
     while (status == GIC_OK && gic_time(self) < time)
-        status = scene_step_awake(&going->code, &going->scene, going->variable, self, time);
+        status = scene_step_awake(going->engine, &going->code, &going->scene, going->variable, self, time);
     return status;
 }
 

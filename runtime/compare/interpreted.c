@@ -132,6 +132,7 @@ int interpreted_accelerate(const Interpreted *context, Instance *self, const dou
     int status = world_forces(world);
     if (status != GIC_OK)
         return status;
+    contact_pieces_note(context->pieces, false);
     world_spread(world);
     for (int i = 0; i < world->ties; ++i)
         world_gamma(world, i);
@@ -439,6 +440,7 @@ Interpreted *interpreted_new(Pool *pool, const Model *model, const Sequence *seq
     context->geometry = geometry_new(pool, model);
     context->setup_offset = descriptor_place(&context->code, (size_t)model->tunables + own);
     context->own_offset = context->setup_offset + sizeof(double) * (size_t)model->tunables;
+    context->pieces = contact_pieces_new(pool, context->world);
     return context;
 }
 
@@ -449,6 +451,7 @@ Engine *interpreted_engine(Pool *pool, const char *name, const Interpreted *cont
                        .code = &context->code,
                        .context = context,
                        .profile = context->profile,
+                       .pieces = context->world->touches ? context->pieces : NULL,
                        .standard = context->code.state,
                        .standard_count = context->standard_count + context->code.fast_count};
     return engine;

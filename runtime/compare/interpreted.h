@@ -5,6 +5,7 @@
 #ifndef COMPARE_INTERPRETED_H
 #define COMPARE_INTERPRETED_H
 
+#include "compare/contact_pieces.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
@@ -16,8 +17,9 @@ typedef struct Interpreted {
     gic_model code; /* an engine may replace what differs */
     World *world;
     EngineProfile *profile;
-    int standard_count; /* numbers in a state of FORMAT.md section 10, without fast states */
-    size_t own_offset;  /* bytes; before it the tunable parameters as set-up was given them */
+    ContactPieces *pieces; /* sees all evaluations */
+    int standard_count;    /* numbers in a state of FORMAT.md section 10, without fast states */
+    size_t own_offset;     /* bytes; before it the tunable parameters as set-up was given them */
     size_t setup_offset;
     struct Geometry *geometry; /* NULL: no parameter acts on points, axes, masses and so on */
     /* design: find the design configuration after the World's numbers have changed, and the engine's numbers that

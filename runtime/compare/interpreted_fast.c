@@ -89,6 +89,8 @@ int interpreted_fast(void *instance, double time, const double *link, const doub
     world->fast = fast;
     if (status == GIC_OK)
         status = world_wheels_turn(world, fast, result);
+    if (status == GIC_OK)
+        contact_pieces_note(context->pieces, true);
     world->linked = NULL;
     if (status == GIC_OK && !gic_finite(result, count))
         status = GIC_ERROR_RESULT;

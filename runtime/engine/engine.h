@@ -14,12 +14,13 @@
 
 typedef struct Text Text; /* base/text.h */
 typedef struct gic_batch_model gic_batch_model;
-typedef struct Model Model;           /* model/model.h */
-typedef struct Sequence Sequence;     /* sequence/sequence.h */
-typedef struct Facts Facts;           /* vehicle/vehicle.h */
-typedef struct Embedded Embedded;     /* emit/emit.h */
-typedef struct Batch Batch;           /* emit/emit.h */
-typedef struct CodeMemory CodeMemory; /* report/report.h */
+typedef struct Model Model;                 /* model/model.h */
+typedef struct Sequence Sequence;           /* sequence/sequence.h */
+typedef struct Facts Facts;                 /* vehicle/vehicle.h */
+typedef struct Embedded Embedded;           /* emit/emit.h */
+typedef struct Batch Batch;                 /* emit/emit.h */
+typedef struct CodeMemory CodeMemory;       /* report/report.h */
+typedef struct ContactPieces ContactPieces; /* compare/contact_pieces.h */
 
 /* The time of a clock, s. */
 double clock_seconds(clockid_t clock);
@@ -52,6 +53,7 @@ typedef struct Engine {
     const gic_model *code;
     const void *context;    /* interpreted: what every instance points to; NULL: generated code */
     EngineProfile *profile; /* NULL: generated code */
+    ContactPieces *pieces;  /* with them the engine finds contacts in its steps; NULL: gic_model.contacts does */
     /* The state of FORMAT.md section 10, fast states last, in which people and scenes speak; most engines integrate
      * just that. */
     const gic_signal *standard;

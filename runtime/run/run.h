@@ -89,7 +89,8 @@ int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end);
 /* The step itself, without driver and sleep. */
-int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end);
+int scene_step_awake(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable,
+                     gic_head *self, double end);
 /* Outputs at the present time, computed on a copy of the instance, so that how often someone looks leaves no trace in
  * the results; those of a vehicle that sleeps stay. *slumber: 0 at first, and the same number from call to call. */
 int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber);

@@ -155,7 +155,7 @@ static int move_to(SceneEvents *events, const gic_model *model, Variable *variab
     if (variable)
         variable_restart(variable);
     for (; variable && status == GIC_OK && gic_time(self) < time;)
-        status = scene_step_awake(model, scene, variable, self, time);
+        status = scene_step_awake(events->engine, model, scene, variable, self, time);
     const double way = time - gic_time(self), part = way / scene->ratio;
     for (int i = 0; !variable && i < scene->ratio && status == GIC_OK && gic_time(self) + part > gic_time(self); ++i)
         status = gic_step(model, self, part, GIC_RK4);

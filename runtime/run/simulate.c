@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
 #include "base/message.h"
+#include "compare/contact_pieces.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"
@@ -481,22 +482,73 @@ static int look(const Engine *engine, gic_head *self, Driver *driver)
     return GIC_OK;
 }
 
-int scene_step_awake(const gic_model *model, const Scene *scene, Variable *variable, gic_head *self, double end)
+/* A step under way. */
+typedef struct Step {
+    const gic_model *model;
+    const Scene *scene;
+    Variable *variable; /* NULL: constant steps */
+    double end;
+} Step;
+
+static int constant_step(const Step *step, gic_head *self)
 {
-    if (!variable) {
-        const double start = gic_time(self);
-        const int history = self->history;
-        const int status = scene->method == GIC_AB3
-                               ? gic_step_steady(model, self, scene->step, scene->ratio, scene->steady)
-                               : gic_step(model, self, scene->step, scene->method);
-        return status == GIC_OK ? knots_cross(model, scene, self, start, history) : status;
-    }
-    const double kink = scene_next_kink(scene, gic_time(self));
-    const double most = gic_time(self) + scene_longest_step(scene, gic_time(self));
-    const int status = variable_step(variable, self, fmin(fmin(kink, end), most));
+    const gic_model *model = step->model;
+    const Scene *scene = step->scene;
+    const double start = gic_time(self);
+    const int history = self->history;
+    const int status = scene->method == GIC_AB3 ? gic_step_steady(model, self, scene->step, scene->ratio, scene->steady)
+                                                : gic_step(model, self, scene->step, scene->method);
+    return status == GIC_OK ? knots_cross(model, scene, self, start, history) : status;
+}
+
+static int any_step(void *caller, gic_head *self)
+{
+    const Step *step = caller;
+    if (!step->variable)
+        return constant_step(step, self);
+    const double kink = scene_next_kink(step->scene, gic_time(self));
+    const double most = gic_time(self) + scene_longest_step(step->scene, gic_time(self));
+    const int status = variable_step(step->variable, self, fmin(fmin(kink, step->end), most));
     if (status == GIC_OK && gic_time(self) >= kink)
-        variable_restart(variable);
+        variable_restart(step->variable);
     return status;
+}
+
+/* To `end` within a step: by variable steps, or by RK4 in parts no longer than fast ones. */
+static int piece_of_step(void *caller, gic_head *self, double end)
+{
+    Step part = *(const Step *)caller;
+    const double length = end - gic_time(self);
+    const int parts = (int)ceil(0.999 * length * part.scene->ratio / part.scene->step);
+    int status = GIC_OK;
+    part.end = end;
+    while (part.variable && status == GIC_OK && gic_time(self) < end)
+        status = any_step(&part, self);
+    for (int i = 0; !part.variable && i < parts && status == GIC_OK; ++i)
+        status = gic_step(part.model, self, length / parts, GIC_RK4);
+    if (status == GIC_OK && !part.variable) {
+        gic_restart(self, end); /* the time as it is, not as a sum */
+        if (self->input_function)
+            self->input_function(self->user, self->lane, end, instance_array(self, part.model->input_offset));
+    }
+    return status;
+}
+
+static void step_again(void *caller)
+{
+    const Step *step = caller;
+    if (step->variable)
+        variable_restart(step->variable);
+}
+
+int scene_step_awake(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable,
+                     gic_head *self, double end)
+{
+    Step step = {model, scene, variable, end};
+    if (!engine->pieces || !(variable || self->locate))
+        return any_step(&step, self);
+    const ContactWays ways = {any_step, piece_of_step, step_again, &step};
+    return contact_pieces_step(engine->pieces, engine->code, self, &ways);
 }
 
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
@@ -511,7 +563,7 @@ int scene_step(const Engine *engine, const gic_model *model, const Scene *scene,
     }
     if (scene->rest && sleep_step(scene->rest, model, scene, self))
         return GIC_OK;
-    const int status = scene_step_awake(model, scene, variable, self, end);
+    const int status = scene_step_awake(engine, model, scene, variable, self, end);
     if (scene->rest && status == GIC_OK)
         sleep_watch(scene->rest, model, self);
     return status;

@@ -135,13 +135,17 @@ static double elastic_force(World *world, const Force *force, double extension, 
 }
 
 /* What one end of a stop pushes. */
-static double contact(World *world, const Force *force, double depth, double rate)
+static double contact(World *world, const Force *force, int end, double depth, double rate)
 {
+    Touch *touch = &world->touch[world->model->wheels + 2 * (force - world->model->force) + end];
+    *touch = (Touch){depth, rate, 0, 0};
     if (!(depth > 0))
         return 0;
     const double damping =
         world_law(world, force->damping, NULL) * fade_in(depth / world_law(world, force->fade, NULL));
-    return fmax(0, elastic_force(world, force, depth, rate) + damping * rate);
+    touch->elastic = elastic_force(world, force, depth, rate);
+    touch->damping = damping * rate;
+    return fmax(0, touch->elastic + touch->damping);
 }
 
 /* The resistance against growth of an element between points, about an axis, or along a coordinate without a
@@ -155,9 +159,9 @@ static double resistance(World *world, const Force *force, double value, double 
                world_law(world, force->damping, NULL) * rate;
     double tension = 0;
     if (force->high)
-        tension += contact(world, force, value - world_law(world, force->high, NULL), rate);
+        tension += contact(world, force, 0, value - world_law(world, force->high, NULL), rate);
     if (force->low)
-        tension -= contact(world, force, world_law(world, force->low, NULL) - value, -rate);
+        tension -= contact(world, force, 1, world_law(world, force->low, NULL) - value, -rate);
     return tension;
 }
 
@@ -418,9 +422,13 @@ static int add_contact(World *world, int index)
         return GIC_ERROR_ROAD;
     const double deflection = wheel->radius + road[0] - center.r[2];
     const double rate = road[1] * center.v[0] + road[2] * center.v[1] - center.v[2];
-    double fz = 0;
-    if (deflection > 0)
-        fz = fmax(0, wheel->stiffness * deflection + wheel->damping * fade_in(deflection / wheel->fade) * rate);
+    Touch *touch = &world->touch[index];
+    *touch = (Touch){deflection, rate, 0, 0};
+    if (deflection > 0) {
+        touch->elastic = wheel->stiffness * deflection;
+        touch->damping = wheel->damping * fade_in(deflection / wheel->fade) * rate;
+    }
+    const double fz = fmax(0, touch->elastic + touch->damping);
     push(world, &center, (const double[3]){0, 0, fz});
     world->power += fz * center.v[2];
     double *out = world->wheel[index];
@@ -443,15 +451,18 @@ void world_wheel_motion(const World *world, int index, WheelMotion *motion)
 }
 
 /* A wheel for itself, as if it had no powertrain. */
-static int turn_wheel(const World *world, const Wheel *wheel, const WheelMotion *motion, const double *fast,
-                      double *rate, Rolling *rolling)
+static int turn_wheel(World *world, int index, const double *fast, double *rate)
 {
+    const Wheel *wheel = &world->model->wheel[index];
+    const WheelMotion *motion = &world->motion[index];
+    Rolling *rolling = &world->rolling[index];
     const Tire *tire = &world->model->tire[wheel->tire];
     const Ground ground = {world->road, world->lane, world->time};
     const double *spin = &fast[FAST_SPIN];
     const double drive = wheel->drive ? world_law(world, wheel->drive, spin) : 0;
     const double brake = wheel->brake ? world_law(world, wheel->brake, spin) : 0;
     const int status = wheel_touch(wheel, tire, &ground, motion, rolling);
+    world->touch[index] = (Touch){rolling->deflection, rolling->deflection_rate, rolling->elastic, rolling->damping};
     if (status == GIC_OK)
         wheel_turn(wheel, tire, motion, drive, brake, fast, rate, rolling);
     return status;
@@ -465,7 +476,7 @@ int world_wheels_turn(World *world, const double *fast, double *rate)
         const int at = wheel->fast;
         int status = GIC_OK;
         if (wheel->tire >= 0)
-            status = turn_wheel(world, wheel, &world->motion[i], fast + at, rate + at, &world->rolling[i]);
+            status = turn_wheel(world, i, fast + at, rate + at);
         if (status != GIC_OK)
             return status;
     }

@@ -101,11 +101,10 @@ int wheel_touch(const Wheel *wheel, const Tire *tire, const Ground *ground, cons
     out->speed[1] = dot3(out->left, velocity);
     out->rolling_radius = tire_rolling_radius(tire, out->deflection);
     out->fade = smooth(out->deflection / wheel->fade);
-    out->fz = 0;
-    if (out->deflection > 0)
-        out->fz = fmax(0, tire->stiffness * out->deflection +
-                              tire->bottom_stiffness * fmax(out->deflection - tire->bottom, 0) +
-                              tire->damping * out->fade * out->deflection_rate);
+    out->elastic =
+        tire->stiffness * fmax(out->deflection, 0) + tire->bottom_stiffness * fmax(out->deflection - tire->bottom, 0);
+    out->damping = tire->damping * out->fade * out->deflection_rate;
+    out->fz = out->deflection > 0 ? fmax(0, out->elastic + out->damping) : 0;
     return status;
 }
 

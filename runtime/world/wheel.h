@@ -30,6 +30,7 @@ typedef struct Rolling {
     double point[3], height;               /* P; h at g */
     double forward[3], left[3], normal[3]; /* e_x, e_y, n */
     double camber, deflection, deflection_rate, fade, fz, friction;
+    double elastic, damping; /* N, F_e and c f rho', whose sum fz is where it pushes */
     /* slip; rolling_radius: R_e */
     double speed[2], rolling_radius, kappa, alpha;
     /* forces on the wheel at the contact point, torques on it about its axis */

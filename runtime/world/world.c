@@ -200,6 +200,8 @@ World *world_unsolved(Pool *pool, const Model *model, const Sequence *sequence)
     world->wheel = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->wheel);
     world->motion = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->motion);
     world->rolling = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->rolling);
+    world->touches = model->wheels + 2 * model->forces;
+    world->touch = pool_alloc(pool, ((size_t)world->touches + 1) * sizeof *world->touch);
     world->fast_rate = pool_alloc(pool, ((size_t)model->fast_states + 1) * number);
     world->qdd = pool_alloc(pool, bodies * sizeof *world->qdd);
     world->alpha = pool_alloc(pool, bodies * sizeof *world->alpha);

@@ -37,6 +37,12 @@ typedef struct TieVectors {
     double arm[2][3], d[3] /* from the first point to the second */, axis[2][3], side[2][3], other[3];
 } TieVectors;
 
+/* Where a part can push another one and not pull it: a wheel on the road, one end of a stop. m, or rad */
+typedef struct Touch {
+    double depth, rate;      /* > 0: the parts have met; its rate */
+    double elastic, damping; /* what would push, the sum of both, if it were one that could pull, too */
+} Touch;
+
 /* The powertrain at one moment, POWERTRAIN.md section 3: theta, i, T_e, omega_t, T_t, T_p. */
 typedef struct Driveline {
     double throttle, ratio, engine_torque, turbine_speed, turbine_torque, pump_torque;
@@ -84,6 +90,9 @@ typedef struct World {
     double *element;     /* [forces] Q or T of FORMAT.md section 7 */
     double (*wheel)[4];  /* [wheels] fz, deflection, deflection rate, road height */
     WheelMotion *motion; /* [wheels] with tires */
+    int touches;
+    Touch *touch; /* [touches] of wheels; from there on of each element the upper and the lower end. Those that can't
+                   * touch have a depth of 0 */
     Rolling *rolling;    /* [wheels] with tires */
     Driveline driveline; /* of the powertrain */
     double *fast_rate;   /* [fast states] */
