@@ -44,7 +44,8 @@ agree() {
 
 # Scenes without contacts made or lost take the same steps in either engine: what differs is rounding, and a difference
 # of 1e-12 stays below 1.1e-12 in them (runtime/EVENTS.md section 2). Gears change in the first two.
-for case in 'full_run hmmwv_vehicle' 'acceleration_braking hmmwv_vehicle' 'lane_change hmmwv_vehicle' 'tires_brake hmmwv_tires'; do
+for case in 'full_run hmmwv_vehicle' 'acceleration_braking hmmwv_vehicle' 'lane_change hmmwv_vehicle' \
+    'tires_brake hmmwv_tires'; do
     { grep -v '^outputs' "$models/scenes/${case% *}.scene" && echo 'locate: true'; } >now.scene
     check "${case% *}, steps of the scene, gic" agree "${case#* }" gic 1e-10 0
 done
@@ -63,7 +64,8 @@ for case in 'rkck 1e-6' 'rkck 1e-10' 'adams 1e-9'; do
 done
 # 30 s over a ramp and a step, from which wheels lift, with changes of gear
 scene full_run 'integrator: rkck' 'tolerance: 1e-9' \
-    'road: {type: table, x: [200, 230, 231, 234, 234.5, 260, 262, 262.1], height: [0, 0, 0.06, 0.3, 0, 0, 0.15, 0]}' >now.scene
+    'road: {type: table, x: [200, 230, 231, 234, 234.5, 260, 262, 262.1],' \
+    '       height: [0, 0, 0.06, 0.3, 0, 0, 0.15, 0]}' >now.scene
 check "full_run over a ramp, rkck" agree hmmwv_vehicle gic 1e-5 50
 # a road with contacts in every other step
 scene tires_rough 'integrator: rkck' 'tolerance: 1e-8' | sed 's/^duration.*/duration: 1/' >now.scene
@@ -122,8 +124,10 @@ done
 # A damped stop at any tolerance, hit with no output time near: 3 m/s in, 0.2203 m/s out (test_contact_variable.sh).
 cp "$root/tests/data/contact/stops.veh" .
 for way in 'rkck 0.01' 'rkck 1e-6' 'adams 1e-4' 'adams 1e-10'; do
-    printf 'gicscene: 1\nduration: 0.5\nintegrator: %s\ntolerance: %s\noutput_step: 0.5\n' "${way% *}" "${way#* }" >now.scene
-    echo 'initial: {rates: {x: 3}, coordinates: {z: -9}}' >>now.scene
+    {
+        printf 'gicscene: 1\nduration: 0.5\nintegrator: %s\ntolerance: %s\n' "${way% *}" "${way#* }"
+        printf 'output_step: 0.5\ninitial: {rates: {x: 3}, coordinates: {z: -9}}\n'
+    } >now.scene
     : >out.csv
     "$gicrun" -q --engine tcc stops.veh now.scene -o code.csv 2>err
     "$gicrun" -q --engine gic stops.veh now.scene -o out.csv 2>err
