@@ -68,6 +68,15 @@ static Ex resultant(Dag *dag, Ex s, Ex D, Ex Fm, Ex Fs, Ex sm, Ex ss)
     return ex_op(dag, OP_POSITIVE, past, sliding, rising);
 }
 
+/* A force by its normalized slip: H of the resultant slip, or where slip vanishes, w = 1, the initial slope of its own
+ * direction, which is at least the one with which its maximum is at `most`. */
+static Ex by_slip(Dag *dag, Ex H, Ex w, Ex slope, Ex force, Ex most, Ex hat)
+{
+    Ex least = ex_div(dag, ex_add(dag, force, force), most);
+    Ex start = ex_mul(dag, hat, ex_op(dag, OP_MAX, slope, least, 0));
+    return ex_add(dag, ex_mul(dag, one_minus(dag, w), H), ex_mul(dag, w, start));
+}
+
 /* n/L at the slip y >= 0. */
 static Ex relative_trail(Dag *dag, Ex y, Ex most, Ex sq0, Ex sqe)
 {
@@ -109,9 +118,9 @@ void tmeasy_forces(Dag *dag, const Tire *tire, const Rolling *rolling, Ex force[
     Ex Fm = blend(dag, fxm, c, fym, n), Fs = blend(dag, fxs, c, fys, n);
     Ex sm = blend(dag, ex_div(dag, sxm, hatx), c, ex_div(dag, sym, haty), n);
     Ex ss = blend(dag, ex_div(dag, sxs, hatx), c, ex_div(dag, sys, haty), n);
-    Ex H = ex_div(dag, ex_mul(dag, share, resultant(dag, s, D, Fm, Fs, sm, ss)), s);
-    force[TIRE_FX] = ex_mul(dag, H, sx);
-    force[TIRE_FY] = ex_mul(dag, H, sy);
+    Ex H = ex_div(dag, resultant(dag, s, D, Fm, Fs, sm, ss), s), w = ex_div(dag, literal(dag, tiny), s2);
+    force[TIRE_FX] = ex_mul(dag, ex_mul(dag, share, by_slip(dag, H, w, dfx0, fxm, sxm, hatx)), sx);
+    force[TIRE_FY] = ex_mul(dag, ex_mul(dag, share, by_slip(dag, H, w, dfy0, fym, sym, haty)), sy);
     force[TIRE_MX] = 0;
     /* of a wheel that just touches, the length alone has no derivative; with the force it has: 0 */
     Ex contact = ex_op(dag, OP_MAX, rolling->deflection, literal(dag, least_deflection), 0);

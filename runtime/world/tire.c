@@ -262,10 +262,12 @@ static TireForces tmeasy(const Tire *tire, const TireMotion *motion)
                          .Fs = hypot(fxs * c, fys * n),
                          .sm = hypot(sxm / X * c, sym / Y * n),
                          .ss = hypot(sxs / X * c, sys / Y * n)};
-    const double force = scale * curve_at(&curve, s) / s;
+    const double force = curve_at(&curve, s) / s, still = 1e-12 / (s * s);
+    const double kx = fmax(dfx, 2 * fxm / sxm) * X, ky = fmax(dfy, 2 * fym / sym) * Y;
     const double trail = tmeasy_trail(tmeasy_slip(number + TMEASY_trail, p), tmeasy_slip(number + TMEASY_sq0, p),
                                       tmeasy_slip(number + TMEASY_sqe, p), fabs(tan(motion->alpha)));
-    TireForces out = {.fx = force * sx, .fy = force * sy};
+    TireForces out = {.fx = scale * (force + still * (kx - force)) * sx,
+                      .fy = scale * (force + still * (ky - force)) * sy};
     out.mz = -trail * sqrt(8 * tire->radius * fmax(motion->deflection, 0)) * out.fy;
     out.my = -number[TMEASY_rolling_resistance] * tire->radius * motion->fz * tanh(motion->spin);
     return out;

@@ -212,9 +212,9 @@ static TireForces tmeasy_forces(const Tire *t, const TireInput *in)
         characteristic(s, hypotq(dx * x * c, dy * y * d), hypotq(fxm * c, fym * d), hypotq(sxm / x * c, sym / y * d),
                        hypotq(fxs * c, fys * d), hypotq(sxs / x * c, sys / y * d));
     TireForces out = {0};
-    H *= in->load / (p * pn);
-    out.fx = H * sx / s;
-    out.fy = H * sy / s;
+    quad share = in->load / (p * pn), none = 1e-12 / (s * s);
+    out.fx = share * ((1 - none) * H / s + none * x * fmaxq(dx, 2 * fxm / sxm)) * sx;
+    out.fy = share * ((1 - none) * H / s + none * y * fmaxq(dy, 2 * fym / sym)) * sy;
     out.my = -n(t, "rolling_resistance") * t->radius * in->load * tanhq(in->spin);
     out.mz = -relative_trail(t, fabsq(tanq(in->alpha)), p) * sqrtq(8 * t->radius * fmaxq(in->deflection, 0)) * out.fy;
     return out;
