@@ -10,6 +10,7 @@
 #include "run/kc.h"
 #include "run/linear_model.h"
 #include "run/linearize.h"
+#include "run/manoeuvre.h"
 #include "run/run.h"
 #include "run/sheet.h"
 #include "run/stability_watch.h"
@@ -31,6 +32,8 @@ static const char help[] =
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
     "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
+    "       gicrun --manoeuvre NAME MODEL.veh [key=value ...] [-o results.csv] [--trace FILE]\n"
+    "              [--report page.html]\n"
     "\n"
     "Generates C for a vehicle model, compiles it and runs a scene; or studies the model.\n"
     "\n"
@@ -53,27 +56,27 @@ static const char help[] =
     "                     or MATLAB\n"
     "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
     "      --kc           kinematics of axles over travel and steering, models/KC.md; -o: as CSV\n"
-    "      --axle NAME    of --kc: front, rear or a number from the front\n"
-    "      --travel M     of --kc: wheel travel up and down, m (0.08)\n"
-    "      --report FILE  of --kc: a page of curves\n"
+    "      --axle NAME, --travel M\n"
+    "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
     "      --loads        with --kc: compliance instead\n"
     "      --sheet        the vehicle on a page, models/SHEET.md\n"
-    "      --compare FILE with --sheet: another model beside it\n"
+    "      --manoeuvre NAME\n"
+    "                     standard manoeuvres, models/MANOEUVRES.md; an unknown name lists\n"
+    "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
+    "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
+    "      --compare FILE with --sheet or --manoeuvre: another model beside it\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
-    "      --tolerance NUMBER of variable steps\n"
-    "      --engine NAME  how the model is computed: auto (default), generated code that is\n"
-    "                     compiled in this process, in a run of more than a moment by\n"
-    "                     the C compiler too; tcc, the first of them; cc, the second; tape,\n"
-    "                     formulas interpreted; gic, gcp1, gcp2: the paper's methods\n"
+    "      --tolerance NUMBER of these\n"
+    "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
+    "                     long run by the C compiler too (cc); tape: formulas interpreted;\n"
+    "                     gic, gcp1, gcp2\n"
     "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
     "      --recovery WAY of dependent coordinates: newton; closed, wherever there is a closed\n"
     "                     form; auto (default), whichever takes less\n"
-    "      --general      generated code as for any scene; without it a run has code for its scene\n"
-    "                     alone, which leaves out what that doesn't need\n"
-    "      --lanes W      with --engine cc, by gcc or clang: wheels, and other parts that are\n"
-    "                     alike, side by side in vectors of up to W numbers: 2, 4, 8 or 16\n"
+    "      --general      code for any scene; else it leaves out what its scene doesn't need\n"
+    "      --lanes W      with --engine cc: alike parts in vectors of 2, 4, 8 or 16 numbers\n"
     "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
     "      --cflags FLAGS more options for it, after ours, in one word\n"
     "  -q, --quiet        neither progress nor summary\n"
@@ -150,7 +153,7 @@ static void read_lanes(void *request, char *word)
 static bool is_run(const Request *request)
 {
     return !request->states && !request->rests && !request->modes && !request->linear && !request->kinematics &&
-           !request->sheet;
+           !request->sheet && !request->manoeuvre;
 }
 
 static Request read_command_line(int count, char **word)
@@ -170,6 +173,8 @@ static Request read_command_line(int count, char **word)
         {"at", .read = read_at},
         {"kc", .on = &request.kinematics},
         {"sheet", .on = &request.sheet},
+        {"manoeuvre", .text = &request.manoeuvre},
+        {"trace", .text = &request.trace},
         {"loads", .on = &request.loads},
         {"axle", .text = &request.axle},
         {"travel", .read = read_travel},
@@ -191,13 +196,19 @@ static Request read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (request.rests + request.modes + request.linear + request.kinematics + request.sheet + (request.states != NULL) >
+    if (request.rests + request.modes + request.linear + request.kinematics + request.sheet + (request.states != NULL) +
+            (request.manoeuvre != NULL) >
         1)
-        usage_fail("gicrun", "one of --eval, --equilibrium, --modes, --linearize, --kc and --sheet, please", NULL);
-    if (!request.kinematics && (request.axle || request.travel > 0 || request.report || request.loads))
-        usage_fail("gicrun", "--axle, --travel, --report and --loads go with --kc", NULL);
-    if (request.compare && !request.sheet)
-        usage_fail("gicrun", "--compare goes with --sheet", NULL);
+        usage_fail("gicrun",
+                   "one of --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre, please", NULL);
+    if (!request.kinematics && (request.axle || request.travel > 0 || request.loads))
+        usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
+    if (request.report && !request.kinematics && !request.manoeuvre)
+        usage_fail("gicrun", "--report goes with --kc or --manoeuvre", NULL);
+    if (request.trace && !request.manoeuvre)
+        usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
+    if (request.compare && !request.sheet && !request.manoeuvre)
+        usage_fail("gicrun", "--compare goes with --sheet or --manoeuvre", NULL);
     if (request.loads && (request.report || request.travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (request.report && !path_ends(request.report, ".html"))
@@ -207,10 +218,12 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--at goes with --linearize", NULL);
     if (files < 2 && (runs || at))
         usage_fail("gicrun", "no scene given", NULL);
-    if (files > 2)
+    request.key = word + first + 1;
+    request.keys = request.manoeuvre ? files - 1 : 0;
+    if (files > 2 && !request.manoeuvre)
         usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
     request.model = word[first];
-    request.scene = files > 1 ? word[first + 1] : NULL;
+    request.scene = files > 1 && !request.manoeuvre ? word[first + 1] : NULL;
     if (!strcmp(request.model, "-"))
         usage_fail("gicrun", "the model must be a file", NULL);
     if (request.lanes && strcmp(request.engine, "cc") != 0)
@@ -224,7 +237,8 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", request.integrator);
     if (request.picture && !runs)
         usage_fail("gicrun",
-                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
+                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
                    NULL);
     if (request.picture && !plot_known(request.picture))
         usage_fail("gicrun", "the picture must end in .svg or .png, unlike", request.picture);
@@ -232,20 +246,22 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (request.page && !runs)
         usage_fail("gicrun",
-                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
+                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
                    NULL);
     if (request.page && !path_ends(request.page, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.page);
     if (request.driven && (!runs || request.results || request.picture || request.page || request.recording))
         usage_fail("gicrun",
                    "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                   "nor with --eval, --equilibrium, --modes, --linearize, --kc and --sheet",
+                   "nor with --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre",
                    NULL);
     if (request.driven && !path_ends(request.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", request.driven);
     if (request.recording && !runs)
         usage_fail("gicrun",
-                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc or --sheet",
+                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
                    NULL);
     if (request.linear && request.results && !linear_file_known(request.results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", request.results);
@@ -276,7 +292,8 @@ static void analyse(Pool *pool, const Model *model, const Scene *scene, const En
 /* Refuse outputs that are inputs of the run, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
-    const char *const output[] = {request->results, request->picture, request->page, request->driven, request->report};
+    const char *const output[] = {request->results, request->picture, request->page,
+                                  request->driven,  request->report,  request->trace};
     const Source states = {.path = request->states ? request->states : "-"};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
@@ -286,6 +303,7 @@ static void check_outputs(const Request *request, const Model *model, const Scen
                        i == 1   ? "--plot needs another file than the results, which go to"
                        : i == 2 ? "--animate needs another file than the results, which go to"
                        : i == 4 ? "--report needs another file than the results, which go to"
+                       : i == 5 ? "--trace needs another file than the results, which go to"
                                 : "--drive needs another file than the results, which go to",
                        request->results);
         file_check(output[i]);
@@ -319,6 +337,11 @@ int main(int count, char **word)
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);
+    if (request.manoeuvre) {
+        manoeuvre_report(pool, model, &request);
+        pool_free(pool);
+        return 0;
+    }
     if (request.kinematics || request.sheet) {
         (request.kinematics ? kc_report : sheet_report)(pool, model, scene, &request);
         pool_free(pool);

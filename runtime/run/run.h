@@ -24,14 +24,18 @@ typedef struct RunColumns {
 
 /* The options of the command line. */
 typedef struct Request {
-    const char *model, *scene;    /* paths; scene may be NULL with `states` */
-    const char *states;           /* --eval, or NULL */
-    bool rests, modes, linear;    /* --equilibrium, --modes, --linearize */
-    bool kinematics, sheet;       /* --kc, --sheet */
-    bool loads;                   /* --loads */
-    const char *axle;             /* --axle, or NULL: all */
-    const char *report;           /* --report, or NULL */
-    const char *compare;          /* --compare, or NULL */
+    const char *model, *scene; /* paths; scene may be NULL with `states` */
+    const char *states;        /* --eval, or NULL */
+    bool rests, modes, linear; /* --equilibrium, --modes, --linearize */
+    bool kinematics, sheet;    /* --kc, --sheet */
+    bool loads;                /* --loads */
+    const char *axle;          /* --axle, or NULL: all */
+    const char *report;        /* --report, or NULL */
+    const char *compare;       /* --compare, or NULL */
+    const char *manoeuvre;     /* --manoeuvre, or NULL */
+    const char *trace;         /* --trace, or NULL */
+    int keys;                  /* words key=value of a manoeuvre */
+    char **key;
     double travel;                /* --travel, m; 0: as usual */
     double at;                    /* --at, s; NAN: not given */
     const char *results;          /* "-": standard output; NULL: none */

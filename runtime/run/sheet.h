@@ -6,6 +6,7 @@
 #define RUN_SHEET_H
 
 #include "base/pool.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "run/kc.h"
 #include "run/linearize.h"
@@ -38,19 +39,41 @@ typedef struct Sheet {
 
 /* Add a number, in the unit in which it is shown; and what could not be found. */
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value);
+/* A way in m, which nobody reads in mm. */
+void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value);
 void sheet_note(Sheet *sheet, const char *note);
 
 /* sheet_rest.c: masses, loads and attitude at rest; the axles there. */
 void sheet_rest(Sheet *sheet);
+/* The same file: the mean x of the contacts of an axle at rest, in the axes of the drawing; *aside: the largest
+ * distance of one of them from the middle. NAN: there is no such position. */
+double sheet_axle_place(const Sheet *sheet, const KcAxle *axle, double *aside);
+/* sheet_report.c: a vehicle at rest, with the rows of sheet_rest(). Ends in diag_fail where the model is none. */
+Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* sheet_cornering.c: steady response to steering at several speeds, from the linear model. */
 void sheet_cornering(Sheet *sheet);
+/* The same file: the axle that one driven coordinate steers, and the angle of its wheels, their mean, by a unit of it
+ * at rest; NULL: there is none, *why. */
+const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why);
+/* The same file: the steady change z [linear->count] of a unit of the steering coordinate. Returns a status. */
+int sheet_respond(const Sheet *sheet, int steer, double speed, double *z);
+/* Numbers of z: rate of the yaw angle. */
+double sheet_yaw_rate(const Sheet *sheet, const double *z);
 /* The same file: set an instance at rest in motion straight ahead, on rolling wheels. Returns a status. */
 int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+/* The numbers of another one beside those of the same names; the numbers for people, the title after the names, and as
+ * CSV. */
+void sheet_compare(Sheet *sheet, const Sheet *other);
+void sheet_print(const Sheet *sheet, const char *title);
+/* Its notes, after the numbers for people, or on standard error where these go to a file. */
+void sheet_notes(const Sheet *sheet, const char *before, const Request *request);
+void sheet_csv(const Sheet *sheet, const char *path);
 /* True if a number is another one for the other vehicle, or not there: by more than rounding. */
 bool sheet_differs(const SheetRow *row);
-/* sheet_page.c */
+/* sheet_page.c: the sections but that of the modes as tables; the page. */
+void sheet_tables(const Sheet *sheet, Text *out);
 void sheet_page(const Sheet *sheet, const char *path);
 
 #endif

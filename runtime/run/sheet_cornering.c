@@ -41,8 +41,7 @@ static bool matters(int n, const double *A, const double *b, int i)
     return changes && changed;
 }
 
-/* z [count] of a unit of the steering. Returns a status. */
-static int respond(const Sheet *sheet, int steer, double speed, double *z)
+int sheet_respond(const Sheet *sheet, int steer, double speed, double *z)
 {
     const Linear *linear = sheet->found->linear;
     const gic_model *code = sheet->found->engine->code;
@@ -97,9 +96,12 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
     return NULL;
 }
 
-/* Road-wheel angle a unit of the steering at rest: the mean of the first wheels of both sides. */
-static double wheel_angle(const Sheet *sheet, const KcAxle *axle)
+/* Road-wheel angle a unit of the steering at rest: the mean of the axle's wheels. *idle: a wheel that it does not turn,
+ * NULL: none. */
+static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel **idle)
 {
+    static const double slight = 1e-6; /* of the largest angle */
+    double angle[KC_WHEELS], most = 0;
     KcLook *look = kc_look_new(sheet->kc, axle);
     double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1], sum = 0;
     if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || !kc_along(axle, look, false, still, 1, along))
@@ -108,32 +110,60 @@ static double wheel_angle(const Sheet *sheet, const KcAxle *axle)
         KcPose pose, rate;
         kc_pose(&axle->wheel[i], look, &pose);
         kc_rate(&axle->wheel[i], look, &pose, along, &rate);
-        sum += kc_steer_rate(&pose, &rate) / axle->wheels;
+        angle[i] = kc_steer_rate(&pose, &rate);
+        most = fmax(most, fabs(angle[i]));
+        sum += angle[i] / axle->wheels;
     }
+    for (int i = 0; i < axle->wheels; ++i)
+        if (fabs(angle[i]) <= slight * most)
+            *idle = &axle->wheel[i];
     return sum;
+}
+
+const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why)
+{
+    const KcAxle *axle = steered(sheet, why);
+    const KcWheel *idle = NULL;
+    *angle = axle ? wheel_angle(sheet, axle, &idle) : 0;
+    if (idle)
+        *why =
+            pool_print(sheet->pool,
+                       "the wheels of axle %s are steered separately, %s not by %s; join them, as by a rack, or drive "
+                       "them by one coordinate",
+                       axle->name, idle->name, sheet->model->coordinate[axle->steer].name);
+    else if (axle && (*angle == 0 || !(sheet->wheelbase > 0)))
+        *why = "there is one axle";
+    else
+        return axle;
+    return NULL;
+}
+
+double sheet_yaw_rate(const Sheet *sheet, const double *z)
+{
+    return z[sheet->found->linear->places + YAW];
 }
 
 void sheet_cornering(Sheet *sheet)
 {
     const char *why;
+    double angle;
     const Linear *linear = sheet->found->linear;
-    const KcAxle *axle = steered(sheet, &why);
-    const double angle = axle ? wheel_angle(sheet, axle) : 0;
+    const KcAxle *axle = sheet_steered(sheet, &angle, &why);
     double *z = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *z);
-    if (angle == 0 || !(sheet->wheelbase > 0)) {
-        sheet_note(sheet, pool_print(sheet->pool, "cornering: %s", axle ? "there is one axle" : why));
+    if (!axle) {
+        sheet_note(sheet, pool_print(sheet->pool, "cornering: %s", why));
         return;
     }
     for (size_t k = 0; k < sizeof speeds / sizeof *speeds; ++k) {
         const double v = speeds[k];
         const char *section = pool_print(sheet->pool, "Cornering at %g m/s", v);
         const char *name = pool_print(sheet->pool, "at_%g", v);
-        const int status = respond(sheet, axle->steer, v, z);
+        const int status = sheet_respond(sheet, axle->steer, v, z);
         if (status != GIC_OK) {
             sheet_note(sheet, pool_print(sheet->pool, "cornering at %g m/s: no steady response", v));
             continue;
         }
-        const double yaw = z[linear->places + YAW], lateral = v * yaw;
+        const double yaw = sheet_yaw_rate(sheet, z), lateral = v * yaw;
         const double lever = sheet->com[0] - sheet->model->body[BODY_BASE].position[0];
         const double slip = (z[linear->places + Y] + yaw * lever) / v;
         sheet_add(sheet, section, pool_print(sheet->pool, "%s.yaw_gain", name), "Yaw rate by the steer angle", "1/s",

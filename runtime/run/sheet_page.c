@@ -20,11 +20,9 @@ static void cell(Text *out, const char *text, bool number)
 }
 
 /* All sections but that of the modes, which have a table of their own. */
-static void write_tables(void *context, Text *out, int indent)
+void sheet_tables(const Sheet *sheet, Text *out)
 {
-    const Sheet *sheet = context;
     bool open = false;
-    (void)indent;
     for (int i = 0; i < sheet->rows; ++i) {
         const SheetRow *row = &sheet->row[i];
         if (!strncmp(row->name, "mode_", 5))
@@ -51,6 +49,12 @@ static void write_tables(void *context, Text *out, int indent)
         text_print(out, "</tr>\n");
     }
     text_print(out, "%s", open ? "</table>\n" : "");
+}
+
+static void write_tables(void *context, Text *out, int indent)
+{
+    (void)indent;
+    sheet_tables(context, out);
 }
 
 /* The name of number i of a mode's shares: a place, or a fast state. */

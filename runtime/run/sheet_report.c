@@ -33,6 +33,11 @@ void sheet_add(Sheet *sheet, const char *section, const char *name, const char *
     *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = row;
 }
 
+void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value)
+{
+    *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = (SheetRow){section, name, title, "m", "m", 1, value + 0.0, NAN};
+}
+
 void sheet_note(Sheet *sheet, const char *note)
 {
     *POOL_PUSH(sheet->pool, sheet->note, sheet->notes) = note;
@@ -78,7 +83,7 @@ static void add_modes(Sheet *sheet)
     }
 }
 
-static void write_csv(const Sheet *sheet, const char *path)
+void sheet_csv(const Sheet *sheet, const char *path)
 {
     interrupt_hold();
     Csv csv = csv_open(sheet->pool, path);
@@ -107,10 +112,9 @@ static void write_csv(const Sheet *sheet, const char *path)
     interrupt_release();
 }
 
-static void print(const Sheet *sheet)
+void sheet_print(const Sheet *sheet, const char *title)
 {
-    printf("%s%s%s, models/SHEET.md defines these\n", sheet->model->name, sheet->other ? " and " : "",
-           sheet->other ? sheet->other : "");
+    printf("%s%s%s%s\n", sheet->model->name, sheet->other ? " and " : "", sheet->other ? sheet->other : "", title);
     for (int i = 0; i < sheet->rows; ++i) {
         const SheetRow *row = &sheet->row[i];
         if (row->section)
@@ -120,11 +124,9 @@ static void print(const Sheet *sheet)
             printf(" %14s%s", kc_shown(sheet->pool, row->other, row->scale), sheet_differs(row) ? " *" : "");
         printf("\n");
     }
-    for (int i = 0; i < sheet->notes; ++i)
-        printf("%snot there: %s\n", i ? "" : "\n", sheet->note[i]);
 }
 
-static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve)
 {
     if (!model->free_base || !model->wheels)
         diag_fail((Place){model->source, 0, 0}, "name a vehicle: a model with a free base and wheels",
@@ -138,6 +140,21 @@ static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, Solve 
                          ? tape_array(sheet.found->self, code->state_offset)[code->coordinate_state[c]]
                          : tape_array(sheet.found->self, code->input_offset)[code->coordinate_input[c]];
     sheet_rest(&sheet);
+    return sheet;
+}
+
+void sheet_notes(const Sheet *sheet, const char *before, const Request *request)
+{
+    for (int i = 0; i < sheet->notes; ++i)
+        if (!request->results)
+            printf("%s%s%s\n", i ? "" : "\n", before, sheet->note[i]);
+        else if (!request->quiet)
+            fprintf(stderr, "gicrun: note: %s%s\n", before, sheet->note[i]);
+}
+
+static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+{
+    Sheet sheet = sheet_open(pool, model, scene, solve);
     find_modes(&sheet);
     add_modes(&sheet);
     sheet_cornering(&sheet);
@@ -150,7 +167,7 @@ bool sheet_differs(const SheetRow *row)
 }
 
 /* Numbers of another vehicle beside those of the same name. */
-static void compare(Sheet *sheet, const Sheet *other)
+void sheet_compare(Sheet *sheet, const Sheet *other)
 {
     sheet->other = other->model->name;
     for (int i = 0; i < sheet->rows; ++i)
@@ -164,14 +181,13 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
     Sheet sheet = sheet_of(pool, model, scene, request->solve);
     if (request->compare) {
         const Sheet other = sheet_of(pool, model_read(pool, request->compare), NULL, request->solve);
-        compare(&sheet, &other);
+        sheet_compare(&sheet, &other);
     }
     if (request->results && path_ends(request->results, ".html"))
         sheet_page(&sheet, request->results);
     else if (request->results)
-        write_csv(&sheet, request->results);
+        sheet_csv(&sheet, request->results);
     else
-        print(&sheet);
-    for (int i = 0; i < sheet.notes && request->results && !request->quiet; ++i)
-        fprintf(stderr, "gicrun: note: not there: %s\n", sheet.note[i]);
+        sheet_print(&sheet, ", models/SHEET.md defines these");
+    sheet_notes(&sheet, "not there: ", request);
 }

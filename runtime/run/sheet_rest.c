@@ -141,18 +141,19 @@ static void loads(Sheet *sheet, const double *pose, const Carried *c)
     }
 }
 
-/* The mean x of the contacts of an axle at rest. */
-static double place_of(const Sheet *sheet, const KcAxle *axle)
+double sheet_axle_place(const Sheet *sheet, const KcAxle *axle, double *aside)
 {
     const KcAxle none = {.steer = -1};
     KcLook *look = kc_look_new(sheet->kc, &none);
     double x = 0;
+    *aside = 0;
     if (kc_look(sheet->kc, sheet->w, look) != GIC_OK)
         return NAN;
     for (int i = 0; i < axle->wheels; ++i) {
         KcPose pose;
         kc_pose(&axle->wheel[i], look, &pose);
         x += pose.contact[0] / axle->wheels;
+        *aside = fmax(*aside, fabs(pose.contact[1]));
     }
     return x;
 }
@@ -221,7 +222,9 @@ void sheet_rest(Sheet *sheet)
     masses(sheet, pose, &c);
     loads(sheet, pose, &c);
     const Kc *kc = sheet->kc;
-    sheet->wheelbase = place_of(sheet, &kc->axle[0]) - place_of(sheet, &kc->axle[kc->axles - 1]);
+    double aside;
+    sheet->wheelbase =
+        sheet_axle_place(sheet, &kc->axle[0], &aside) - sheet_axle_place(sheet, &kc->axle[kc->axles - 1], &aside);
     if (sheet->wheelbase > 0)
         sheet_add(sheet, NULL, "wheelbase", "Wheelbase", "m", sheet->wheelbase);
     for (int a = 0; a < kc->axles; ++a) {

@@ -501,9 +501,10 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
 
 /* ---- the scene ------------------------------------------------------------------------------------------ */
 
-const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance)
+/* path: for models beside it that fit better; NULL: none is looked for. */
+static const Scene *scene_of(Pool *pool, const Item *root, const char *path, const Model *model, const char *integrator,
+                             double tolerance)
 {
-    const Item *root = doc_read(pool, path);
     Scene *scene = pool_alloc(pool, sizeof *scene);
     Reader reader = {pool, model, scene};
     const Item *other = root->kind == ITEM_MAP ? doc_find(root, "gicgen") : NULL;
@@ -518,7 +519,8 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
         diag_fail(version->at, "write 1, or use a newer gicrun", "this gicrun reads version 1 of the scene format");
     if (doc_find(root, "description"))
         doc_word(doc_find(root, "description"), "description");
-    scene_check_fit(pool, root, path, model);
+    if (path)
+        scene_check_fit(pool, root, path, model);
     read_integrator(&reader, root, integrator, tolerance);
     scene->ratio = 1;
     if (doc_find(root, "ratio"))
@@ -559,4 +561,14 @@ const Scene *scene_read(Pool *pool, const char *path, const Model *model, const 
     rig_read(pool, root, model, scene);
     scene_read_outputs(pool, root, model, scene);
     return scene;
+}
+
+const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance)
+{
+    return scene_of(pool, doc_read(pool, path), path, model, integrator, tolerance);
+}
+
+const Scene *scene_read_text(Pool *pool, const char *name, const char *text, const Model *model)
+{
+    return scene_of(pool, doc_read_text(pool, name, text, strlen(text)), NULL, model, NULL, 0);
 }

@@ -76,6 +76,8 @@ typedef struct Scene {
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator, tolerance: replace the scene's; NULL, 0: do not.
  */
 const Scene *scene_read(Pool *pool, const char *path, const Model *model, const char *integrator, double tolerance);
+/* The same of a text in memory; name: what messages call it. */
+const Scene *scene_read_text(Pool *pool, const char *name, const char *text, const Model *model);
 /* fit.c: end with a message if the scene (root: of its file `path`) uses names that the model lacks but a model in its
  * folder, in the folder above or beside the model has: the scene is for that model. */
 void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model *model);

@@ -28,6 +28,16 @@ turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (-n["at_20.yaw_gain"] * 
     d = n["at_20.understeer"] - k; exit !(n["at_20.yaw_gain"] < 0 && k > 1e-4 && k < 3e-4 && d * d < 1e-24) }' "$work/behind.csv"; }
 check 'a car that steers behind understeers' turns
 
+# tires without resistance roll without slip: slopes there are those of pure slips, whatever the other direction has (TIRES.md 6).
+# Lateral slopes 10 and 12.5 times the load are an understeer gradient of (1/10 - 1/12.5) / g, but for its pitch at rest of 7e-4 rad
+linear=$root/tests/data/manoeuvre/linear.veh
+run --sheet "$linear" -o "$work/linear.csv"
+gradient() { awk -F, '$1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-6} END {exit !(n == 3 && !bad)}' "$work/linear.csv"; }
+check 'the stiffness at slip zero is that of lateral slip' gradient
+sed -e '/tie:/d' -e 's/steer:/steer_l:/' "$linear" >"$work/apart.veh"
+run --sheet "$work/apart.veh"
+check 'wheels that are steered separately' prints 'not there: cornering: the wheels of axle front are steered separately, f_[lr] not by steer_[lr]'
+
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/sheet.html"
 check 'the page' exits 0
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/again.html"

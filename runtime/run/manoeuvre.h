@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * manoeuvre: a vehicle is driven through standard manoeuvres (gicrun --manoeuvre), by the definitions of
+ * models/MANOEUVRES.md. Each finds its own speed and steering, runs scenes that it writes itself, and evaluates them.
+ */
+#ifndef RUN_MANOEUVRE_H
+#define RUN_MANOEUVRE_H
+
+#include "base/pool.h"
+#include "base/text.h"
+#include "engine/engine.h"
+#include "model/model.h"
+#include "run/run.h"
+#include "run/sheet.h"
+
+/* ---- manoeuvre_trial.c: one run ------------------------------------------------------------------------- */
+
+/* What is recorded, SI: the place of the centre of mass of rest, carried along by the base, and its motion in the plane
+ * along and across the vehicle's heading. Signs are those of ISO 8855: left, to the left and right side down count. */
+typedef enum Channel {
+    TRIAL_TIME,
+    TRIAL_STEER, /* value of the steering coordinate */
+    TRIAL_ANGLE, /* road-wheel angle that it stands for */
+    TRIAL_ACCELERATOR,
+    TRIAL_BRAKE,
+    TRIAL_X,
+    TRIAL_Y,
+    TRIAL_YAW, /* not wrapped */
+    TRIAL_SPEED,
+    TRIAL_SIDESLIP,
+    TRIAL_YAW_RATE,
+    TRIAL_AX,
+    TRIAL_AY,
+    TRIAL_ROLL,
+    TRIAL_PITCH,
+    TRIAL_LOAD, /* the smallest of the wheels' loads */
+    TRIAL_CHANNELS
+} Channel;
+
+extern const gic_signal trial_signal[TRIAL_CHANNELS];
+
+typedef struct Trial {
+    const char *name, *scene; /* scene: its text */
+    int rows;
+    double (*row)[TRIAL_CHANNELS];
+    double *state; /* the state at its end, as in models/FORMAT.md section 10 */
+    int gear;
+    bool tipped;     /* it leant by more than 60 degrees, which ended it */
+    const char *end; /* why it could not go on; NULL: it could */
+} Trial;
+
+typedef struct TestCar TestCar;
+
+/* True: the run may end after this row, the last of the trial. */
+typedef bool TrialStop(void *context, const Trial *trial);
+/* Run a scene, with the rows of its output times. stop: NULL, to its end. Mistakes of the scene end in diag_fail. */
+Trial *trial_run(TestCar *car, const char *name, const char *scene, TrialStop *stop, void *context);
+
+/* ---- manoeuvre_car.c: what the vehicle can do ----------------------------------------------------------- */
+
+struct TestCar {
+    Pool *pool;
+    const Model *model; /* the user's, with outputs of wheels */
+    Sheet sheet;        /* at rest */
+    const Engine *engine;
+    const gic_model *code;  /* the engine's, later maybe faster one */
+    double com[3];          /* centre of mass at rest, in the axes of the base's body */
+    int accelerator, brake; /* inputs of unit 1 of these names; -1: the model has none */
+    const KcAxle *axle;     /* that is steered; NULL: none, `unsteered` says why */
+    const char *unsteered;
+    int steering;        /* input of the steering coordinate; -1: none */
+    double angle;        /* mean road-wheel angle to the left by a unit of it; of wheels behind, to the right */
+    double straight;     /* its value straight ahead */
+    double range[2];     /* of the road-wheel angle */
+    int *load;           /* [wheels] components of outputs */
+    const char *rest;    /* place and coordinates at rest, as keys of a scene's `initial` */
+    double settled;      /* the speed that was kept last; 0: none */
+    double reached;      /* the speed at the end of the last attempt to */
+    const char *running; /* gear and engine speed then, as keys of `initial` */
+};
+
+TestCar *car_open(Pool *pool, const Model *model, const Request *request);
+/* End with a message: the vehicle can not do it. */
+_Noreturn void car_refuse(const TestCar *car, const char *remedy, const char *what);
+/* End with a message where the vehicle is not steered; where it has no accelerator, or no brake. */
+void car_need_steering(const TestCar *car);
+void car_need_drive(const TestCar *car);
+void car_need_brake(const TestCar *car);
+/* The text of a scene that begins straight ahead at a speed, m/s. drives: the driver keeps the speed, where the car has
+ * pedals; false: pedals are free. more: other keys, NULL: none. */
+const char *car_scene(TestCar *car, double duration, double speed, bool drives, const char *more);
+/* Drive straight ahead until the speed is kept, so that scenes at about this speed begin in the right gear. False: it
+ * is not, *why. Without pedals, or at a speed of 0, nothing is done. car_settle(): the same, which ends in
+ * car_refuse(). */
+bool car_keeps(TestCar *car, double speed, const char **why);
+void car_settle(TestCar *car, double speed);
+/* Steering coordinate of a road-wheel angle. */
+double car_steering(const TestCar *car, double angle);
+/* The steady road-wheel angle for a lateral acceleration of 1 m/s^2, by the linear model; NAN: there is none. */
+double car_angle_by_acceleration(const TestCar *car, double speed);
+
+/* ---- manoeuvre_fit.c: numbers from rows ----------------------------------------------------------------- */
+
+/* The slope of the straight line through y over x by least squares; NAN below two different points. */
+double fit_slope(int count, const double *x, const double *y);
+/* The mean of a channel from a time on to another one. */
+double trial_mean(const Trial *trial, Channel channel, double from, double to);
+/* Its value at a time, linear between rows. */
+double trial_at(const Trial *trial, Channel channel, double time);
+/* The first time from `from` on at which a channel passes a value upwards (sign 1) or downwards (-1); NAN: never. */
+double trial_passes(const Trial *trial, Channel channel, double from, double value, double sign);
+/* The row from a time on at which sign times a channel is largest. */
+int trial_peak(const Trial *trial, Channel channel, double from, double to, double sign);
+
+/* ---- manoeuvre_report.c --------------------------------------------------------------------------------- */
+
+/* A value that the user may give as key=value. */
+typedef struct ManoeuvreKey {
+    const char *name, *unit, *about;
+    double value, least, most; /* value: unless the user gives one */
+} ManoeuvreKey;
+
+enum { MANOEUVRE_KEYS = 6 };
+
+/* A diagram of the page: a channel over another one, of all trials. */
+typedef struct ManoeuvreCurve {
+    Channel x, y;
+} ManoeuvreCurve;
+
+/* A diagram of values that are no channel: gain and phase. */
+typedef struct ManoeuvreTable {
+    const char *title, *unit, *below;
+    int rows;
+    double *x, *y;
+} ManoeuvreTable;
+
+/* A manoeuvre under way. */
+typedef struct Manoeuvre {
+    Pool *pool;
+    TestCar *car;
+    Sheet *result;       /* its numbers and notes */
+    const double *value; /* [MANOEUVRE_KEYS] of the keys */
+    int trials, curves, tables;
+    const Trial **trial; /* that were evaluated */
+    ManoeuvreCurve *curve;
+    ManoeuvreTable *table;
+} Manoeuvre;
+
+typedef struct ManoeuvreKind {
+    const char *name, *title;
+    void (*run)(Manoeuvre *manoeuvre);
+    ManoeuvreKey key[MANOEUVRE_KEYS];
+} ManoeuvreKind;
+
+/* Keep a trial for the results. */
+void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial);
+/* The manoeuvres, the last without a name. */
+extern const ManoeuvreKind manoeuvre_kind[];
+/* --manoeuvre: run it and write what was asked for. Ends in usage_fail for unknown names and keys. */
+void manoeuvre_report(Pool *pool, const Model *model, const Request *request);
+/* manoeuvre_page.c */
+void manoeuvre_page(const Manoeuvre *manoeuvre, const ManoeuvreKind *kind, const char *path);
+
+/* ---- the manoeuvres: manoeuvre_steady.c and so on ------------------------------------------------------- */
+
+void manoeuvre_steady_speed(Manoeuvre *manoeuvre);
+void manoeuvre_steady_radius(Manoeuvre *manoeuvre);
+void manoeuvre_step_steer(Manoeuvre *manoeuvre);
+void manoeuvre_sine_dwell(Manoeuvre *manoeuvre);
+void manoeuvre_frequency(Manoeuvre *manoeuvre);
+void manoeuvre_lane_change(Manoeuvre *manoeuvre);
+void manoeuvre_braking(Manoeuvre *manoeuvre);
+void manoeuvre_coast(Manoeuvre *manoeuvre);
+void manoeuvre_acceleration(Manoeuvre *manoeuvre);
+
+#endif

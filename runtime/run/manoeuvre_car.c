@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT
+ * The vehicle of a manoeuvre: what can steer, drive and brake it; scenes that begin straight ahead, in the right gear.
+ */
+#include "base/vec3.h"
+#include "gic_runtime.h"
+#include "read/read.h"
+#include "run/engines.h"
+#include "run/manoeuvre.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The base's axes at design are those of the drawing; place and coordinates of rest as keys of `initial`. */
+static const char *rest_of(TestCar *car)
+{
+    const Model *model = car->model;
+    const double *state = tape_array(car->sheet.found->self, car->sheet.found->engine->code->state_offset);
+    Text text = {.pool = car->pool};
+    text_print(&text, "  position: [%.17g, %.17g, %.17g]\n  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n",
+               state[0], state[1], state[2], state[3], state[4], state[5], state[6]);
+    bool any = false;
+    for (int c = 0; c < model->coordinates; ++c)
+        if (!model->coordinate[c].driven) {
+            text_print(&text, "%s%s: %.17g", any ? ", " : "  coordinates: {", model->coordinate[c].name,
+                       car->sheet.w[c]);
+            any = true;
+        }
+    text_print(&text, "%s", any ? "}\n" : "");
+    return text.s;
+}
+
+/* An input of unit 1 with this name; -1: there is none. */
+static int pedal(const Model *model, const char *name)
+{
+    for (int i = 0; i < model->inputs; ++i)
+        if (!strcmp(model->input[i].name, name) && !strcmp(model->input[i].unit, "1"))
+            return i;
+    return -1;
+}
+
+static void find_loads(TestCar *car)
+{
+    const Model *model = car->model;
+    car->load = pool_alloc(car->pool, (size_t)(model->wheels + 1) * sizeof *car->load);
+    for (int i = 0, at = 0; i < model->outputs; at += model->output[i++].count)
+        if (model->output[i].type == OUTPUT_WHEEL)
+            car->load[model->output[i].index] = at;
+}
+
+static void find_steering(TestCar *car)
+{
+    const Model *model = car->model;
+    car->axle = sheet_steered(&car->sheet, &car->angle, &car->unsteered);
+    car->steering = -1;
+    if (!car->axle)
+        return;
+    const Coordinate *c = &model->coordinate[car->axle->steer];
+    car->steering = c->input;
+    car->straight = model->input[c->input].initial;
+    car->angle *= car->axle->ahead; /* wheels behind turn the vehicle the other way */
+    for (int i = 0; i < 2; ++i)
+        car->range[i] = (c->range[i] - car->straight) * car->angle;
+    if (car->range[0] > car->range[1]) {
+        const double low = car->range[1];
+        car->range[1] = car->range[0];
+        car->range[0] = low;
+    }
+}
+
+TestCar *car_open(Pool *pool, const Model *model, const Request *request)
+{
+    TestCar *car = pool_alloc(pool, sizeof *car);
+    const double *e = model->body[BODY_BASE].euler;
+    *car = (TestCar){.pool = pool, .sheet = sheet_open(pool, model, NULL, request->solve)};
+    car->model = model_watch_wheels(pool, model);
+    find_loads(car);
+    if (fabs(fabs(e[0]) - 1) > equilibrium_limit)
+        car_refuse(car, "draw the base with `axes` along x, y and z",
+                   "the axes of the base are not those of the drawing");
+    for (int w = 0; w < model->wheels; ++w)
+        if (model->wheel[w].tire < 0)
+            car_refuse(car, "give its wheels the key `tire`",
+                       pool_print(pool, "wheel '%s' has no tire", model->wheel[w].name));
+    sub3(car->sheet.com, model->body[BODY_BASE].position, car->com);
+    car->accelerator = pedal(model, "accelerator");
+    car->brake = pedal(model, "brake");
+    find_steering(car);
+    car->rest = rest_of(car);
+    car->running = "";
+    car->engine = engine_open(pool, request->engine, car->model,
+                              &(EngineOptions){.solve = request->solve,
+                                               .recovery = request->recovery,
+                                               .compiler = request->compiler,
+                                               .flags = request->flags,
+                                               .quiet = request->quiet});
+    car->code = car->engine->code;
+    return car;
+}
+
+void car_refuse(const TestCar *car, const char *remedy, const char *what)
+{
+    diag_fail((Place){car->model ? car->model->source : NULL, 0, 0}, remedy, "%s", what);
+}
+
+void car_need_steering(const TestCar *car)
+{
+    if (!car->axle)
+        car_refuse(car, "drive the rack or the steering wheel: `driven: true` in its coordinate",
+                   pool_print(car->pool, "the vehicle can't be steered: %s", car->unsteered));
+}
+
+void car_need_drive(const TestCar *car)
+{
+    if (car->accelerator < 0)
+        car_refuse(car, "add it to `inputs` and to formulas of `drive`, or a powertrain that reads it",
+                   "nothing drives the vehicle: the model has no input 'accelerator' of unit 1");
+}
+
+void car_need_brake(const TestCar *car)
+{
+    if (car->brake < 0)
+        car_refuse(car, "add it to `inputs` and to formulas of `brake` of wheels",
+                   "nothing brakes the vehicle: the model has no input 'brake' of unit 1");
+}
+
+const char *car_scene(TestCar *car, double duration, double speed, bool drives, const char *more)
+{
+    Text text = {.pool = car->pool};
+    text_print(&text,
+               "gicscene: 1\nduration: %.9g\nintegrator: rkck\ntolerance: 1e-6\noutput_step: 0.01\n"
+               "initial:\n%s  velocity: [%.17g, 0, 0]\n%s",
+               duration, car->rest, speed, speed > 0 ? car->running : "");
+    if (drives && car->accelerator >= 0 && car->brake >= 0)
+        text_print(&text, "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
+    text_print(&text, "%s", more ? more : "");
+    return text.s;
+}
+
+/* ---- the right gear ------------------------------------------------------------------------------------- */
+
+/* Lasts as long as it takes, s; near enough, m/s and m/s^2; for so long, rows. */
+static const double settling = 40, slow = 0.05, quiet = 0.05;
+enum { LONG_ENOUGH = 200 };
+
+typedef struct Settled {
+    double speed;
+    int rows;
+} Settled;
+
+static bool is_settled(void *context, const Trial *trial)
+{
+    Settled *settled = context;
+    const double *row = trial->row[trial->rows - 1];
+    const bool good = fabs(row[TRIAL_SPEED] - settled->speed) < slow && fabs(row[TRIAL_AX]) < quiet;
+    settled->rows = good ? settled->rows + 1 : 0;
+    return settled->rows >= LONG_ENOUGH;
+}
+
+bool car_keeps(TestCar *car, double speed, const char **why)
+{
+    const Powertrain *powertrain = car->model->powertrain;
+    Settled settled = {.speed = speed};
+    if (car->accelerator < 0 || car->brake < 0 || !(speed > 0) || car->settled == speed)
+        return true;
+    const Trial *trial = trial_run(car, "settling", car_scene(car, settling, speed, true, NULL), is_settled, &settled);
+    car->reached = trial->row[trial->rows - 1][TRIAL_SPEED];
+    if (settled.rows < LONG_ENOUGH) {
+        *why = trial->end ? trial->end
+                          : pool_print(car->pool,
+                                       "the vehicle does not keep %.4g m/s straight ahead: after %g s it has %.4g m/s",
+                                       speed, settling, car->reached);
+        return false;
+    }
+    car->settled = speed;
+    if (!powertrain)
+        return true;
+    const gic_signal *name = descriptor_fast_states(car->pool, car->model);
+    const int at = powertrain->fast + POWERTRAIN_SPEED;
+    const double *fast = trial->state + car->engine->standard_count - car->code->fast_count;
+    car->running = pool_print(car->pool, "  gear: %d\n  states: {%s: %.17g}\n", trial->gear, name[at].name, fast[at]);
+    return true;
+}
+
+void car_settle(TestCar *car, double speed)
+{
+    const char *why;
+    if (!car_keeps(car, speed, &why))
+        car_refuse(car, pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * fmax(1, car->reached)),
+                   why);
+}
+
+/* ---- steering ------------------------------------------------------------------------------------------- */
+
+double car_steering(const TestCar *car, double angle)
+{
+    return car->straight + angle / car->angle;
+}
+
+double car_angle_by_acceleration(const TestCar *car, double speed)
+{
+    double *z = pool_alloc(car->pool, (size_t)car->sheet.found->linear->count * sizeof *z);
+    if (sheet_respond(&car->sheet, car->axle->steer, speed, z) != GIC_OK)
+        return NAN;
+    const double by_unit = speed * sheet_yaw_rate(&car->sheet, z);
+    return by_unit * car->angle > 0 ? car->angle / by_unit : NAN;
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT
+ * Frequency response: steering by a sine whose frequency grows, gain, phase and coherence of what follows. The record
+ * begins and ends in the same straight motion, so that ratios of its Fourier sums are the response, without windows. */
+#include "run/manoeuvre.h"
+
+#include <math.h>
+
+static const double pi = 3.141592653589793;
+static const double begin = 4, rest = 4; /* s straight ahead before it and after it */
+static const double first = 0.1;         /* Hz, where it begins; it ends 15 % above the highest that is asked for */
+static const double above = 1.15;
+static const double table[] = {0.2, 0.5, 1, 1.5, 2, 2.5, 3}; /* Hz in the table */
+enum { BESIDE = 3, CURVE = 60 };                             /* lines of the spectrum to each side; points of a curve */
+
+/* Fourier sum of a channel at a frequency, from its value straight ahead. */
+static void fourier(const Trial *trial, Channel channel, double frequency, double out[2])
+{
+    const double straight = trial_mean(trial, channel, begin - 1, begin);
+    out[0] = out[1] = 0;
+    for (int i = 0; i < trial->rows; ++i) {
+        const double at = trial->row[i][TRIAL_TIME], turn = 2 * pi * frequency * at;
+        if (at < begin)
+            continue;
+        out[0] += (trial->row[i][channel] - straight) * cos(turn);
+        out[1] -= (trial->row[i][channel] - straight) * sin(turn);
+    }
+}
+
+typedef struct Response {
+    double gain, phase, coherence; /* phase: rad, negative where it lags */
+} Response;
+
+/* Of lines 1 / duration apart beside a frequency: H = sum X* Y / sum X* X. */
+static Response response_at(const Trial *trial, Channel channel, double duration, double frequency)
+{
+    double xx = 0, yy = 0, xy[2] = {0};
+    for (int k = -BESIDE; k <= BESIDE; ++k) {
+        double x[2], y[2];
+        fourier(trial, TRIAL_ANGLE, frequency + k / duration, x);
+        fourier(trial, channel, frequency + k / duration, y);
+        xx += x[0] * x[0] + x[1] * x[1];
+        yy += y[0] * y[0] + y[1] * y[1];
+        xy[0] += x[0] * y[0] + x[1] * y[1];
+        xy[1] += x[0] * y[1] - x[1] * y[0];
+    }
+    const double size = hypot(xy[0], xy[1]);
+    return (Response){size / xx, atan2(xy[1], xy[0]), size * size / (xx * yy)};
+}
+
+static void add_channel(Manoeuvre *m, const Trial *trial, double duration, Channel channel, const char *title,
+                        const char *unit)
+{
+    const char *name = trial_signal[channel].name;
+    for (size_t i = 0; i < sizeof table / sizeof *table; ++i) {
+        const double f = table[i];
+        if (f > m->value[2])
+            break;
+        const Response r = response_at(trial, channel, duration, f);
+        const char *at = pool_print(m->pool, "%s.at_%g", name, f);
+        sheet_add(m->result, i ? NULL : title, pool_print(m->pool, "%s.gain", at),
+                  pool_print(m->pool, "Gain at %g Hz", f), unit, r.gain);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.phase", at), pool_print(m->pool, "Phase at %g Hz", f), "rad",
+                  r.phase);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.coherence", at),
+                  pool_print(m->pool, "Coherence at %g Hz", f), "1", r.coherence);
+    }
+}
+
+/* Gain and phase over frequency, unwrapped, and the frequencies of the largest gain and of a phase of -45 degrees. */
+static void add_curves(Manoeuvre *m, const Trial *trial, double duration, Channel channel, const char *title,
+                       const char *unit)
+{
+    double *x = pool_alloc(m->pool, CURVE * sizeof *x), *gain = pool_alloc(m->pool, CURVE * sizeof *gain);
+    double *phase = pool_alloc(m->pool, CURVE * sizeof *phase), *shown = pool_alloc(m->pool, CURVE * sizeof *shown);
+    int most = 0;
+    double lag = NAN;
+    for (int i = 0; i < CURVE; ++i) {
+        x[i] = table[0] + (m->value[2] - table[0]) * i / (CURVE - 1);
+        const Response r = response_at(trial, channel, duration, x[i]);
+        gain[i] = r.gain;
+        phase[i] = i ? phase[i - 1] + remainder(r.phase - phase[i - 1], 2 * pi) : r.phase;
+        shown[i] = phase[i] * 180 / pi;
+        most = gain[i] > gain[most] ? i : most;
+        if (isnan(lag) && i && phase[i] <= -pi / 4 && phase[i - 1] > -pi / 4)
+            lag = x[i - 1] + (x[i] - x[i - 1]) * (-pi / 4 - phase[i - 1]) / (phase[i] - phase[i - 1]);
+    }
+    const char *name = trial_signal[channel].name;
+    if (most > 0 && most < CURVE - 1)
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.peak_frequency", name), "Frequency of the largest gain",
+                  "Hz", x[most]);
+    if (!isnan(lag))
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.lag_frequency", name), "Frequency of a phase of -45 deg",
+                  "Hz", lag);
+    *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){title, unit, "frequency, Hz", CURVE, x, gain};
+    *POOL_PUSH(m->pool, m->table, m->tables) =
+        (ManoeuvreTable){pool_print(m->pool, "%s: phase", title), "deg", "frequency, Hz", CURVE, x, shown};
+}
+
+void manoeuvre_frequency(Manoeuvre *m)
+{
+    static const struct {
+        Channel channel;
+        const char *title, *unit;
+    } of[] = {{TRIAL_YAW_RATE, "Yaw rate by the steer angle", "1/s"},
+              {TRIAL_AY, "Lateral acceleration by the steer angle", "m/(s^2 rad)"},
+              {TRIAL_ROLL, "Roll angle by the steer angle", "1"},
+              {TRIAL_SIDESLIP, "Side slip by the steer angle", "1"}};
+    TestCar *car = m->car;
+    car_need_steering(car);
+    car_need_drive(car);
+    car_need_brake(car);
+    const double speed = m->value[0], duration = m->value[3];
+    car_settle(car, speed);
+    double by_ay = car_angle_by_acceleration(car, speed);
+    if (isnan(by_ay))
+        car_refuse(car, "choose a lower speed",
+                   pool_print(m->pool,
+                              "there is no steady response to steering at %.4g m/s: "
+                              "the vehicle is not stable straight ahead",
+                              speed));
+    const double angle = fmin(m->value[1] * by_ay, 0.999 * fmin(-car->range[0], car->range[1]));
+    const char *more = pool_print(
+        m->pool,
+        "inputs:\n  %s: {chirp: {amplitude: %.17g, from: %g, to: %.9g, duration: %.9g, growth: logarithmic, "
+        "start: %g}}\n",
+        car->model->input[car->steering].name, angle / car->angle, first, above * m->value[2], duration, begin);
+    const Trial *trial =
+        trial_run(car, "chirp", car_scene(car, begin + duration + rest, speed, true, more), NULL, NULL);
+    if (trial->tipped || trial->end)
+        car_refuse(car, pool_print(m->pool, "ask for less: ay=%.2g", 0.5 * m->value[1]),
+                   trial->end ? trial->end : "the vehicle tips over");
+    manoeuvre_keep(m, trial);
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        add_channel(m, trial, duration + rest, of[i].channel, of[i].title, of[i].unit);
+        add_curves(m, trial, duration + rest, of[i].channel, of[i].title, of[i].unit);
+    }
+    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_ANGLE};
+    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_AY};
+    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_SPEED};
+}

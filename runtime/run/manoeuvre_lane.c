@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ * Double lane change by the geometry of ISO 3888-2: the largest speed at which the vehicle enters and touches no cone.
+ */
+#include "run/manoeuvre.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double before = 12;                                         /* m from the start to the first lane */
+static const double begin[] = {10, 8, 6, 13}, fastest = 60, close = 0.1; /* m/s; begin: tried until one does */
+/* What the driver tries, one after the other: s that he looks ahead, m within a lane where his line leaves it. */
+static const double looks[] = {0.45, 0.3, 0.6, 0.75}, turns[] = {1.5, 0, 3};
+static const double shortest = 1.5; /* m that he looks ahead at least */
+
+enum { LANES = 3 };
+
+typedef struct Lane {
+    double from, to, low, high; /* m */
+} Lane;
+
+/* The vehicle as a rectangle: half its width, and its axles from the centre of mass. */
+typedef struct Course {
+    Lane lane[LANES];
+    double half, axle[2];
+} Course;
+
+static Course course_of(const Manoeuvre *m)
+{
+    const Sheet *s = &m->car->sheet;
+    const Kc *kc = s->kc;
+    Course c;
+    double aside[2];
+    c.axle[0] = sheet_axle_place(s, &kc->axle[0], &aside[0]) - s->com[0];
+    c.axle[1] = sheet_axle_place(s, &kc->axle[kc->axles - 1], &aside[1]) - s->com[0];
+    const double tire = 0.25, width = m->value[0] > 0 ? m->value[0] : 2 * fmax(aside[0], aside[1]) + tire;
+    const double wide[LANES] = {1.1 * width + 0.25, width + 1, fmax(1.3 * width + 0.25, 3)};
+    const double right = -wide[0] / 2;
+    c.half = width / 2;
+    c.lane[0] = (Lane){before, before + 12, right, right + wide[0]};
+    c.lane[1] = (Lane){before + 25.5, before + 36.5, c.lane[0].high + 1, c.lane[0].high + 1 + wide[1]};
+    c.lane[2] = (Lane){before + 49, before + 61, right, right + wide[2]};
+    return c;
+}
+
+static double middle(const Lane *lane)
+{
+    return (lane->low + lane->high) / 2;
+}
+
+/* The line that the driver follows: quintics from lane to lane, begun and ended within them. */
+static double line(const Course *c, double turn, double x)
+{
+    double y = middle(&c->lane[0]);
+    for (int k = 0; k + 1 < LANES; ++k) {
+        const double from = c->lane[k].to - turn, to = c->lane[k + 1].from + turn;
+        const double s = fmin(fmax((x - from) / (to - from), 0), 1);
+        y += (middle(&c->lane[k + 1]) - middle(&c->lane[k])) * s * s * s * (10 - 15 * s + 6 * s * s);
+    }
+    return y;
+}
+
+static const char *course_text(const Manoeuvre *m, const Course *c, double look, double turn)
+{
+    const TestCar *car = m->car;
+    Text text = {.pool = m->pool};
+    text_print(&text, "driver:\n  steering:\n    path: {points: [");
+    for (double x = -15; x <= before + 150; x += x < before + 70 ? 1.5 : 10)
+        text_print(&text, "%s[%g, %.9g]", x > -15 ? ", " : "", x, line(c, turn, x));
+    text_print(&text,
+               "]}\n    input: %s\n    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %g\n    "
+               "shortest: %g\n"
+               "    adapt: 0\ncourse:\n  lanes:\n",
+               car->model->input[car->steering].name, 1 / car->angle, car->sheet.wheelbase,
+               0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle), look, shortest);
+    for (int k = 0; k < LANES; ++k)
+        text_print(&text, "    - {points: [[%g, %.9g], [%g, %.9g]], width: %.9g, cones: 5}\n", c->lane[k].from,
+                   middle(&c->lane[k]), c->lane[k].to, middle(&c->lane[k]), c->lane[k].high - c->lane[k].low);
+    return text.s;
+}
+
+/* The lane, from 1, at whose edge the vehicle in a row touches cones; 0: none. */
+static int touched(const Course *c, const double *row)
+{
+    const double cosine = cos(row[TRIAL_YAW]), sine = sin(row[TRIAL_YAW]);
+    for (int i = 0; i < 4; ++i) {
+        const double ahead = c->axle[i / 2], left = i % 2 ? -c->half : c->half;
+        const double x = row[TRIAL_X] + ahead * cosine - left * sine, y = row[TRIAL_Y] + ahead * sine + left * cosine;
+        for (int k = 0; k < LANES; ++k)
+            if (x >= c->lane[k].from && x <= c->lane[k].to && (y < c->lane[k].low || y > c->lane[k].high))
+                return k + 1;
+    }
+    return 0;
+}
+
+static bool is_through(void *context, const Trial *trial)
+{
+    const Course *c = context;
+    return trial->row[trial->rows - 1][TRIAL_X] > c->lane[LANES - 1].to - c->axle[1] + 1 ||
+           touched(c, trial->row[trial->rows - 1]);
+}
+
+/* The speed at which the centre of mass passes the begin of the first lane. */
+static double entry(const Course *c, const Trial *trial)
+{
+    return trial_at(trial, TRIAL_SPEED, trial_passes(trial, TRIAL_X, 0, c->lane[0].from, 1));
+}
+
+/* A run at a speed that touches no cone; NULL: there is none, *why. */
+static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **why)
+{
+    TestCar *car = m->car;
+    if (!car_keeps(car, speed, why))
+        return NULL;
+    for (size_t i = 0; i < (sizeof looks / sizeof *looks) * (sizeof turns / sizeof *turns); ++i) {
+        const double duration = (c->lane[LANES - 1].to + 20) / speed * 2;
+        const Trial *trial = trial_run(
+            car, pool_print(m->pool, "at %.4g m/s", speed),
+            car_scene(car, duration, speed, false, course_text(m, c, looks[i % 4], turns[i / 4])), is_through, c);
+        const double *last = trial->row[trial->rows - 1];
+        const int lane = touched(c, last);
+        *why = trial->tipped                           ? "the vehicle tips over"
+               : trial->end                            ? trial->end
+               : lane                                  ? pool_print(m->pool, "cones of lane %d are hit", lane)
+               : last[TRIAL_X] < c->lane[LANES - 1].to ? "the vehicle does not get through"
+                                                       : NULL;
+        if (!*why)
+            return trial;
+    }
+    return NULL;
+}
+
+void manoeuvre_lane_change(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    car_need_steering(car);
+    Course c = course_of(m);
+    const char *why;
+    double low = begin[0], high = fastest;
+    const Trial *best = NULL;
+    for (size_t i = 0; i < sizeof begin / sizeof *begin && !best; ++i)
+        best = drive(m, &c, low = begin[i], &why);
+    if (!best)
+        car_refuse(
+            car, "a narrower vehicle, `width`, or more steering",
+            pool_print(m->pool, "the double lane change can't be driven at %g to %g m/s: %s", begin[2], begin[3], why));
+    const char *limit = NULL;
+    while (high - low > close) {
+        const double speed = high > fastest - close ? fmin(1.5 * low, (low + high) / 2) : (low + high) / 2;
+        const Trial *trial = drive(m, &c, speed, &why);
+        if (trial) {
+            best = trial;
+            low = speed;
+        } else {
+            high = speed;
+            limit = why;
+        }
+    }
+    Sheet *s = m->result;
+    const double *most = best->row[trial_peak(best, TRIAL_AY, 0, INFINITY, 1)];
+    const double *least = best->row[trial_peak(best, TRIAL_AY, 0, INFINITY, -1)];
+    manoeuvre_keep(m, best);
+    sheet_add(s, "Double lane change", "entry_speed", "Largest entry speed without a cone touched", "m/s",
+              entry(&c, best));
+    sheet_add(s, NULL, "exit_speed", "Speed at its end", "m/s", best->row[best->rows - 1][TRIAL_SPEED]);
+    sheet_add(s, NULL, "ay_left", "Largest lateral acceleration to the left", "m/s^2", most[TRIAL_AY]);
+    sheet_add(s, NULL, "ay_right", "To the right", "m/s^2", -least[TRIAL_AY]);
+    sheet_add_way(s, NULL, "width", "Width of the vehicle", 2 * c.half);
+    sheet_note(s, pool_print(m->pool, "at %.4g m/s: %s", high, limit ? limit : "not tried"));
+    static const Channel over[] = {TRIAL_ANGLE, TRIAL_Y, TRIAL_AY, TRIAL_YAW_RATE, TRIAL_ROLL, TRIAL_SPEED};
+    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
+        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){i == 1 ? TRIAL_X : TRIAL_TIME, over[i]};
+}

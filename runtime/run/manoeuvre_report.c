@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT
+ * --manoeuvre: the manoeuvres by name with their keys, and what is written: a table, CSV, time histories, a page. */
+#include "base/file.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "read/read.h"
+#include "run/engines.h"
+#include "run/manoeuvre.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SPEED(value) \
+    { \
+        "speed", "m/s", "speed", value, 1, 120 \
+    }
+#define GRADIENTS \
+    {"low", "m/s^2", "lateral acceleration from which gradients are taken", 0.5, 0.01, 10}, \
+        {"high", "m/s^2", "and up to which", 2, 0.05, 12}, \
+    { \
+        "growth", "m/s^3", "of the lateral acceleration", 0.2, 0.02, 2 \
+    }
+
+const ManoeuvreKind manoeuvre_kind[] = {
+    {"steady-speed",
+     "Steady cornering, constant speed",
+     manoeuvre_steady_speed,
+     {SPEED(22.222222222222221), GRADIENTS}},
+    {"steady-radius",
+     "Steady cornering, constant radius",
+     manoeuvre_steady_radius,
+     {{"radius", "m", "of the circle", 40, 5, 1000}, GRADIENTS}},
+    {"step-steer",
+     "Step of the steering",
+     manoeuvre_step_steer,
+     {SPEED(22.222222222222221), {"ay", "m/s^2", "lateral acceleration in the end", 4, 0.1, 15}}},
+    {"sine-dwell",
+     "Sine with dwell",
+     manoeuvre_sine_dwell,
+     {SPEED(22.222222222222221), {"most", "A", "largest amplitude, in angles of 0.3 g", 6.5, 1.5, 20}}},
+    {"frequency",
+     "Frequency response to steering",
+     manoeuvre_frequency,
+     {SPEED(22.222222222222221),
+      {"ay", "m/s^2", "steady lateral acceleration of the amplitude", 1, 0.01, 8},
+      {"to", "Hz", "highest frequency", 3, 1, 10},
+      {"duration", "s", "of the sweep", 60, 10, 600}}},
+    {"lane-change",
+     "Double lane change",
+     manoeuvre_lane_change,
+     {{"width", "m", "of the vehicle; 0: of its wheels", 0, 0, 4}}},
+    {"braking",
+     "Braking straight ahead",
+     manoeuvre_braking,
+     {SPEED(27.777777777777779), {"brake", "1", "pedal", 1, 0.01, 1}}},
+    {"coast-down",
+     "Coast-down",
+     manoeuvre_coast,
+     {SPEED(27.777777777777779), {"to", "m/s", "speed at its end", 5, 0.5, 100}}},
+    {"acceleration",
+     "Acceleration from rest",
+     manoeuvre_acceleration,
+     {{"accelerator", "1", "pedal", 1, 0.01, 1}, {"duration", "s", "at most", 120, 5, 1000}}},
+    {0}};
+
+void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial)
+{
+    *POOL_PUSH(manoeuvre->pool, manoeuvre->trial, manoeuvre->trials) = trial;
+}
+
+/* ---- the command line ----------------------------------------------------------------------------------- */
+
+static const ManoeuvreKind *kind_of(const char *name)
+{
+    for (const ManoeuvreKind *kind = manoeuvre_kind; kind->name; ++kind)
+        if (!strcmp(kind->name, name))
+            return kind;
+    fprintf(stderr, "gicrun: error: there is no manoeuvre '%s'\n  remedy: one of", name);
+    for (const ManoeuvreKind *kind = manoeuvre_kind; kind->name; ++kind)
+        fprintf(stderr, "%s %s", kind == manoeuvre_kind ? "" : ",", kind->name);
+    fputs("\n", stderr);
+    exit(2);
+}
+
+static _Noreturn void refuse_key(const ManoeuvreKind *kind, const char *word)
+{
+    fprintf(stderr, "gicrun: error: %s takes no '%s'\n  remedy: one of", kind->name, word);
+    for (int k = 0; k < MANOEUVRE_KEYS && kind->key[k].name; ++k)
+        fprintf(stderr, "%s %s=%.6g %s (%s)", k ? "," : "", kind->key[k].name, kind->key[k].value, kind->key[k].unit,
+                kind->key[k].about);
+    fputs("\n", stderr);
+    exit(2);
+}
+
+/* key=value of the command line. */
+static void read_key(const ManoeuvreKind *kind, const char *word, double *value)
+{
+    const char *sign = strchr(word, '=');
+    for (int k = 0; sign && k < MANOEUVRE_KEYS && kind->key[k].name; ++k) {
+        const ManoeuvreKey *key = &kind->key[k];
+        if (strlen(key->name) != (size_t)(sign - word) || strncmp(key->name, word, (size_t)(sign - word)) != 0)
+            continue;
+        char *end;
+        value[k] = strtod(sign + 1, &end);
+        if (*end || end == sign + 1 || !(value[k] >= key->least && value[k] <= key->most)) {
+            fprintf(stderr, "gicrun: error: '%s' is no number from %.6g to %.6g %s\n  remedy: %s=%.6g is usual\n", word,
+                    key->least, key->most, key->unit, key->name, key->value);
+            exit(2);
+        }
+        return;
+    }
+    refuse_key(kind, word);
+}
+
+/* ---- results -------------------------------------------------------------------------------------------- */
+
+/* Rows of all trials, SI. */
+static void write_trace(const Manoeuvre *m, const char *path)
+{
+    const Model *model = m->car->model;
+    interrupt_hold();
+    Csv csv = csv_open(m->pool, path);
+    csv_name(&csv, "trial", NULL);
+    for (int c = 0; c < TRIAL_CHANNELS; ++c)
+        csv_name(&csv, trial_signal[c].name,
+                 c != TRIAL_STEER       ? trial_signal[c].unit
+                 : m->car->steering < 0 ? "1"
+                                        : model->input[m->car->steering].unit);
+    csv_end_row(&csv);
+    for (int t = 0; t < m->trials; ++t)
+        for (int i = 0; i < m->trial[t]->rows; ++i) {
+            csv_name(&csv, m->trial[t]->name, NULL);
+            csv_time(&csv, m->trial[t]->row[i][TRIAL_TIME]);
+            for (int c = 1; c < TRIAL_CHANNELS; ++c)
+                csv_number(&csv, m->trial[t]->row[i][c]);
+            csv_end_row(&csv);
+        }
+    csv_close(&csv);
+    interrupt_release();
+}
+
+static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind, const double *value,
+                       const Request *request)
+{
+    Manoeuvre m = {.pool = pool, .value = value};
+    m.car = car_open(pool, model, request);
+    m.result = pool_alloc(pool, sizeof *m.result);
+    *m.result = (Sheet){.pool = pool, .model = model};
+    kind->run(&m);
+    engine_rest(m.car->engine);
+    return m;
+}
+
+void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
+{
+    const ManoeuvreKind *kind = kind_of(request->manoeuvre);
+    double value[MANOEUVRE_KEYS] = {0};
+    for (int k = 0; k < MANOEUVRE_KEYS; ++k)
+        value[k] = kind->key[k].value;
+    for (int k = 0; k < request->keys; ++k)
+        read_key(kind, request->key[k], value);
+    Manoeuvre m = drive(pool, model, kind, value, request);
+    if (request->compare) {
+        const Manoeuvre other = drive(pool, model_read(pool, request->compare), kind, value, request);
+        sheet_compare(m.result, other.result);
+        engine_close(other.car->engine);
+    }
+    if (request->trace)
+        write_trace(&m, request->trace);
+    if (request->report)
+        manoeuvre_page(&m, kind, request->report);
+    if (request->results)
+        sheet_csv(m.result, request->results);
+    else
+        sheet_print(m.result, pool_print(pool, ": %s, models/MANOEUVRES.md defines these", kind->title));
+    sheet_notes(m.result, "", request);
+    engine_close(m.car->engine);
+}

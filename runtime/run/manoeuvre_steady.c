@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: MIT
+ * Steady cornering: at constant speed with steering that grows slowly, and on a circle with a speed that grows slowly.
+ */
+#include "run/manoeuvre.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double gravity = 9.80665;
+static const double begin = 5;      /* s straight ahead, or into the circle */
+static const double slowest = 0.95; /* share of the speed below which it is not kept */
+/* Of the largest lateral acceleration, below which the limit is passed: with steering that grows, and on a circle. */
+static const double past_peak[] = {0.98, 0.9};
+
+/* A run to the limit. */
+typedef struct Limit {
+    double sign, speed, radius; /* radius 0: at constant speed */
+    double most;                /* lateral acceleration so far */
+    const char *why;            /* the run ended */
+} Limit;
+
+static bool is_at_limit(void *context, const Trial *trial)
+{
+    Limit *limit = context;
+    const double *row = trial->row[trial->rows - 1], ay = limit->sign * row[TRIAL_AY];
+    if (row[TRIAL_TIME] < begin)
+        return false;
+    limit->most = fmax(limit->most, ay);
+    if (limit->radius == 0 && row[TRIAL_SPEED] < slowest * limit->speed)
+        limit->why = "the speed is not kept";
+    else if (limit->radius > 0 &&
+             fabs(hypot(row[TRIAL_X], row[TRIAL_Y] - limit->sign * limit->radius) - limit->radius) > 1)
+        limit->why = "the circle is left by more than 1 m";
+    else if (ay < past_peak[limit->radius > 0] * limit->most && limit->most > 1)
+        limit->why = "the lateral acceleration no longer grows";
+    return limit->why;
+}
+
+/* Points of a curve over the lateral acceleration that gradients are taken from. */
+typedef struct Points {
+    int count;
+    double (*point)[TRIAL_CHANNELS];
+} Points;
+
+/* All rows within [low, high], once. */
+static Points rows_between(const Manoeuvre *m, const Trial *trial, double sign)
+{
+    const double low = m->value[1], high = m->value[2];
+    Points points = {0, pool_alloc(m->pool, (size_t)trial->rows * sizeof *trial->row)};
+    for (int i = 0; i < trial->rows; ++i) {
+        const double ay = sign * trial->row[i][TRIAL_AY];
+        if (trial->row[i][TRIAL_TIME] < begin || ay < low)
+            continue;
+        if (ay > high)
+            break;
+        memcpy(points.point[points.count++], trial->row[i], sizeof *trial->row);
+    }
+    return points;
+}
+
+static double slope(const Manoeuvre *m, const Points *points, double sign, Channel channel, bool understeer)
+{
+    double *x = pool_alloc(m->pool, (size_t)(points->count + 1) * sizeof *x);
+    double *y = pool_alloc(m->pool, (size_t)(points->count + 1) * sizeof *y);
+    for (int i = 0; i < points->count; ++i) {
+        const double *at = points->point[i];
+        x[i] = sign * at[TRIAL_AY];
+        y[i] = sign * at[channel];
+        if (understeer) /* beyond the angle of a vehicle without slip */
+            y[i] -= m->car->sheet.wheelbase * sign * at[TRIAL_YAW_RATE] / at[TRIAL_SPEED];
+    }
+    return fit_slope(points->count, x, y);
+}
+
+static void add_results(Manoeuvre *m, const Trial *trial, const Points *points, const Limit *limit)
+{
+    Sheet *s = m->result;
+    const char *side = trial->name, *section = limit->sign > 0 ? "To the left" : "To the right";
+    const double understeer = slope(m, points, limit->sign, TRIAL_ANGLE, true);
+    const double wheelbase = m->car->sheet.wheelbase;
+    const int peak = trial_peak(trial, TRIAL_AY, begin, INFINITY, limit->sign);
+    const double *at = trial->row[peak];
+    if (isnan(understeer)) {
+        sheet_note(s,
+                   pool_print(m->pool, "gradients %s: lateral acceleration stays below %g m/s^2", side, m->value[1]));
+    } else {
+        sheet_add(s, section, pool_print(m->pool, "%s.understeer", side), "Understeer gradient", "rad s^2/m",
+                  understeer);
+        sheet_add(s, NULL, pool_print(m->pool, "%s.steer_gradient", side), "Steer angle gradient", "rad s^2/m",
+                  slope(m, points, limit->sign, TRIAL_ANGLE, false));
+        sheet_add(s, NULL, pool_print(m->pool, "%s.roll_gradient", side), "Roll gradient", "rad s^2/m",
+                  slope(m, points, limit->sign, TRIAL_ROLL, false));
+        sheet_add(s, NULL, pool_print(m->pool, "%s.sideslip_gradient", side), "Side-slip gradient", "rad s^2/m",
+                  slope(m, points, limit->sign, TRIAL_SIDESLIP, false));
+        section = NULL;
+        if (understeer > 0)
+            sheet_add(s, NULL, pool_print(m->pool, "%s.characteristic_speed", side), "Characteristic speed", "m/s",
+                      sqrt(wheelbase / understeer));
+        else if (understeer < 0)
+            sheet_add(s, NULL, pool_print(m->pool, "%s.critical_speed", side), "Critical speed", "m/s",
+                      sqrt(-wheelbase / understeer));
+    }
+    sheet_add(s, section, pool_print(m->pool, "%s.limit", side), "Largest lateral acceleration", "m/s^2",
+              limit->sign * at[TRIAL_AY]);
+    sheet_add(s, NULL, pool_print(m->pool, "%s.limit_steer", side), "Steer angle there", "rad",
+              limit->sign * at[TRIAL_ANGLE]);
+    sheet_add(s, NULL, pool_print(m->pool, "%s.limit_sideslip", side), "Side slip there", "rad",
+              limit->sign * at[TRIAL_SIDESLIP]);
+    sheet_add(s, NULL, pool_print(m->pool, "%s.limit_roll", side), "Roll angle there", "rad",
+              limit->sign * at[TRIAL_ROLL]);
+    sheet_note(s, pool_print(m->pool, "more than %.2f m/s^2 (%.2f g) %s: %s", limit->sign * at[TRIAL_AY],
+                             limit->sign * at[TRIAL_AY] / gravity, side,
+                             trial->tipped ? "the vehicle tips over"
+                             : trial->end  ? trial->end
+                             : limit->why  ? limit->why
+                                           : "the run is over"));
+}
+
+static void draw(Manoeuvre *m)
+{
+    static const Channel over[] = {TRIAL_ANGLE, TRIAL_SIDESLIP, TRIAL_ROLL, TRIAL_YAW_RATE, TRIAL_LOAD};
+    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
+        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_AY, over[i]};
+}
+
+void manoeuvre_steady_speed(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    const double speed = m->value[0], growth = m->value[3], most = 15; /* m/s^2 by the linear model, where it ends */
+    car_need_steering(car);
+    car_need_drive(car);
+    car_need_brake(car);
+    car_settle(car, speed);
+    double by_ay = car_angle_by_acceleration(car, speed);
+    if (isnan(by_ay))
+        by_ay = car->sheet.wheelbase / (speed * speed);
+    for (int side = 1; side >= -1; side -= 2) {
+        const double end = 0.999 * car->range[side > 0], to = side * fmin(most * by_ay, fabs(end));
+        const double duration = fabs(to) / by_ay / growth + 1;
+        Limit limit = {.sign = side, .speed = speed};
+        const char *more =
+            pool_print(m->pool, "inputs:\n  %s: {ramp: {to: %.17g, duration: %.9g, start: %g, blend: 1}}\n",
+                       car->model->input[car->steering].name, car_steering(car, to), duration, begin);
+        const Trial *trial = trial_run(car, side > 0 ? "left" : "right",
+                                       car_scene(car, begin + duration, speed, true, more), is_at_limit, &limit);
+        if (!limit.why && !trial->tipped && !trial->end)
+            limit.why = fabs(to) < most * by_ay ? "the steering is at its end" : "it was not asked for more";
+        manoeuvre_keep(m, trial);
+        const Points points = rows_between(m, trial, side);
+        add_results(m, trial, &points, &limit);
+    }
+    draw(m);
+}
+
+/* Speeds over time on a circle: levels of lateral acceleration that are held, then growth to the limit. */
+enum { LEVELS = 5 };
+static const double rise = 3, hold = 12, look = 3; /* s; look: at the end of each level */
+
+static double level(const Manoeuvre *m, int k)
+{
+    return m->value[1] + (m->value[2] - m->value[1]) * k / (LEVELS - 1);
+}
+
+static double level_end(int k)
+{
+    return begin + (k + 1) * (rise + hold);
+}
+
+static const char *speeds(const Manoeuvre *m, double radius, double most, double *duration)
+{
+    const double spacing = 0.5, high = m->value[2], growth = m->value[3];
+    Text times = {.pool = m->pool}, values = {.pool = m->pool};
+    *duration = level_end(LEVELS - 1) + (most - high) / growth;
+    for (double t = 0; t <= *duration + spacing; t += spacing) {
+        const int k = (int)fmin(fmax(floor((t - begin) / (rise + hold)), 0), LEVELS - 1);
+        const double share = fmin(fmax((t - begin - k * (rise + hold)) / rise, 0), 1);
+        const double before = level(m, k > 0 ? k - 1 : 0);
+        double ay = before + (level(m, k) - before) * share * share * (3 - 2 * share);
+        ay += growth * fmax(0, t - level_end(LEVELS - 1));
+        text_print(&times, "%s%g", t > 0 ? ", " : "", t);
+        text_print(&values, "%s%.12g", t > 0 ? ", " : "", sqrt(ay * radius));
+    }
+    return pool_print(m->pool, "{samples: {times: [%s], values: [%s], fit: monotone}}", times.s, values.s);
+}
+
+/* Means at the ends of the levels that were reached. */
+static Points levels_of(const Manoeuvre *m, const Trial *trial)
+{
+    Points points = {0, pool_alloc(m->pool, LEVELS * sizeof *trial->row)};
+    for (int k = 0; k < LEVELS && trial->row[trial->rows - 1][TRIAL_TIME] >= level_end(k); ++k) {
+        for (Channel c = 0; c < TRIAL_CHANNELS; ++c)
+            points.point[points.count][c] = trial_mean(trial, c, level_end(k) - look, level_end(k));
+        ++points.count;
+    }
+    return points;
+}
+
+void manoeuvre_steady_radius(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    const double radius = m->value[0], most = 15; /* m/s^2 */
+    double duration;
+    const char *target = speeds(m, radius, most, &duration);
+    const double start = sqrt(level(m, 0) * radius);
+    car_need_steering(car);
+    car_need_drive(car);
+    car_need_brake(car);
+    const double least = car->sheet.wheelbase / fmin(-car->range[0], car->range[1]);
+    if (radius < least)
+        car_refuse(car, pool_print(m->pool, "radius=%.3g", ceil(1.2 * least)),
+                   "the steering does not reach that circle");
+    car_settle(car, start);
+    for (int side = 1; side >= -1; side -= 2) {
+        Limit limit = {.sign = side, .radius = radius};
+        const char *more = pool_print(m->pool,
+                                      "driver:\n  speed: {target: %s, gain: 3, integral: 1}\n  steering:\n"
+                                      "    path: {circle: {center: [%.17g, %.17g], radius: %.17g}}\n    input: %s\n"
+                                      "    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n",
+                                      target, car->com[0], side * radius, side * radius,
+                                      car->model->input[car->steering].name, 1 / car->angle, car->sheet.wheelbase,
+                                      0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle));
+        const Trial *trial = trial_run(car, side > 0 ? "left" : "right", car_scene(car, duration, start, false, more),
+                                       is_at_limit, &limit);
+        const Points points = levels_of(m, trial);
+        manoeuvre_keep(m, trial);
+        add_results(m, trial, &points, &limit);
+    }
+    draw(m);
+}

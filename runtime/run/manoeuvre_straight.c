@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ * Straight ahead: braking to rest, coasting down, accelerating from rest. */
+#include "run/manoeuvre.h"
+
+#include <math.h>
+
+static const double begin = 0.5, rise = 0.1; /* s: when pedals are pressed, and how long that takes */
+static const double standing = 0.02;         /* m/s */
+static const double aside = 1;               /* m off the straight line that are told */
+
+/* A run that ends below a speed, or where the acceleration has gone. */
+typedef struct Ending {
+    double below;
+    int quiet;
+} Ending;
+
+static bool is_slow(void *context, const Trial *trial)
+{
+    const Ending *ending = context;
+    return trial->row[trial->rows - 1][TRIAL_SPEED] <= ending->below;
+}
+
+static bool is_fast(void *context, const Trial *trial)
+{
+    enum { ROWS = 200 };
+    const double little = 0.01; /* m/s^2 */
+    Ending *ending = context;
+    const double *row = trial->row[trial->rows - 1];
+    ending->quiet = row[TRIAL_TIME] > begin + 2 && fabs(row[TRIAL_AX]) < little ? ending->quiet + 1 : 0;
+    return ending->quiet >= ROWS;
+}
+
+/* The way from one time to another one. */
+static double way(const Trial *trial, double from, double to)
+{
+    return hypot(trial_at(trial, TRIAL_X, to) - trial_at(trial, TRIAL_X, from),
+                 trial_at(trial, TRIAL_Y, to) - trial_at(trial, TRIAL_Y, from));
+}
+
+/* Keep the trial, which has to be whole; tell how far it went aside. */
+static void keep(Manoeuvre *m, const Trial *trial)
+{
+    static const Channel over[] = {TRIAL_SPEED, TRIAL_AX, TRIAL_PITCH, TRIAL_LOAD, TRIAL_Y};
+    const double *last = trial->row[trial->rows - 1];
+    if (trial->end || trial->tipped)
+        car_refuse(m->car, "gicrun with the scene of a lower speed shows more",
+                   trial->end ? trial->end : "the vehicle tips over");
+    manoeuvre_keep(m, trial);
+    if (fabs(last[TRIAL_Y] - trial->row[0][TRIAL_Y]) > aside)
+        sheet_note(m->result, pool_print(m->pool, "the vehicle ends %.3g m aside and turned by %.3g deg",
+                                         last[TRIAL_Y] - trial->row[0][TRIAL_Y], 57.29577951308232 * last[TRIAL_YAW]));
+    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
+        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, over[i]};
+}
+
+void manoeuvre_braking(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    const double speed = m->value[0], level = m->value[1], most = 60;
+    Ending ending = {.below = standing};
+    car_need_brake(car);
+    car_settle(car, speed);
+    const char *more =
+        pool_print(m->pool, "inputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, begin);
+    const Trial *trial = trial_run(car, "braking", car_scene(car, most, speed, false, more), is_slow, &ending);
+    keep(m, trial);
+    const double *last = trial->row[trial->rows - 1], from = trial_at(trial, TRIAL_SPEED, begin);
+    if (last[TRIAL_SPEED] > standing)
+        car_refuse(car, "brake=1 is the whole pedal; does the torque of `brake` follow it?",
+                   pool_print(m->pool, "the vehicle does not stop within %g s: it still has %.3g m/s", most,
+                              last[TRIAL_SPEED]));
+    const double upper = trial_passes(trial, TRIAL_SPEED, begin, 0.8 * from, -1);
+    const double lower = trial_passes(trial, TRIAL_SPEED, begin, 0.1 * from, -1);
+    const double distance = way(trial, begin, last[TRIAL_TIME]);
+    sheet_add(m->result, "Braking", "initial_speed", "Speed where the pedal begins to move", "m/s", from);
+    sheet_add_way(m->result, NULL, "stopping_distance", "Stopping distance from there", distance);
+    sheet_add_way(m->result, NULL, "stopping_distance_nominal", "Stopping distance from the speed asked for",
+                  distance * (speed / from) * (speed / from));
+    sheet_add(m->result, NULL, "stopping_time", "Stopping time", "s", last[TRIAL_TIME] - begin);
+    sheet_add(m->result, NULL, "mfdd", "Mean fully developed deceleration", "m/s^2",
+              (0.64 - 0.01) * from * from / (2 * way(trial, upper, lower)));
+    const double *peak = trial->row[trial_peak(trial, TRIAL_AX, begin, INFINITY, -1)];
+    sheet_add(m->result, NULL, "peak_deceleration", "Largest deceleration", "m/s^2", -peak[TRIAL_AX]);
+    sheet_add_way(m->result, NULL, "aside", "Off the straight line at the end",
+                  last[TRIAL_Y] - trial_at(trial, TRIAL_Y, begin));
+    sheet_add(m->result, NULL, "turned", "Turned at the end", "rad", last[TRIAL_YAW]);
+}
+
+/* a = c0 + c2 v^2 by least squares over a time. */
+static void fit_resistance(Manoeuvre *m, const Trial *trial)
+{
+    double *v2 = pool_alloc(m->pool, (size_t)trial->rows * sizeof *v2), mean[2] = {0};
+    double *a = pool_alloc(m->pool, (size_t)trial->rows * sizeof *a);
+    int n = 0;
+    for (int i = 0; i < trial->rows; ++i)
+        if (trial->row[i][TRIAL_TIME] >= begin) {
+            v2[n] = trial->row[i][TRIAL_SPEED] * trial->row[i][TRIAL_SPEED];
+            a[n++] = -trial->row[i][TRIAL_AX];
+        }
+    const double c2 = fit_slope(n, v2, a);
+    for (int i = 0; i < n; ++i) {
+        mean[0] += v2[i] / n;
+        mean[1] += a[i] / n;
+    }
+    sheet_add(m->result, NULL, "c0", "Deceleration c0 + c2 v^2: c0", "m/s^2", mean[1] - c2 * mean[0]);
+    sheet_add(m->result, NULL, "c2", "c2", "1/m", c2);
+}
+
+void manoeuvre_coast(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    const double speed = m->value[0], below = m->value[1], most = 600;
+    Ending ending = {.below = below};
+    if (below >= speed)
+        car_refuse(car, "to=5", "a coast-down ends below the speed from which it begins");
+    car_settle(car, speed);
+    const Trial *trial = trial_run(car, "coast-down", car_scene(car, most, speed, false, NULL), is_slow, &ending);
+    keep(m, trial);
+    const double *last = trial->row[trial->rows - 1];
+    if (last[TRIAL_SPEED] > below)
+        car_refuse(car, "a tire with rolling resistance, or a force of type `aero`",
+                   pool_print(m->pool, "hardly anything resists the vehicle: after %g s it still has %.4g m/s", most,
+                              last[TRIAL_SPEED]));
+    sheet_add(m->result, "Coast-down", "time", "Time", "s", last[TRIAL_TIME]);
+    sheet_add_way(m->result, NULL, "distance", "Distance", way(trial, 0, last[TRIAL_TIME]));
+    fit_resistance(m, trial);
+}
+
+void manoeuvre_acceleration(Manoeuvre *m)
+{
+    static const double speeds[] = {50, 80, 100}, ways[] = {100, 400, 1000}; /* km/h, m */
+    TestCar *car = m->car;
+    const double level = m->value[0], most = m->value[1];
+    Ending ending = {0};
+    car_need_drive(car);
+    const char *more =
+        pool_print(m->pool, "inputs:\n  accelerator: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, begin);
+    const Trial *trial = trial_run(car, "acceleration", car_scene(car, most, 0, false, more), is_fast, &ending);
+    keep(m, trial);
+    Sheet *s = m->result;
+    const double *last = trial->row[trial->rows - 1];
+    const double *peak = trial->row[trial_peak(trial, TRIAL_AX, begin, INFINITY, 1)];
+    if (last[TRIAL_SPEED] < 1)
+        car_refuse(car, "does the torque of `drive`, or the powertrain, follow the accelerator?",
+                   pool_print(m->pool, "the vehicle does not move off: after %.3g s it has %.3g m/s", last[TRIAL_TIME],
+                              last[TRIAL_SPEED]));
+    sheet_add(s, "Acceleration from rest", "peak_acceleration", "Largest acceleration", "m/s^2", peak[TRIAL_AX]);
+    for (size_t i = 0; i < sizeof speeds / sizeof *speeds; ++i) {
+        const double at = trial_passes(trial, TRIAL_SPEED, begin, speeds[i] / 3.6, 1);
+        if (!isnan(at))
+            sheet_add(s, NULL, pool_print(m->pool, "to_%g", speeds[i]), pool_print(m->pool, "0 to %g km/h", speeds[i]),
+                      "s", at - begin);
+    }
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; ++i) {
+        const double at = trial_passes(trial, TRIAL_X, begin, trial_at(trial, TRIAL_X, begin) + ways[i], 1);
+        if (isnan(at))
+            continue;
+        sheet_add(s, NULL, pool_print(m->pool, "time_%g_m", ways[i]), pool_print(m->pool, "Time for %g m", ways[i]),
+                  "s", at - begin);
+        sheet_add(s, NULL, pool_print(m->pool, "speed_%g_m", ways[i]), pool_print(m->pool, "Speed there"), "m/s",
+                  trial_at(trial, TRIAL_SPEED, at));
+    }
+    if (ending.quiet)
+        sheet_add(s, NULL, "top_speed", "Top speed", "m/s", last[TRIAL_SPEED]);
+    else
+        sheet_note(s,
+                   pool_print(m->pool, "top speed: after %g s it still grows, at %.4g m/s", most, last[TRIAL_SPEED]));
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * panel: a small diagram of curves as SVG, for pages of reports. */
+#ifndef RUN_PANEL_H
+#define RUN_PANEL_H
+
+#include "base/text.h"
+
+/* Curves over one abscissa, in the units that are shown. */
+typedef struct Panel {
+    const char *title, *unit, *below;
+    int rows, curves;
+    const double *x;
+    double *y; /* [curves][rows]; what is not finite is left out */
+} Panel;
+
+/* The color of a curve; they repeat. */
+const char *panel_color(int curve);
+/* A figure; nothing where no value is finite. */
+void panel_draw(Text *out, const Panel *panel);
+
+#endif

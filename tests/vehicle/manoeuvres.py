@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: MIT
+"""manoeuvres.py GICRUN MODEL WORK: manoeuvres of tests/data/manoeuvre/linear.veh against a bicycle with roll, written here: gains
+and phases from its equations, time histories by integrating it along the steering that was driven, gradients in closed form.
+Numbers of the tables found again from the time histories. Left and right are mirror images."""
+import csv
+import subprocess
+import sys
+
+import numpy as np
+
+gicrun, model, work = sys.argv[1:4]
+failed = passed = 0
+g = 9.80665
+
+
+def check(what, value, wanted, tolerance, least=1e-6):
+    global failed, passed
+    if abs(value - wanted) <= tolerance * max(abs(wanted), least):
+        passed += 1
+    else:
+        failed += 1
+        print(f"FAILED: {what}: {value!r}, found here {wanted!r}")
+
+
+def drive(*words):
+    trace, table = f"{work}/trace.csv", f"{work}/table.csv"
+    done = subprocess.run([gicrun, "--manoeuvre", words[0], model, *words[1:], "-o", table, "--trace", trace], capture_output=True,
+                          text=True)
+    assert done.returncode == 0, done.stderr
+    with open(table) as f:
+        value = {r["quantity"]: float(r["value"]) for r in csv.DictReader(f)}
+    with open(trace) as f:
+        rows = list(csv.DictReader(f))
+    trials = {}
+    for name in dict.fromkeys(r["trial"] for r in rows):
+        mine = [r for r in rows if r["trial"] == name]
+        trials[name] = {k.split(" [")[0]: np.array([float(r[k]) for r in mine]) for k in mine[0] if k != "trial"}
+    return value, trials
+
+
+# ---- the bicycle with roll: numbers of the model's file, and of the vehicle at rest ----------------------------------------
+
+sheet = {r["quantity"]: float(r["value"])
+         for r in csv.DictReader(subprocess.run([gicrun, "--sheet", "-q", model, "-o", "-"], capture_output=True, text=True,
+                                                check=True).stdout.splitlines())}
+m, h, t = sheet["mass"], sheet["com_height"], 0.75
+a, b = 1.2 - sheet["com_x"], 1.4 + sheet["com_x"]
+L = a + b
+load = m * g * np.array([b, a]) / L
+C = load * np.array([10, 12.5])
+unsprung = np.array([24.0, 25.0])  # a wheel
+k, c, kt, ct = 3e4, 3e3, 2.5e5, 200.0
+relaxation = 0.5
+# wheels rise and fall by themselves but lean with the body; about the road below the centre of mass
+Ixx = sheet["inertia_xx"] - 2 * unsprung.sum() * t * t + m * h * h
+turned = 2 * (1 + 0.1)  # by the steering
+Ixz = -sheet["inertia_xz"]
+deflection = load.mean() / 2 / kt
+radius = 0.313 - deflection / 3  # that rolls
+spin_inertia = 1.0
+Izz = sheet["inertia_zz"] + 4 * spin_inertia * t * t / radius**2  # wheels on the outside spin faster
+
+
+def system(V):
+    """State: v (at the road), r, roll, its rate p, slips of both axles, height and velocity of the left wheels of both. A, and
+    columns for the steer angle, its rate and its acceleration."""
+    n = 10
+    spin = 4 * spin_inertia * V / radius
+    M = np.eye(n)
+    A = np.zeros((n, n))
+    B = np.zeros((n, 3))
+    M[0, 0], M[0, 3] = m, -m * h
+    A[0, 1] = -m * V
+    A[0, 4], A[0, 5] = -C
+    M[1, 1], M[1, 3] = Izz, -Ixz
+    A[1, 3] = -spin
+    A[1, 4], A[1, 5] = -a * C[0], b * C[1]
+    A[2, 3] = 1
+    M[3, 3], M[3, 0], M[3, 1] = Ixx, -m * h, -Ixz
+    A[3, 1] = m * h * V + spin
+    A[3, 2] = m * g * h
+    for axle in range(2):
+        z, w = 6 + 2 * axle, 7 + 2 * axle
+        A[4 + axle, 0], A[4 + axle, 1] = 1 / relaxation, (a, -b)[axle] / relaxation
+        A[4 + axle, 4 + axle] = -V / relaxation
+        A[z, w] = 1
+        M[w, w] = unsprung[axle]
+        A[w, z], A[w, 2] = -k - kt, k * t
+        A[w, w], A[w, 3] = -c - ct, c * t
+        A[3, z] += 2 * t * k
+        A[3, w] += 2 * t * c
+        A[3, 2] -= 2 * t * t * k
+        A[3, 3] -= 2 * t * t * c
+    B[4, 0] = -V / relaxation
+    B[3, 1] = spin / 2  # front wheels are gyroscopes
+    B[1, 2] = -turned
+    return np.linalg.solve(M, A), np.linalg.solve(M, B)
+
+
+def outputs(V, A, B):
+    """Rows for yaw rate, lateral acceleration, roll and side slip of the centre of mass that the body carries; and what steering
+    adds at once."""
+    e = np.eye(len(A))
+    ay = A[0] + V * e[1] - h * A[3]
+    return np.array([e[1], ay, e[2], (e[0] - h * e[3]) / V]), np.array([np.zeros(3), B[0] - h * B[3], np.zeros(3), np.zeros(3)])
+
+
+names = ["yaw_rate", "ay", "roll", "sideslip"]
+V = 20.0
+A, B = system(V)
+Y, D = outputs(V, A, B)
+
+
+def response(f):
+    s = 2j * np.pi * f
+    by = np.array([1, s, s * s])
+    return Y @ np.linalg.solve(s * np.eye(len(A)) - A, B @ by) + D @ by
+
+
+gain = response(0).real
+understeer = (1 / 10 - 1 / 12.5) / g
+check("this bicycle's gradient", 1 / (gain[0] * V) - L / V**2, understeer, 2e-3)
+
+# ---- frequency response: the lines beside a frequency alone keep it from being exact ------------------------------------------
+
+value, trials = drive("frequency", f"speed={V}", "ay=0.5")
+for f in (0.2, 0.5, 1, 1.5, 2, 2.5, 3):
+    H = response(f)
+    for i, name in enumerate(names):
+        check(f"{name}: gain at {f} Hz", value[f"{name}.at_{f:g}.gain"], abs(H[i]), 0.01)
+        off = np.angle(np.exp(1j * value[f"{name}.at_{f:g}.phase"]) / H[i])
+        check(f"{name}: phase at {f} Hz", off, 0, 0.01, 1)
+        check(f"{name}: coherence at {f} Hz", value[f"{name}.at_{f:g}.coherence"], 1, 0.01)
+trace = trials["chirp"]
+x = trace["steer_angle"]
+straight = (trace["time"] >= 3) & (trace["time"] <= 4)
+for f in (0.5, 2.0):  # found again by one sum over the record
+    turn = np.exp(-2j * np.pi * f * trace["time"]) * (trace["time"] >= 4)
+    for name in names:
+        H = np.sum((trace[name] - trace[name][straight].mean()) * turn) / np.sum(x * turn)
+        check(f"{name}: at {f} Hz by the time history", value[f"{name}.at_{f:g}.gain"], abs(H), 0.01)
+
+# ---- step: the bicycle steered as the vehicle was, and the table by the time history ---------------------------------------
+
+value, trials = drive("step-steer", f"speed={V}", "ay=1")
+for side, sign in (("left", 1), ("right", -1)):
+    trace = trials[side]
+    time, delta = trace["time"], trace["steer_angle"]
+    rate = np.gradient(delta, time)
+    u = np.array([delta, rate, np.gradient(rate, time)]).T
+    n, fine = len(A), 10
+    state, follow = np.zeros(n), []
+    for i in range(len(time)):
+        follow.append(Y @ state + D @ u[i])
+        if i + 1 < len(time):
+            step = (time[i + 1] - time[i]) / fine
+            for j in range(fine):
+                d = [u[i] + (u[i + 1] - u[i]) * (j + s) / fine for s in (0, 0.5, 1)]
+                k1 = A @ state + B @ d[0]
+                k2 = A @ (state + step / 2 * k1) + B @ d[1]
+                k3 = A @ (state + step / 2 * k2) + B @ d[1]
+                k4 = A @ (state + step * k3) + B @ d[2]
+                state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    follow = np.array(follow)
+    for i, name in enumerate(names):
+        off = np.max(np.abs(trace[name] - follow[:, i])) / np.max(np.abs(follow[:, i]))
+        check(f"{side}: {name} over time", off, 0, 0.01, 1)
+    last = time >= time[-1] - 1 - 1e-9
+    full = delta[last].mean()
+    start = np.interp(0.5, (delta / full)[: np.argmax(delta / full > 0.6) + 1], time[: np.argmax(delta / full > 0.6) + 1])
+    for name in ("yaw_rate", "ay", "roll"):
+        y = trace[name] / trace[name][last].mean()
+        i = np.argmax((time > 4) & (y >= 0.9))
+        there = time[i - 1] + (0.9 - y[i - 1]) / (y[i] - y[i - 1]) * (time[i] - time[i - 1])
+        check(f"{side}: {name}, response time", value[f"{side}.{name}.response_time"], there - start, 1e-3)
+        check(f"{side}: {name}, overshoot", value[f"{side}.{name}.overshoot"], y.max() - 1, 1e-6)
+        check(f"{side}: {name}, peak time", value[f"{side}.{name}.peak_time"], time[np.argmax(y)] - start, 1e-3)
+        check(f"{side}: {name}, steady", value[f"{side}.{name}.steady"], sign * trace[name][last].mean(), 1e-9)
+    check(f"{side}: yaw gain", value[f"{side}.yaw_gain"], gain[0], 0.01)
+for name in trials["left"]:
+    mirrored = -1 if name in ("steering", "steer_angle", "y", "yaw", "sideslip", "yaw_rate", "ay", "roll") else 1
+    size = np.max(np.abs(trials["left"][name]))
+    check(f"{name}: left and right", np.max(np.abs(trials["left"][name] - mirrored * trials["right"][name])), 0, 1e-7, max(size, 1e-3))
+
+# ---- steady cornering ------------------------------------------------------------------------------------------------------------
+
+value, trials = drive("steady-speed", f"speed={V}", "low=0.1", "high=0.6")
+for side, sign in (("left", 1), ("right", -1)):
+    trace = trials[side]
+    ay = sign * trace["ay"]
+    end = np.argmax(ay > 0.6)
+    rows = np.arange(len(ay) if end == 0 else end)
+    rows = rows[(trace["time"][rows] >= 5) & (ay[rows] >= 0.1)]
+    fit = lambda y: np.polyfit(ay[rows], sign * y[rows], 1)[0]
+    check(f"{side}: understeer by the time history", value[f"{side}.understeer"],
+          fit(trace["steer_angle"] - sheet["wheelbase"] * trace["yaw_rate"] / trace["speed"]), 1e-6)
+    check(f"{side}: roll gradient by the time history", value[f"{side}.roll_gradient"], fit(trace["roll"]), 1e-6)
+    check(f"{side}: understeer", value[f"{side}.understeer"], understeer, 0.01)
+    check(f"{side}: roll gradient", value[f"{side}.roll_gradient"], gain[2] / gain[1], 0.01)
+    check(f"{side}: side-slip gradient", value[f"{side}.sideslip_gradient"], gain[3] / gain[1], 0.01)
+    check(f"{side}: limit", value[f"{side}.limit"], ay[trace["time"] >= 5].max(), 1e-9)
+check("left and right limit", value["left.limit"], value["right.limit"], 1e-5)
+
+value, trials = drive("steady-radius", "radius=60", "high=1.5")
+for side in ("left", "right"):
+    check(f"{side}: understeer on a circle", value[f"{side}.understeer"], understeer, 0.02)
+    check(f"{side}: roll gradient on a circle", value[f"{side}.roll_gradient"], gain[2] / gain[1], 0.02)
+    trace = trials[side]
+    on = (trace["time"] > 15) & (trace["time"] < 70)
+    centre = 60 if side == "left" else -60
+    check(f"{side}: the circle", np.max(np.abs(np.hypot(trace["x"][on] - trace["x"][0], trace["y"][on] - centre) - 60)), 0, 1, 0.3)
+
+# ---- straight ahead: numbers by the time history ------------------------------------------------------------------------------------
+
+value, trials = drive("braking", "speed=20", "brake=0.5")
+trace = trials["braking"]
+time, v, s = trace["time"], trace["speed"], trace["x"]
+v0 = np.interp(0.5, time, v)
+s0 = np.interp(0.5, time, s)
+down = lambda level: np.interp(-level * v0, -v, s)
+check("stopping distance", value["stopping_distance"], s[-1] - s0, 1e-9)
+check("its integral", s[-1] - s0, np.trapezoid(v[50:], time[50:]) if hasattr(np, "trapezoid") else np.trapz(v[50:], time[50:]), 1e-3)
+check("mean fully developed deceleration", value["mfdd"], (0.64 - 0.01) * v0**2 / (2 * (down(0.1) - down(0.8))), 1e-3)
+# 4 wheels of 1000 N m on the loaded radius; their spin inertias with the mass
+loaded = 0.313 - deflection
+check("its size", value["mfdd"], 4 * 1000 / loaded / (m + 4 * spin_inertia / radius / loaded), 0.01)
+
+value, trials = drive("acceleration", "duration=15")
+trace = trials["acceleration"]
+check("0 to 100 km/h", value["to_100"], np.interp(100 / 3.6, trace["speed"], trace["time"]) - 0.5, 1e-6)
+steadily = (trace["time"] > 3) & (trace["time"] < 8)
+check("its size", trace["ax"][steadily].mean(), 2 * 600 / loaded / (m + 4 * spin_inertia / radius / loaded), 0.01)
+
+print(f"{passed} passed, {failed} failed")
+sys.exit(failed > 0 or passed < 100)
