@@ -425,6 +425,7 @@ Model *model_parse(const char *text, const char *name)
     model->force = grab((size_t)model->forces, sizeof *model->force);
     model->tire = grab((size_t)model->tires, sizeof *model->tire);
     model->wheel = grab((size_t)model->wheels, sizeof *model->wheel);
+    model->spin = grab((size_t)model->wheels, sizeof *model->spin);
     model->subset = grab((size_t)model->subsets, sizeof *model->subset);
     for (int i = 0; i < model->bodies; ++i)
         read_body(&model->body[i], bodies->item[i]);
@@ -500,6 +501,7 @@ void model_free(Model *model)
         formula_free(model->state_rate[i]);
     }
     free(model->state);
+    free(model->spin);
     free(model->state_name);
     free(model->state_rate);
     free(model->input);

@@ -126,6 +126,7 @@ typedef struct Model {
     double *input;     /* values */
     char **input_name;
     double *state; /* values of its own states */
+    double *spin;  /* [wheels] of those with tires, values */
     char **state_name;
     Formula **state_rate;
     Lookup *table;

@@ -53,6 +53,8 @@ static void wheels_read(const Model *model, const Table *table, int row, State *
             if (wheel_has(&model->wheel[i], k)) {
                 snprintf(column, sizeof column, "%s.%s", model->wheel[i].name, fast_name[k]);
                 state->fast[i][k] = optional_cell(table, row, column, 0);
+                if (k == 0)
+                    model->spin[i] = (double)state->fast[i][k];
             }
 }
 

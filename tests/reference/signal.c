@@ -3,6 +3,7 @@
 #include "formula.h"
 #include "mechanism.h"
 #include "support.h"
+#include "wheel.h"
 
 #include <quadmath.h>
 #include <string.h>
@@ -52,6 +53,8 @@ quad signal_value(const SignalSource *source, const Surroundings *around)
         fail("formulas read the signal '%s' where there is no mechanism", type);
     if (!strcmp(type, "coordinate") && source->component < 2)
         return source->component ? configuration->w_rate[source->index] : configuration->w[source->index];
+    if (!strcmp(type, "tire") && source->component == SPIN - FX)
+        return model->spin[source->index];
     if (!strcmp(type, "force"))
         return element_value(model, configuration, source->index);
     if (!strcmp(type, "position") || !strcmp(type, "velocity"))
