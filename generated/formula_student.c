@@ -121,15 +121,15 @@
  *   forces and equations of motion                           886       700       6      3         6
  *   motion of the wheels                                     225       231       0      0         0
  *   drives, brakes, rates of own states                        0         5       1      0         0
- *   wheel 'front_tire_l' (2 times)                           161       244      34     14         5
- *   wheel 'rear_tire_l' (2 times)                            162       244      34     14         5
- *   a fast step: all wheels                                  646       981     137     56        20
- *   all together                                            4712      5999     176     79        32
+ *   wheel 'front_tire_l' (2 times)                           166       250      37     14         5
+ *   wheel 'rear_tire_l' (2 times)                            167       250      37     14         5
+ *   a fast step: all wheels                                  666      1005     149     56        20
+ *   all together                                            4732      6023     188     79        32
  *   outputs, when asked for                                 1294      1646       2      3        13
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0xf3218d9f
+#if FORMULA_STUDENT_H != 0x568d7a4b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -3362,70 +3362,74 @@ static int formula_student_wheel_front_tire_l(formula_student *self, const gic_r
         const gic_real t14 = t11 + t13;
         const gic_real t15 = t5 / t9 + t11 / t14;
         const gic_real t16 = contact[FORMULA_STUDENT_CONTACT_KAPPA] / t15;
-        const gic_real t17 = R(5e-13) + t16 * t16;
-        const gic_real t18 = t8 / t9 + t13 / t14;
-        const gic_real t19 = contact[FORMULA_STUDENT_CONTACT_TANGENT] / t18;
-        const gic_real t20 = R(5e-13) + t19 * t19;
-        const gic_real t21 = t17 + t20;
-        const gic_real t22 = GIC_SQRT(t21);
-        const gic_real t23 = GIC_SQRT(t20 / t21);
-        const gic_real t24 = t23 * (t13 / t18);
-        const gic_real t25 = GIC_SQRT(t17 / t21);
-        const gic_real t26 = t25 * (t11 / t15);
-        const gic_real t27 = GIC_SQRT(t24 * t24 + t26 * t26);
-        const gic_real t28 = t22 - t27;
-        const gic_real t29 = t10 * R(0.050000000000000044);
-        const gic_real t30 = t23 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t29 + R(0.6)) / t18);
-        const gic_real t31 = t25 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t29 + R(0.5)) / t15);
-        const gic_real t32 = GIC_SQRT(t30 * t30 + t31 * t31);
-        const gic_real t33 = t32 - t22;
-        const gic_real t34 = t6 * t23;
-        const gic_real t35 = t3 * t25;
-        const gic_real t36 = GIC_SQRT(t34 * t34 + t35 * t35);
-        const gic_real t37 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(920.0) - t2)) * t23;
-        const gic_real t38 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(880.0) - t1 * R(60.0))) * t25;
-        const gic_real t39 = GIC_SQRT(t37 * t37 + t38 * t38);
-        const gic_real t40 = t36 - t39;
-        const gic_real t41 = t36 / t27;
-        const gic_real t42 = t23 * (t7 * t18);
-        const gic_real t43 = t25 * (t4 * t15);
-        const gic_real t44 = GIC_MAX(GIC_SQRT(t42 * t42 + t43 * t43) * t27, t36 + t36);
-        const gic_real t45 = t41 * t41 / t44;
-        const gic_real t46 = t32 - t27;
-        const gic_real t47 = t40 / (t45 * t46);
-        const gic_real t48 = t27 + t47;
-        const gic_real t49 = t28 / t46;
-        const gic_real t50 = t36 - t40 * ((R(3.0) - (t49 + t49)) * (t49 * t49));
-        const gic_real t51 = t39 + t33 * t33 * (t45 * t47 / (t32 - t48));
-        const gic_real t52 = (t22 - t48 > GIC_R(0) ? t51 : t36 - t45 * (t28 * t28));
-        const gic_real t53 = t22 / t27;
-        const gic_real t54 = t44 * t53 / (R(1.0) + t53 * (t44 / t36 - R(2.0) + t53));
-        const gic_real t55 = (t28 > GIC_R(0) ? (t33 > GIC_R(0) ? (t48 - t32 > GIC_R(0) ? t50 : t52) : t39) : t54);
-        const gic_real t56 = contact[FORMULA_STUDENT_CONTACT_LOAD] / (t1 * R(650.0)) * t55 / t22;
-        const gic_real t57 = t19 * t56;
-        const gic_real t58 = GIC_FABS(contact[FORMULA_STUDENT_CONTACT_TANGENT]);
-        const gic_real t59 = t12 + R(0.15);
-        const gic_real t60 = t58 - t59;
-        const gic_real t61 = R(0.5) + t10 * R(0.020000000000000018);
-        const gic_real t62 = t61 - t58;
-        const gic_real t63 = t62 / (t61 - t59);
-        const gic_real t64 = t59 / t61;
-        const gic_real t65 = R(1.0) - t64;
-        const gic_real t66 = -(t63 * t63 * (t60 / t59) * (t59 * t65));
-        const gic_real t67 = t58 / t59;
-        const gic_real t68 = t64 * (R(1.0) - t67 * t67 * (R(3.0) - (t67 + t67)));
-        const gic_real t69 = (t60 > GIC_R(0) ? (t62 > GIC_R(0) ? t66 : R(0.0)) : t59 * (t68 + (R(1.0) - t67) * t65));
-        const gic_real t70 = t16 * t56;
-        const gic_real t71 = -t57;
-        const gic_real t72 = contact[FORMULA_STUDENT_CONTACT_LOAD] * R(-0.00409) *
+        const gic_real t17 = contact[FORMULA_STUDENT_CONTACT_LOAD] / (t1 * R(650.0));
+        const gic_real t18 = R(5e-13) + t16 * t16;
+        const gic_real t19 = t8 / t9 + t13 / t14;
+        const gic_real t20 = contact[FORMULA_STUDENT_CONTACT_TANGENT] / t19;
+        const gic_real t21 = R(5e-13) + t20 * t20;
+        const gic_real t22 = t18 + t21;
+        const gic_real t23 = R(1e-12) / t22;
+        const gic_real t24 = GIC_SQRT(t22);
+        const gic_real t25 = GIC_SQRT(t21 / t22);
+        const gic_real t26 = t25 * (t13 / t19);
+        const gic_real t27 = GIC_SQRT(t18 / t22);
+        const gic_real t28 = t27 * (t11 / t15);
+        const gic_real t29 = GIC_SQRT(t26 * t26 + t28 * t28);
+        const gic_real t30 = t24 - t29;
+        const gic_real t31 = t10 * R(0.050000000000000044);
+        const gic_real t32 = t25 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t31 + R(0.6)) / t19);
+        const gic_real t33 = t27 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t31 + R(0.5)) / t15);
+        const gic_real t34 = GIC_SQRT(t32 * t32 + t33 * t33);
+        const gic_real t35 = t34 - t24;
+        const gic_real t36 = t6 * t25;
+        const gic_real t37 = t3 * t27;
+        const gic_real t38 = GIC_SQRT(t36 * t36 + t37 * t37);
+        const gic_real t39 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(920.0) - t2)) * t25;
+        const gic_real t40 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(880.0) - t1 * R(60.0))) * t27;
+        const gic_real t41 = GIC_SQRT(t39 * t39 + t40 * t40);
+        const gic_real t42 = t38 - t41;
+        const gic_real t43 = t38 / t29;
+        const gic_real t44 = t25 * (t7 * t19);
+        const gic_real t45 = t27 * (t4 * t15);
+        const gic_real t46 = GIC_MAX(GIC_SQRT(t44 * t44 + t45 * t45) * t29, t38 + t38);
+        const gic_real t47 = t43 * t43 / t46;
+        const gic_real t48 = t34 - t29;
+        const gic_real t49 = t42 / (t47 * t48);
+        const gic_real t50 = t29 + t49;
+        const gic_real t51 = t30 / t48;
+        const gic_real t52 = t38 - t42 * ((R(3.0) - (t51 + t51)) * (t51 * t51));
+        const gic_real t53 = t41 + t35 * t35 * (t47 * t49 / (t34 - t50));
+        const gic_real t54 = (t24 - t50 > GIC_R(0) ? t53 : t38 - t47 * (t30 * t30));
+        const gic_real t55 = t24 / t29;
+        const gic_real t56 = t46 * t55 / (R(1.0) + t55 * (t46 / t38 - R(2.0) + t55));
+        const gic_real t57 = (t30 > GIC_R(0) ? (t35 > GIC_R(0) ? (t50 - t34 > GIC_R(0) ? t52 : t54) : t41) : t56);
+        const gic_real t58 = t57 / t24 * (R(1.0) - t23);
+        const gic_real t59 = t23 * (t15 * GIC_MAX(t4, (t3 + t3) / t11)) + t58;
+        const gic_real t60 = t58 + t23 * (t19 * GIC_MAX(t7, (t6 + t6) / t13));
+        const gic_real t61 = t20 * (t17 * t60);
+        const gic_real t62 = GIC_FABS(contact[FORMULA_STUDENT_CONTACT_TANGENT]);
+        const gic_real t63 = t12 + R(0.15);
+        const gic_real t64 = t62 - t63;
+        const gic_real t65 = R(0.5) + t10 * R(0.020000000000000018);
+        const gic_real t66 = t65 - t62;
+        const gic_real t67 = t66 / (t65 - t63);
+        const gic_real t68 = t63 / t65;
+        const gic_real t69 = R(1.0) - t68;
+        const gic_real t70 = -(t67 * t67 * (t64 / t63) * (t63 * t69));
+        const gic_real t71 = t62 / t63;
+        const gic_real t72 = t68 * (R(1.0) - t71 * t71 * (R(3.0) - (t71 + t71)));
+        const gic_real t73 = (t64 > GIC_R(0) ? (t66 > GIC_R(0) ? t70 : R(0.0)) : t63 * (t72 + (R(1.0) - t71) * t69));
+        const gic_real t74 = t16 * (t17 * t59);
+        const gic_real t75 = -t61;
+        const gic_real t76 = contact[FORMULA_STUDENT_CONTACT_LOAD] * R(-0.00409) *
             GIC_TANH(fast[FORMULA_STUDENT_FAST_SPIN]);
-        const gic_real t73 = t57 * (GIC_SQRT(GIC_MAX(contact[FORMULA_STUDENT_CONTACT_DEFLECTION], R(0.0)) * R(1.636)) *
-            t69);
-        force[FORMULA_STUDENT_TIRE_FX] = t70;
-        force[FORMULA_STUDENT_TIRE_FY] = t71;
+        const gic_real t77 = t61 * (GIC_SQRT(GIC_MAX(contact[FORMULA_STUDENT_CONTACT_DEFLECTION], R(1e-16)) *
+            R(1.636)) * t73);
+        force[FORMULA_STUDENT_TIRE_FX] = t74;
+        force[FORMULA_STUDENT_TIRE_FY] = t75;
         force[FORMULA_STUDENT_TIRE_MX] = R(0.0);
-        force[FORMULA_STUDENT_TIRE_MY] = t72;
-        force[FORMULA_STUDENT_TIRE_MZ] = t73;
+        force[FORMULA_STUDENT_TIRE_MY] = t76;
+        force[FORMULA_STUDENT_TIRE_MZ] = t77;
     } else
         ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
@@ -3681,70 +3685,74 @@ static int formula_student_wheel_rear_tire_l(formula_student *self, const gic_re
         const gic_real t14 = t11 + t13;
         const gic_real t15 = t5 / t9 + t11 / t14;
         const gic_real t16 = contact[FORMULA_STUDENT_CONTACT_KAPPA] / t15;
-        const gic_real t17 = R(5e-13) + t16 * t16;
-        const gic_real t18 = t8 / t9 + t13 / t14;
-        const gic_real t19 = contact[FORMULA_STUDENT_CONTACT_TANGENT] / t18;
-        const gic_real t20 = R(5e-13) + t19 * t19;
-        const gic_real t21 = t17 + t20;
-        const gic_real t22 = GIC_SQRT(t21);
-        const gic_real t23 = GIC_SQRT(t20 / t21);
-        const gic_real t24 = t23 * (t13 / t18);
-        const gic_real t25 = GIC_SQRT(t17 / t21);
-        const gic_real t26 = t25 * (t11 / t15);
-        const gic_real t27 = GIC_SQRT(t24 * t24 + t26 * t26);
-        const gic_real t28 = t22 - t27;
-        const gic_real t29 = t10 * R(0.050000000000000044);
-        const gic_real t30 = t23 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t29 + R(0.6)) / t18);
-        const gic_real t31 = t25 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t29 + R(0.5)) / t15);
-        const gic_real t32 = GIC_SQRT(t30 * t30 + t31 * t31);
-        const gic_real t33 = t32 - t22;
-        const gic_real t34 = t6 * t23;
-        const gic_real t35 = t3 * t25;
-        const gic_real t36 = GIC_SQRT(t34 * t34 + t35 * t35);
-        const gic_real t37 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(920.0) - t2)) * t23;
-        const gic_real t38 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(880.0) - t1 * R(60.0))) * t25;
-        const gic_real t39 = GIC_SQRT(t37 * t37 + t38 * t38);
-        const gic_real t40 = t36 - t39;
-        const gic_real t41 = t36 / t27;
-        const gic_real t42 = t23 * (t7 * t18);
-        const gic_real t43 = t25 * (t4 * t15);
-        const gic_real t44 = GIC_MAX(GIC_SQRT(t42 * t42 + t43 * t43) * t27, t36 + t36);
-        const gic_real t45 = t41 * t41 / t44;
-        const gic_real t46 = t32 - t27;
-        const gic_real t47 = t40 / (t45 * t46);
-        const gic_real t48 = t27 + t47;
-        const gic_real t49 = t28 / t46;
-        const gic_real t50 = t36 - t40 * ((R(3.0) - (t49 + t49)) * (t49 * t49));
-        const gic_real t51 = t39 + t33 * t33 * (t45 * t47 / (t32 - t48));
-        const gic_real t52 = (t22 - t48 > GIC_R(0) ? t51 : t36 - t45 * (t28 * t28));
-        const gic_real t53 = t22 / t27;
-        const gic_real t54 = t44 * t53 / (R(1.0) + t53 * (t44 / t36 - R(2.0) + t53));
-        const gic_real t55 = (t28 > GIC_R(0) ? (t33 > GIC_R(0) ? (t48 - t32 > GIC_R(0) ? t50 : t52) : t39) : t54);
-        const gic_real t56 = contact[FORMULA_STUDENT_CONTACT_LOAD] / (t1 * R(650.0)) * t55 / t22;
-        const gic_real t57 = t19 * t56;
-        const gic_real t58 = GIC_FABS(contact[FORMULA_STUDENT_CONTACT_TANGENT]);
-        const gic_real t59 = t12 + R(0.15);
-        const gic_real t60 = t58 - t59;
-        const gic_real t61 = R(0.5) + t10 * R(0.020000000000000018);
-        const gic_real t62 = t61 - t58;
-        const gic_real t63 = t62 / (t61 - t59);
-        const gic_real t64 = t59 / t61;
-        const gic_real t65 = R(1.0) - t64;
-        const gic_real t66 = -(t63 * t63 * (t60 / t59) * (t59 * t65));
-        const gic_real t67 = t58 / t59;
-        const gic_real t68 = t64 * (R(1.0) - t67 * t67 * (R(3.0) - (t67 + t67)));
-        const gic_real t69 = (t60 > GIC_R(0) ? (t62 > GIC_R(0) ? t66 : R(0.0)) : t59 * (t68 + (R(1.0) - t67) * t65));
-        const gic_real t70 = t16 * t56;
-        const gic_real t71 = -t57;
-        const gic_real t72 = contact[FORMULA_STUDENT_CONTACT_LOAD] * R(-0.00409) *
+        const gic_real t17 = contact[FORMULA_STUDENT_CONTACT_LOAD] / (t1 * R(650.0));
+        const gic_real t18 = R(5e-13) + t16 * t16;
+        const gic_real t19 = t8 / t9 + t13 / t14;
+        const gic_real t20 = contact[FORMULA_STUDENT_CONTACT_TANGENT] / t19;
+        const gic_real t21 = R(5e-13) + t20 * t20;
+        const gic_real t22 = t18 + t21;
+        const gic_real t23 = R(1e-12) / t22;
+        const gic_real t24 = GIC_SQRT(t22);
+        const gic_real t25 = GIC_SQRT(t21 / t22);
+        const gic_real t26 = t25 * (t13 / t19);
+        const gic_real t27 = GIC_SQRT(t18 / t22);
+        const gic_real t28 = t27 * (t11 / t15);
+        const gic_real t29 = GIC_SQRT(t26 * t26 + t28 * t28);
+        const gic_real t30 = t24 - t29;
+        const gic_real t31 = t10 * R(0.050000000000000044);
+        const gic_real t32 = t25 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t31 + R(0.6)) / t19);
+        const gic_real t33 = t27 * (contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t31 + R(0.5)) / t15);
+        const gic_real t34 = GIC_SQRT(t32 * t32 + t33 * t33);
+        const gic_real t35 = t34 - t24;
+        const gic_real t36 = t6 * t25;
+        const gic_real t37 = t3 * t27;
+        const gic_real t38 = GIC_SQRT(t36 * t36 + t37 * t37);
+        const gic_real t39 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(920.0) - t2)) * t25;
+        const gic_real t40 = contact[FORMULA_STUDENT_CONTACT_FRICTION] * (t1 * (R(880.0) - t1 * R(60.0))) * t27;
+        const gic_real t41 = GIC_SQRT(t39 * t39 + t40 * t40);
+        const gic_real t42 = t38 - t41;
+        const gic_real t43 = t38 / t29;
+        const gic_real t44 = t25 * (t7 * t19);
+        const gic_real t45 = t27 * (t4 * t15);
+        const gic_real t46 = GIC_MAX(GIC_SQRT(t44 * t44 + t45 * t45) * t29, t38 + t38);
+        const gic_real t47 = t43 * t43 / t46;
+        const gic_real t48 = t34 - t29;
+        const gic_real t49 = t42 / (t47 * t48);
+        const gic_real t50 = t29 + t49;
+        const gic_real t51 = t30 / t48;
+        const gic_real t52 = t38 - t42 * ((R(3.0) - (t51 + t51)) * (t51 * t51));
+        const gic_real t53 = t41 + t35 * t35 * (t47 * t49 / (t34 - t50));
+        const gic_real t54 = (t24 - t50 > GIC_R(0) ? t53 : t38 - t47 * (t30 * t30));
+        const gic_real t55 = t24 / t29;
+        const gic_real t56 = t46 * t55 / (R(1.0) + t55 * (t46 / t38 - R(2.0) + t55));
+        const gic_real t57 = (t30 > GIC_R(0) ? (t35 > GIC_R(0) ? (t50 - t34 > GIC_R(0) ? t52 : t54) : t41) : t56);
+        const gic_real t58 = t57 / t24 * (R(1.0) - t23);
+        const gic_real t59 = t23 * (t15 * GIC_MAX(t4, (t3 + t3) / t11)) + t58;
+        const gic_real t60 = t58 + t23 * (t19 * GIC_MAX(t7, (t6 + t6) / t13));
+        const gic_real t61 = t20 * (t17 * t60);
+        const gic_real t62 = GIC_FABS(contact[FORMULA_STUDENT_CONTACT_TANGENT]);
+        const gic_real t63 = t12 + R(0.15);
+        const gic_real t64 = t62 - t63;
+        const gic_real t65 = R(0.5) + t10 * R(0.020000000000000018);
+        const gic_real t66 = t65 - t62;
+        const gic_real t67 = t66 / (t65 - t63);
+        const gic_real t68 = t63 / t65;
+        const gic_real t69 = R(1.0) - t68;
+        const gic_real t70 = -(t67 * t67 * (t64 / t63) * (t63 * t69));
+        const gic_real t71 = t62 / t63;
+        const gic_real t72 = t68 * (R(1.0) - t71 * t71 * (R(3.0) - (t71 + t71)));
+        const gic_real t73 = (t64 > GIC_R(0) ? (t66 > GIC_R(0) ? t70 : R(0.0)) : t63 * (t72 + (R(1.0) - t71) * t69));
+        const gic_real t74 = t16 * (t17 * t59);
+        const gic_real t75 = -t61;
+        const gic_real t76 = contact[FORMULA_STUDENT_CONTACT_LOAD] * R(-0.00409) *
             GIC_TANH(fast[FORMULA_STUDENT_FAST_SPIN]);
-        const gic_real t73 = t57 * (GIC_SQRT(GIC_MAX(contact[FORMULA_STUDENT_CONTACT_DEFLECTION], R(0.0)) * R(1.636)) *
-            t69);
-        force[FORMULA_STUDENT_TIRE_FX] = t70;
-        force[FORMULA_STUDENT_TIRE_FY] = t71;
+        const gic_real t77 = t61 * (GIC_SQRT(GIC_MAX(contact[FORMULA_STUDENT_CONTACT_DEFLECTION], R(1e-16)) *
+            R(1.636)) * t73);
+        force[FORMULA_STUDENT_TIRE_FX] = t74;
+        force[FORMULA_STUDENT_TIRE_FY] = t75;
         force[FORMULA_STUDENT_TIRE_MX] = R(0.0);
-        force[FORMULA_STUDENT_TIRE_MY] = t72;
-        force[FORMULA_STUDENT_TIRE_MZ] = t73;
+        force[FORMULA_STUDENT_TIRE_MY] = t76;
+        force[FORMULA_STUDENT_TIRE_MZ] = t77;
     } else
         ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
