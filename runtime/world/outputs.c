@@ -264,7 +264,10 @@ static void balance(const World *world, gic_self_test *result)
                     }
                 }
         }
-        double most[2] = {fmax(size[0], fmax(size[1], size[2])), fmax(size[3], fmax(size[4], size[5]))};
+        /* of a body that turns fast in place, what its rotation makes of arms cancels, and its rounding remains */
+        const double central = mass * dot3(omega, omega) * world->size, turning = norm3(omega) * norm3(momentum);
+        double most[2] = {fmax(central, fmax(size[0], fmax(size[1], size[2]))),
+                          fmax(turning, fmax(size[3], fmax(size[4], size[5])))};
         compare_sizes(&world->model->body[b], most);
         for (int i = 0; i < 6; ++i) {
             const double rate = i < 3 ? world->qd[b][i] : omega[i - 3];

@@ -93,6 +93,32 @@ done
 off=$(awk -F, 'NR == FNR { y[FNR] = $3; next } FNR > 1 { d = $3 - y[FNR]; if (d < 0) d = -d; if (!(d <= most)) most = d } END { print most + 0 }' turned.csv moved.csv)
 check "turn or way as the coordinate: $off" within "$off" 1e-11
 
+# ---- a ball screw of 5 mm a turn, whose spindle turns by half a radian and more in a step, without any force: the way is
+# linear in time, and the engine that judges does not take rounding for an error (gcp1 integrates the turn itself)
+cat >ball.veh <<'END'
+gicgen: 1
+model: ball
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  nut: {mass: 2, com: [0, 0, 0], inertia: [0.1, 0.1, 0.1]}
+  spindle: {mass: 1, com: [0, 0.1, 0], inertia: [0.01, 0.001, 0.01]}
+joints:
+  rail: {type: prismatic, bodies: [ground, nut], axis: [0, 1, 0]}
+  bearing: {type: revolute, bodies: [ground, spindle], point: [0, 0, 0], axis: [0, 1, 0]}
+  thread: {type: screw, bodies: [spindle, nut], point: [0, 0, 0], axis: [0, 1, 0], ratio: 0.0008}
+coordinates: {turn: {type: translation, bodies: [ground, nut], axis: [0, 1, 0], range: [-0.5, 0.5]}}
+outputs: {way: {type: coordinate, coordinate: turn}}
+END
+for speed in 50 500 512 700; do
+    scene 0.4 0.001 "initial: {rates: {turn: $(awk "BEGIN { print $speed * 0.0008 }")}}" >ball.scene
+    : >ball.csv
+    "$gicrun" -q --engine gic ball.veh ball.scene -o ball.csv 2>err
+    awk -F, -v v="$(awk "BEGIN { print $speed * 0.0008 }")" 'NR > 1 { d = $2 - v * $1; if (!(d * d <= 1e-24)) bad = 1 }
+        END { exit bad || NR != 6 }' ball.csv
+    verdict $? "a ball screw at $speed rad/s"
+done
+
 # ---- rest: a load of 20 N moves the rack by 20 mm against 1000 N/m, and turns the wheel by 2 rad
 scene 0.1 0.1 'inputs: {load: 20}' 'initial: {equilibrium: true}' >rest.scene
 sed 's/stiffness: 1000/stiffness: 1000, damping: 50/' turned.veh >rest.veh
