@@ -168,7 +168,8 @@ def scenes(folder):
 
 
 def precision(folder):
-    """A row a scene: AB3 and RK4 at its own step, and the least time for two errors. `below ..`: 0 in comparisons."""
+    """A row a scene: AB3 and RK4 at its own step, where contacts change with these located, too, and the least time for
+    two errors. `below ..`: 0 in comparisons."""
     out = []
     for number in range(1, 100):
         rows = table(folder, 'precision', 'precision%d.csv' % number)
@@ -179,7 +180,9 @@ def precision(folder):
 
         def at_step(way):
             found = [r for r in good if r['way'][0].startswith(way) and r['step or tolerance'][0] == step]
-            return '%s m, %s ms' % (short(found[0]['error [m]'][0]), short(found[0]['CPU [ms]'][0])) if found else '-'
+            told = [('located ' if 'located' in r['way'][0] else '', short(r['error [m]'][0]), short(r['CPU [ms]'][0]))
+                    for r in found if r is found[0] or 'located' in r['way'][0]]
+            return '; '.join('%s%s m, %s ms' % cell for cell in told) or '-'
 
         def least(most):
             found = [r for r in good if float(r['error [m]'][0].replace('below ', '')) <= most]
