@@ -21,7 +21,10 @@ models=$(cd "$root/models" && echo *.veh | sed 's/\.veh//g')
 
 # the table's rows: scenes | models
 sed -n '/^| scenes in/,/^$/p' "$root/README.md" | sed -n 's/^| `/`/p' | tr -d '`,' | while IFS='|' read -r scenes fitting _; do
-    for scene in $scenes; do echo "$scene $fitting" | sed "s/each the model of its name/$scene/"; done
+    for scene in $scenes; do
+        for model in $models; do case $scene in "$model"_*) first=$model ;; esac done
+        echo "$scene $fitting" | sed "s/each the model of its name/$scene/; s/each the model that its name begins with/$first/"
+    done
 done >"$work/table"
 all_scenes() { (cd "$root/models/scenes" && echo *.scene | sed 's/\.scene//g' | tr ' ' '\n'); }
 listed() { [ "$(cut -d' ' -f1 "$work/table" | sort)" = "$(all_scenes | sort)" ]; }

@@ -126,7 +126,7 @@ hmmwv_vehicle step_steer straight
 hmmwv_tires tires_brake tires_coast tires_jump tires_park tires_rough
 hmmwv_tmeasy tires_brake tires_coast tires_jump tires_park tires_rough
 hmmwv paper_run rough_road suspension_rig spin field_track
-formula_student fs_acceleration fs_skid_pad
+formula_student formula_student_acceleration formula_student_skid_pad
 hmmwv_full hmmwv_full
 hmmwv14 hmmwv14
 five_link five_link

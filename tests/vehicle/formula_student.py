@@ -111,7 +111,7 @@ near('heave', min((m['frequency'] for m in modes if m['share.z'] > 0.5), default
 check('pitch below 6 Hz', any(m['share.pitch'] > 0.5 and m['frequency'] < 6 for m in modes))
 
 # ---- acceleration: the traction control holds the slip, the rear tires carry it; the wings press
-d = car.run('fs_acceleration')
+d = car.run('formula_student_acceleration')
 at = lambda time: min(range(len(d['time'])), key=lambda i: abs(d['time'][i] - time))
 start, end = d['chassis.x'][0], next(t for t, x in zip(d['time'], d['chassis.x']) if x > d['chassis.x'][0] + 75)
 check('75 m in 3.5 to 4.5 s', 3.5 < end - 0.3 < 4.5, end)
@@ -130,7 +130,7 @@ check('by the control', min(d['share_l']) < 0.95, min(d['share_l']))
 check('it brakes by more than 1.5 g', min(d['acceleration.x']) < -1.5 * GRAVITY, min(d['acceleration.x']))
 
 # ---- the skid pad
-d = car.run('fs_skid_pad')
+d = car.run('formula_student_skid_pad')
 v, w = d['ahead.x'][-1], d['turn.z'][-1]
 radius = [math.hypot(x, y - 9.125) for x, y in zip(d['chassis.x'], d['chassis.y'])]
 check('the circle is held within 0.3 m', max(abs(r - 9.125) for r in radius[at(6):]) < 0.3, max(abs(r - 9.125) for r in radius[at(6):]))
@@ -147,4 +147,4 @@ check('understeer: it needs more than a car that rolls', d['steering.value'][-1]
       d['steering.value'][-1])
 
 # ---- energy: order 3 of AB3, in one rate and two
-energy_orders(car, 'fs_skid_pad', 0.003, 6, 2)
+energy_orders(car, 'formula_student_skid_pad', 0.003, 6, 2)
