@@ -64,7 +64,7 @@ static const char help[] =
     "                     standard manoeuvres, models/MANOEUVRES.md; an unknown name lists\n"
     "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
     "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
-    "      --compare FILE with --sheet or --manoeuvre: another model beside it\n"
+    "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
     "      --integrator NAME\n"
     "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
     "                     of the scene's\n"
@@ -207,8 +207,11 @@ static Request read_command_line(int count, char **word)
         usage_fail("gicrun", "--report goes with --kc or --manoeuvre", NULL);
     if (request.trace && !request.manoeuvre)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
-    if (request.compare && !request.sheet && !request.manoeuvre)
-        usage_fail("gicrun", "--compare goes with --sheet or --manoeuvre", NULL);
+    if (request.compare && !request.sheet && !request.manoeuvre && !request.kinematics)
+        usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
+    if (request.compare && request.kinematics && (request.report || request.loads))
+        usage_fail("gicrun",
+                   "--kc --compare is a table at the position of set-up: it goes without --report and --loads", NULL);
     if (request.loads && (request.report || request.travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (request.report && !path_ends(request.report, ".html"))

@@ -266,6 +266,9 @@ const KcRow *kc_zero(const KcStudy *study, int axle, int of_axle);
 const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double *scale);
 /* Does an element move with a wheel of the axle? */
 bool kc_ratio_seen(const Kc *kc, const KcAxle *axle, const KcRow *row, int e);
+/* kc_compare.c: two vehicles at set-up side by side, as a table or as CSV. */
+void kc_compare(Pool *pool, const Model *model, const KcStudy *study, const Model *model_of_other,
+                const KcStudy *of_other, const Request *request);
 /* kc_page.c: the page `path`. */
 void kc_page(Pool *pool, const KcStudy *study, const char *path);
 

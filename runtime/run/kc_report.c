@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "gic_runtime.h"
 #include "host/host.h"
+#include "read/read.h"
 #include "run/kc.h"
 
 #include <math.h>
@@ -248,6 +249,12 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
         diag_fail((Place){model->source, 0, 0}, "give its wheels suspensions with coordinates",
                   "no axle of model '%s' can be moved: %s: %s", model->name, study.kc->axle[0].name,
                   study.refusal[0][KC_PARALLEL]);
+    if (request->compare) {
+        const Model *model_of_other = model_read(pool, request->compare);
+        const KcStudy other = study_of(pool, model_of_other, NULL, request);
+        kc_compare(pool, model, &study, model_of_other, &other, request);
+        return;
+    }
     if (request->results)
         write_csv(pool, &study, request->results);
     if (request->report)

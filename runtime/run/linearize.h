@@ -108,6 +108,7 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
 typedef struct Mode {
     double real, imaginary;
     double *share; /* [places + fast states] of a place together with its rate, or of a fast state; sum 1 */
+    double *shape; /* [2][places] real and imaginary part of its eigenvector */
 } Mode;
 
 typedef struct Modes {

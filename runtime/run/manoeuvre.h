@@ -31,6 +31,7 @@ typedef enum Channel {
     TRIAL_YAW_RATE,
     TRIAL_AX,
     TRIAL_AY,
+    TRIAL_AZ,
     TRIAL_ROLL,
     TRIAL_PITCH,
     TRIAL_LOAD, /* the smallest of the wheels' loads */
@@ -39,10 +40,14 @@ typedef enum Channel {
 
 extern const gic_signal trial_signal[TRIAL_CHANNELS];
 
+/* And of each wheel: its load, N, and the height of the road under it, m. */
+typedef enum ChannelOfWheel { TRIAL_WHEEL_LOAD, TRIAL_WHEEL_ROAD, TRIAL_OF_WHEEL } ChannelOfWheel;
+
 typedef struct Trial {
     const char *name, *scene; /* scene: its text */
     int rows;
     double (*row)[TRIAL_CHANNELS];
+    double *wheel; /* [rows][wheels][TRIAL_OF_WHEEL] */
     double *state; /* the state at its end, as in models/FORMAT.md section 10 */
     int gear;
     bool tipped;     /* it leant by more than 60 degrees, which ended it */
@@ -73,6 +78,7 @@ struct TestCar {
     double straight;     /* its value straight ahead */
     double range[2];     /* of the road-wheel angle */
     int *load;           /* [wheels] components of outputs */
+    double output_step;  /* s between rows */
     const char *rest;    /* place and coordinates at rest, as keys of a scene's `initial` */
     double settled;      /* the speed that was kept last; 0: none */
     double reached;      /* the speed at the end of the last attempt to */
@@ -172,5 +178,13 @@ void manoeuvre_lane_change(Manoeuvre *manoeuvre);
 void manoeuvre_braking(Manoeuvre *manoeuvre);
 void manoeuvre_coast(Manoeuvre *manoeuvre);
 void manoeuvre_acceleration(Manoeuvre *manoeuvre);
+void manoeuvre_ride(Manoeuvre *manoeuvre);
+/* manoeuvre_straight.c: the speed, m/s, that does not grow any more by the whole accelerator; NAN: there is none, *why.
+ */
+double manoeuvre_top_speed(TestCar *car, const char **why);
+
+/* manoeuvre_ride.c: factors of accelerations for people at a frequency, Hz: W_k of vertical ones, W_d of others. */
+typedef enum RideWeight { RIDE_K, RIDE_D } RideWeight;
+double ride_weight(RideWeight weight, double frequency);
 
 #endif

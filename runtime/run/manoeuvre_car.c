@@ -88,6 +88,7 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     find_steering(car);
     car->rest = rest_of(car);
     car->running = "";
+    car->output_step = 0.01;
     car->engine = engine_open(pool, request->engine, car->model,
                               &(EngineOptions){.solve = request->solve,
                                                .recovery = request->recovery,
@@ -128,9 +129,9 @@ const char *car_scene(TestCar *car, double duration, double speed, bool drives, 
 {
     Text text = {.pool = car->pool};
     text_print(&text,
-               "gicscene: 1\nduration: %.9g\nintegrator: rkck\ntolerance: 1e-6\noutput_step: 0.01\n"
+               "gicscene: 1\nduration: %.9g\nintegrator: rkck\ntolerance: 1e-6\noutput_step: %g\n"
                "initial:\n%s  velocity: [%.17g, 0, 0]\n%s",
-               duration, car->rest, speed, speed > 0 ? car->running : "");
+               duration, car->output_step, car->rest, speed, speed > 0 ? car->running : "");
     if (drives && car->accelerator >= 0 && car->brake >= 0)
         text_print(&text, "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
     text_print(&text, "%s", more ? more : "");

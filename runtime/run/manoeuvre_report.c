@@ -62,6 +62,13 @@ const ManoeuvreKind manoeuvre_kind[] = {
      "Acceleration from rest",
      manoeuvre_acceleration,
      {{"accelerator", "1", "pedal", 1, 0.01, 1}, {"duration", "s", "at most", 120, 5, 1000}}},
+    {"ride",
+     "Ride on a random road",
+     manoeuvre_ride,
+     {SPEED(22.222222222222221),
+      {"class", "", "of the road by ISO 8608: 1 is A, 8 is H", 2, 1, 8},
+      {"duration", "s", "that is evaluated", 60, 10, 600},
+      {"seed", "", "of the road", 1, 0, 1e9}}},
     {0}};
 
 void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial)
@@ -127,6 +134,10 @@ static void write_trace(const Manoeuvre *m, const char *path)
                  c != TRIAL_STEER       ? trial_signal[c].unit
                  : m->car->steering < 0 ? "1"
                                         : model->input[m->car->steering].unit);
+    for (int w = 0; w < model->wheels; ++w) {
+        csv_name(&csv, pool_print(m->pool, "%s.load", model->wheel[w].name), "N");
+        csv_name(&csv, pool_print(m->pool, "%s.road", model->wheel[w].name), "m");
+    }
     csv_end_row(&csv);
     for (int t = 0; t < m->trials; ++t)
         for (int i = 0; i < m->trial[t]->rows; ++i) {
@@ -134,6 +145,8 @@ static void write_trace(const Manoeuvre *m, const char *path)
             csv_time(&csv, m->trial[t]->row[i][TRIAL_TIME]);
             for (int c = 1; c < TRIAL_CHANNELS; ++c)
                 csv_number(&csv, m->trial[t]->row[i][c]);
+            for (int k = 0; k < model->wheels * TRIAL_OF_WHEEL; ++k)
+                csv_number(&csv, m->trial[t]->wheel[i * model->wheels * TRIAL_OF_WHEEL + k]);
             csv_end_row(&csv);
         }
     csv_close(&csv);

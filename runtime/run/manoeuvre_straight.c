@@ -126,6 +126,32 @@ void manoeuvre_coast(Manoeuvre *m)
     fit_resistance(m, trial);
 }
 
+/* From rest by a pedal, until the speed no longer grows (ending->quiet > 0), or for `most`, s. */
+static const Trial *accelerate(TestCar *car, double level, double most, Ending *ending)
+{
+    const char *more =
+        pool_print(car->pool, "inputs:\n  accelerator: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, begin);
+    return trial_run(car, "acceleration", car_scene(car, most, 0, false, more), is_fast, ending);
+}
+
+double manoeuvre_top_speed(TestCar *car, const char **why)
+{
+    const double most = 120;
+    Ending ending = {0};
+    if (car->accelerator < 0) {
+        *why = "the model has no input 'accelerator' of unit 1";
+        return NAN;
+    }
+    const Trial *trial = accelerate(car, 1, most, &ending);
+    const double last = trial->row[trial->rows - 1][TRIAL_SPEED];
+    *why = trial->end      ? trial->end
+           : trial->tipped ? "the vehicle tips over"
+           : last < 1      ? "the vehicle does not move off"
+           : !ending.quiet ? pool_print(car->pool, "after %g s it still grows, at %.4g m/s", most, last)
+                           : NULL;
+    return *why ? NAN : last;
+}
+
 void manoeuvre_acceleration(Manoeuvre *m)
 {
     static const double speeds[] = {50, 80, 100}, ways[] = {100, 400, 1000}; /* km/h, m */
@@ -133,9 +159,7 @@ void manoeuvre_acceleration(Manoeuvre *m)
     const double level = m->value[0], most = m->value[1];
     Ending ending = {0};
     car_need_drive(car);
-    const char *more =
-        pool_print(m->pool, "inputs:\n  accelerator: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, begin);
-    const Trial *trial = trial_run(car, "acceleration", car_scene(car, most, 0, false, more), is_fast, &ending);
+    const Trial *trial = accelerate(car, level, most, &ending);
     keep(m, trial);
     Sheet *s = m->result;
     const double *last = trial->row[trial->rows - 1];

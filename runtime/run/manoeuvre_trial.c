@@ -24,6 +24,7 @@ const gic_signal trial_signal[TRIAL_CHANNELS] = {[TRIAL_TIME] = {"time", "s"},
                                                  [TRIAL_YAW_RATE] = {"yaw_rate", "rad/s"},
                                                  [TRIAL_AX] = {"ax", "m/s^2"},
                                                  [TRIAL_AY] = {"ay", "m/s^2"},
+                                                 [TRIAL_AZ] = {"az", "m/s^2"},
                                                  [TRIAL_ROLL] = {"roll", "rad"},
                                                  [TRIAL_PITCH] = {"pitch", "rad"},
                                                  [TRIAL_LOAD] = {"least_load", "N"}};
@@ -83,6 +84,7 @@ static void motion(const Way *way, double *row)
     row[TRIAL_YAW_RATE] = dot3(A + 6, way->state + half + 4);
     row[TRIAL_AX] = c * a[0] + s * a[1];
     row[TRIAL_AY] = c * a[1] - s * a[0];
+    row[TRIAL_AZ] = a[2];
     row[TRIAL_ROLL] = atan2(A[7], A[8]);
     row[TRIAL_PITCH] = -asin(fmax(-1, fmin(1, A[6])));
 }
@@ -98,9 +100,10 @@ static int record(Way *way)
     if (status != GIC_OK)
         return status;
     if (trial->rows == way->room) {
-        const size_t old = (size_t)way->room * sizeof *trial->row;
+        const size_t old = (size_t)way->room, of_wheels = (size_t)car->model->wheels * TRIAL_OF_WHEEL * sizeof(double);
         way->room = 2 * way->room + 512;
-        trial->row = pool_grow(car->pool, trial->row, old, (size_t)way->room * sizeof *trial->row);
+        trial->row = pool_grow(car->pool, trial->row, old * sizeof *trial->row, (size_t)way->room * sizeof *trial->row);
+        trial->wheel = pool_grow(car->pool, trial->wheel, old * of_wheels, (size_t)way->room * of_wheels);
     }
     const double *input = instance_array(way->copy, car->code->input_offset);
     const double *output = instance_array(way->copy, car->code->output_offset);
@@ -111,8 +114,12 @@ static int record(Way *way)
     row[TRIAL_ACCELERATOR] = car->accelerator < 0 ? 0 : input[car->accelerator];
     row[TRIAL_BRAKE] = car->brake < 0 ? 0 : input[car->brake];
     row[TRIAL_LOAD] = INFINITY;
-    for (int w = 0; w < car->model->wheels; ++w)
-        row[TRIAL_LOAD] = fmin(row[TRIAL_LOAD], output[car->load[w]]);
+    for (int w = 0; w < car->model->wheels; ++w) {
+        double *of = trial->wheel + (trial->rows * car->model->wheels + w) * TRIAL_OF_WHEEL;
+        of[TRIAL_WHEEL_LOAD] = output[car->load[w]];
+        of[TRIAL_WHEEL_ROAD] = output[car->load[w] + 3];
+        row[TRIAL_LOAD] = fmin(row[TRIAL_LOAD], of[TRIAL_WHEEL_LOAD]);
+    }
     motion(way, row);
     ++trial->rows;
     return GIC_OK;

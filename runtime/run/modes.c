@@ -153,7 +153,7 @@ static void expand(const Deflation *d, const Spectrum *s, size_t k, gsl_vector *
  * relative to the sum. Left eigenvectors have no components along neutral directions; those of a right eigenvector
  * follow from A, one Jordan layer at a time. */
 static void find_shares(const Linear *linear, const gsl_matrix *A, const Deflation *d, const Spectrum *right, size_t k,
-                        const Spectrum *left, double *share)
+                        const Spectrum *left, Mode *mode)
 {
     const size_t count = (size_t)linear->count, places = (size_t)linear->places;
     gsl_vector *r[2] = {gsl_vector_alloc(count), gsl_vector_alloc(count)}, *moved = gsl_vector_alloc(count);
@@ -169,12 +169,14 @@ static void find_shares(const Linear *linear, const gsl_matrix *A, const Deflati
     for (size_t i = 0; i < count; ++i) {
         const double part = hypot(gsl_vector_get(r[0], i), gsl_vector_get(r[1], i)) *
                             hypot(gsl_vector_get(l[0], i), gsl_vector_get(l[1], i));
-        share[i < places ? i : i - places] += part;
+        mode->share[i < places ? i : i - places] += part;
         sum += part;
     }
     for (size_t i = 0; i < count - places && sum > 0; ++i)
-        share[i] /= sum;
+        mode->share[i] /= sum;
     for (int p = 0; p < 2; ++p) {
+        for (size_t i = 0; i < places; ++i)
+            mode->shape[(size_t)p * places + i] = gsl_vector_get(r[p], i);
         gsl_vector_free(r[p]);
         gsl_vector_free(l[p]);
     }
@@ -214,8 +216,9 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
         if (GSL_IMAG(value) < 0 && !is_real)
             continue;
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
-        *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double))};
-        find_shares(linear, A, d, &right, k, &left, mode->share);
+        *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double)),
+                       pool_alloc(pool, 2 * A->size1 * sizeof(double))};
+        find_shares(linear, A, d, &right, k, &left, mode);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);
     spectrum_free(&left);
@@ -324,7 +327,7 @@ const char *modes_column(Pool *pool, const Linear *linear, int k, const char **u
 
 double modes_value(const Modes *modes, int mode, int k)
 {
-    const Mode zero = {0, 0, NULL}, *m = mode < 0 ? &zero : &modes->mode[mode];
+    const Mode zero = {0}, *m = mode < 0 ? &zero : &modes->mode[mode];
     const double size = hypot(m->real, m->imaginary);
     switch (k) {
     case 0: return m->real;

@@ -51,12 +51,14 @@ static void ticks(Text *out, const double range[2], bool upright)
         if (upright)
             text_print(
                 out, "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%g</text>\n",
-                class, LEFT, TOP + size * (1 - share), WIDTH - RIGHT, LEFT - 4, TOP + size * (1 - share) + 3, k * step);
+                class, LEFT, TOP + size * (1 - share), WIDTH - RIGHT, LEFT - 4, TOP + size * (1 - share) + 3,
+                k * step + 0.0);
         else
             text_print(
                 out,
                 "<path class=\"%s\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n",
-                class, LEFT + size * share, TOP, HEIGHT - BOTTOM, LEFT + size * share, HEIGHT - BOTTOM + 12, k * step);
+                class, LEFT + size * share, TOP, HEIGHT - BOTTOM, LEFT + size * share, HEIGHT - BOTTOM + 12,
+                k * step + 0.0);
     }
 }
 

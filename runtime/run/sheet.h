@@ -72,6 +72,8 @@ void sheet_notes(const Sheet *sheet, const char *before, const Request *request)
 void sheet_csv(const Sheet *sheet, const char *path);
 /* True if a number is another one for the other vehicle, or not there: by more than rounding. */
 bool sheet_differs(const SheetRow *row);
+/* sheet_shapes.c: a mode's motion as seen from the side and from behind, as SVG; nothing where it can't be found. */
+void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out);
 /* sheet_page.c: the sections but that of the modes as tables; the page. */
 void sheet_tables(const Sheet *sheet, Text *out);
 void sheet_page(const Sheet *sheet, const char *path);

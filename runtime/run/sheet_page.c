@@ -111,10 +111,13 @@ static void write_modes(void *context, Text *out, int indent)
         cell(out, mode->imaginary > 0 ? pool_print(sheet->pool, "%.3f", -mode->real / size + 0.0) : "", true);
         text_print(out, "<td>");
         bar(out, sheet->found->linear, mode);
+        text_print(out, "</td><td>");
+        if (mode->imaginary > 0)
+            sheet_shape(sheet, mode, out);
         text_print(out, "</td></tr>\n");
     }
     if (sheet->modes && sheet->modes->zeros)
-        text_print(out, "<tr><td class=\"n\">0</td><td colspan=\"3\">%d times: nothing holds %s</td></tr>\n",
+        text_print(out, "<tr><td class=\"n\">0</td><td colspan=\"4\">%d times: nothing holds %s</td></tr>\n",
                    sheet->modes->zeros, sheet->modes->neutral ? sheet->modes->neutral : "something");
 }
 

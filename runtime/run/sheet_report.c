@@ -4,6 +4,8 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "read/read.h"
+#include "run/engines.h"
+#include "run/manoeuvre.h"
 #include "run/sheet.h"
 #include "tape/engine_tape.h"
 
@@ -104,7 +106,10 @@ void sheet_csv(const Sheet *sheet, const char *path)
             csv_text(&csv, NULL);
         } else if (sheet->other) {
             csv_number(&csv, sheet->row[i].other);
-            csv_number(&csv, sheet->row[i].other - sheet->row[i].value);
+            if (isfinite(sheet->row[i].other - sheet->row[i].value))
+                csv_number(&csv, sheet->row[i].other - sheet->row[i].value);
+            else
+                csv_text(&csv, NULL);
         }
         csv_end_row(&csv);
     }
@@ -152,18 +157,42 @@ void sheet_notes(const Sheet *sheet, const char *before, const Request *request)
             fprintf(stderr, "gicrun: note: %s%s\n", before, sheet->note[i]);
 }
 
-static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, Solve solve)
+/* On a level road, as the model is set up. */
+static void add_top_speed(Sheet *sheet, const Model *model, const Request *request)
 {
-    Sheet sheet = sheet_open(pool, model, scene, solve);
+    const char *why = NULL;
+    double speed = NAN;
+    for (int w = 0; w < model->wheels && !why; ++w)
+        if (model->wheel[w].tire < 0)
+            why = "a wheel has no tire";
+    if (!why) {
+        TestCar *car = car_open(sheet->pool, model, request);
+        speed = manoeuvre_top_speed(car, &why);
+        engine_rest(car->engine);
+        engine_close(car->engine);
+    }
+    if (why)
+        sheet_note(sheet, pool_print(sheet->pool, "top speed: %s", why));
+    else
+        sheet_add(sheet, "Straight ahead", "top_speed", "Top speed, whole accelerator", "m/s", speed);
+}
+
+static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    Sheet sheet = sheet_open(pool, model, scene, request->solve);
     find_modes(&sheet);
     add_modes(&sheet);
     sheet_cornering(&sheet);
+    if (fabs(fabs(model->body[BODY_BASE].euler[0]) - 1) <= equilibrium_limit)
+        add_top_speed(&sheet, model, request);
+    else
+        sheet_note(&sheet, "top speed: the axes of the base are not those of the drawing");
     return sheet;
 }
 
 bool sheet_differs(const SheetRow *row)
 {
-    return !(fabs(row->other - row->value) <= 1e-9 * fmax(1, fabs(row->value)));
+    return row->other != row->value && !(fabs(row->other - row->value) <= 1e-9 * fmax(1, fabs(row->value)));
 }
 
 /* Numbers of another vehicle beside those of the same name. */
@@ -178,9 +207,9 @@ void sheet_compare(Sheet *sheet, const Sheet *other)
 
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    Sheet sheet = sheet_of(pool, model, scene, request->solve);
+    Sheet sheet = sheet_of(pool, model, scene, request);
     if (request->compare) {
-        const Sheet other = sheet_of(pool, model_read(pool, request->compare), NULL, request->solve);
+        const Sheet other = sheet_of(pool, model_read(pool, request->compare), NULL, request);
         sheet_compare(&sheet, &other);
     }
     if (request->results && path_ends(request->results, ".html"))

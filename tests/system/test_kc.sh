@@ -108,5 +108,18 @@ check 'no curve has something else than numbers' sh -c "! grep -qiE '[^a-z](nan|
 check 'curves' [ "$(grep -c '<polyline' "$work/kc.html")" -gt 150 ]
 check 'what stops is on the page' grep -q 'stop at a travel of -58.97 mm' "$work/kc.html"
 
+# two vehicles at set-up: one beside itself has no differences; numbers are those of the rows at travel 0
+run --kc --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
+check 'a vehicle beside itself' sh -c "test -s '$work/out' && ! grep -q '\*$' '$work/out'"
+run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" -o "$work/both.csv"
+check 'two vehicles' exits 0
+run --kc --axle front "$models/five_link.veh" -q -o "$work/rows.csv"
+beside() { awk -F, 'NR == FNR {if (FNR == 1) for (i = 1; i <= NF; ++i) {split($i, h, " "); name[i] = h[1]}
+    else if ($2 == "parallel" && $3 ^ 2 < 1e-24) for (i = 1; i <= NF; ++i) at[name[i]] = $i; next}
+    FNR > 1 && $1 in at {n += 1; e += at[$1] != $4} END {exit !(n > 20 && !e)}' "$work/rows.csv" "$work/both.csv"; }
+check 'the other one has its numbers' beside
+run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" --report "$work/x.html"
+check '--compare is a table' exits 2
+
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 51 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 55 ]

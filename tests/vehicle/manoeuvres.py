@@ -179,8 +179,9 @@ for side, sign in (("left", 1), ("right", -1)):
     check(f"{side}: yaw gain", value[f"{side}.yaw_gain"], gain[0], 0.01)
 for name in trials["left"]:
     mirrored = -1 if name in ("steering", "steer_angle", "y", "yaw", "sideslip", "yaw_rate", "ay", "roll") else 1
+    other = name.replace("_l.", "_x.").replace("_r.", "_l.").replace("_x.", "_r.")  # of a wheel
     size = np.max(np.abs(trials["left"][name]))
-    check(f"{name}: left and right", np.max(np.abs(trials["left"][name] - mirrored * trials["right"][name])), 0, 1e-7, max(size, 1e-3))
+    check(f"{name}: left and right", np.max(np.abs(trials["left"][name] - mirrored * trials["right"][other])), 0, 1e-7, max(size, 1e-3))
 
 # ---- steady cornering ------------------------------------------------------------------------------------------------------------
 
@@ -230,6 +231,84 @@ trace = trials["acceleration"]
 check("0 to 100 km/h", value["to_100"], np.interp(100 / 3.6, trace["speed"], trace["time"]) - 0.5, 1e-6)
 steadily = (trace["time"] > 3) & (trace["time"] < 8)
 check("its size", trace["ax"][steadily].mean(), 2 * 600 / loaded / (m + 4 * spin_inertia / radius / loaded), 0.01)
+
+# ---- ride: a body on four springs, four wheels, integrated over the heights under the wheels; Welch and weights once more --------------
+
+value, trials = drive("ride", "speed=5", "class=1", "duration=20")  # slowly, so that rows show the road
+trace = trials["ride"]
+time = trace["time"]
+wheels = [("f_l", 1.2, t, 0), ("r_l", -1.4, t, 1), ("f_r", 1.2, -t, 0), ("r_r", -1.4, -t, 1)]
+sprung = m - 2 * unsprung.sum()
+x0 = (0 + 2 * 1.2 * 1.0) / sprung  # its centre of mass: a chassis and two steerers
+turn_y = sheet["inertia_yy"] - 2 * (unsprung[0] * (1.2 - sheet["com_x"]) ** 2 + unsprung[1] * (1.4 + sheet["com_x"]) ** 2) \
+    - sprung * (x0 - sheet["com_x"]) ** 2
+turn_x = sheet["inertia_xx"] - 2 * unsprung.sum() * t * t
+n = 14  # heave, pitch (nose down), roll (right down), wheels; their rates
+R = np.zeros((n, n))
+G = np.zeros((n, 4))
+Gd = np.zeros((n, 4))
+M = np.diag(np.concatenate([np.ones(7), [sprung, turn_y, turn_x], [unsprung[w[3]] for w in wheels]]))
+R[:7, 7:] = np.eye(7)
+for i, (name, px, py, axle) in enumerate(wheels):
+    # compression: the wheel's height less that of the body above it
+    shape = np.zeros(7)
+    shape[0], shape[1], shape[2], shape[3 + i] = -1, px - x0, -py, 1
+    R[7:, :7] -= k * np.outer(shape, shape)
+    R[7:, 7:] -= c * np.outer(shape, shape)
+    R[10 + i, 3 + i] -= kt
+    R[10 + i, 10 + i] -= ct
+    G[10 + i, i], Gd[10 + i, i] = kt, ct
+R, G, Gd = (np.linalg.solve(M, x) for x in (R, G, Gd))
+road = np.array([trace[f"{w[0]}.road"] for w in wheels]).T
+fine, step = 5, time[1] / 5
+slope = np.gradient(road, time, axis=0)
+slope[2:-2] = (8 * (road[3:-1] - road[1:-3]) - (road[4:] - road[:-4])) / (12 * time[1])
+state, follow = np.zeros(n), []
+half = np.eye(n) - step / 2 * R  # trapezoids
+other = np.eye(n) + step / 2 * R
+half = np.linalg.inv(half)
+for i in range(len(time)):
+    rate = R @ state + G @ road[i] + Gd @ slope[i]
+    loads = [kt * (road[i, w] - state[3 + w]) + ct * (slope[i, w] - state[10 + w]) for w in range(4)]
+    follow.append([rate[7], *loads])
+    if i + 1 < len(time):
+        for j in range(fine):
+            s = (j + 0.5) / fine
+            u, du = road[i] * (1 - s) + road[i + 1] * s, slope[i] * (1 - s) + slope[i + 1] * s
+            state = half @ (other @ state + step * (G @ u + Gd @ du))
+follow = np.array(follow)
+late = time >= 5
+rms = lambda y: np.sqrt(np.mean((y - y.mean()) ** 2))
+check("az over time", rms(trace["az"][late] - follow[late, 0]) / rms(follow[late, 0]), 0, 0.05, 1)
+# of axles: the driver's steering moves load between left and right
+for axle, name in enumerate(("f", "r")):
+    both = trace[f"{name}_l.load"] + trace[f"{name}_r.load"] - follow[:, 1 + axle] - follow[:, 3 + axle]
+    check(f"load of {name} over time", rms(both[late]) / rms((follow[:, 1 + axle] + follow[:, 3 + axle])[late]), 0, 0.07, 1)
+for i, (name, *_) in enumerate(wheels):
+    force = trace[f"{name}.load"][late]
+    check(f"load of {name}", value[f"{name}.dynamic_load"], rms(force) / force.mean(), 1e-9)
+    check(f"road under {name}", value[f"{name}.road"], rms(trace[f"{name}.road"][late]), 1e-9)
+
+
+def welch(y, size=1024, apart=0.005):
+    window = np.hanning(size + 1)[:size]
+    parts = [y[i : i + size] for i in range(0, len(y) - size + 1, size // 2)]
+    power = np.mean([np.abs(np.fft.rfft((p - p.mean()) * window)) ** 2 for p in parts], axis=0)
+    power[1:-1] *= 2
+    return np.fft.rfftfreq(size, apart), power * apart / np.sum(window**2)
+
+
+# factors of ISO 2631-1, thousandths, at frequencies of thirds of octaves
+third = 10 ** (np.arange(-3, 20) / 10)
+weights = {"k": [418, 459, 477, 482, 484, 494, 531, 631, 804, 967, 1039, 1054, 1036, 988, 902, 768, 636, 513, 405, 314, 246, 186, 132],
+           "d": [853, 944, 992, 1011, 1008, 968, 890, 776, 642, 512, 409, 323, 253, 202, 161, 125, 100, 80, 63.2, 49.4, 38.8, 29.5, 21.1]}
+for name, kind in (("ax", "d"), ("ay", "d"), ("az", "k")):
+    f, density = welch(trace[name][late])
+    within = (f >= 0.5) & (f <= 80)
+    factor = np.exp(np.interp(np.log(f[within]), np.log(third), np.log(np.array(weights[kind]) / 1e3)))
+    check(f"{name}: rms", value[f"{name}.rms"], np.sqrt(np.sum(density[within]) * f[1]), 1e-9)
+    check(f"{name}: weighted rms", value[f"{name}.weighted"], np.sqrt(np.sum(factor**2 * density[within]) * f[1]), 0.01)
+check("total", value["total"], np.sqrt(sum(value[f"{name}.weighted"] ** 2 for name in ("ax", "ay", "az"))), 1e-9)
 
 print(f"{passed} passed, {failed} failed")
 sys.exit(failed > 0 or passed < 100)

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ * Ride: straight ahead on a random road. Spectral densities after Welch, accelerations weighted for people, loads of
+ * tires that change. */
+#include "gic_runtime.h"
+#include "run/manoeuvre.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <gsl/gsl_fft_real.h>
+
+static const double pi = 3.141592653589793;
+static const double run_in = 5;         /* s from the start, which are left out */
+static const double sampling = 0.005;   /* s */
+static const double band[] = {0.5, 80}; /* Hz, of weighted accelerations */
+
+/* ---- weighting: the analogue filters of ISO 2631-1 ------------------------------------------------------- */
+
+/* The size of 1 / (1 + s / (Q w) + (s / w)^2) at s = 2 pi i f, of w = 2 pi corner. */
+static double second_order(double f, double corner, double Q)
+{
+    const double r = f / corner;
+    return 1 / hypot(1 - r * r, r / Q);
+}
+
+double ride_weight(RideWeight weight, double f)
+{
+    const double Q = 0.70710678118654752, high = 0.4, low = 100;
+    const bool vertical = weight == RIDE_K;
+    const double turn = vertical ? 12.5 : 2, r = f / high;
+    double w = r * r * second_order(f, high, Q) * second_order(f, low, Q);
+    w *= hypot(1, f / turn) * second_order(f, turn, 0.63);
+    if (vertical) /* a step upwards */
+        w *= second_order(f, 3.35, 0.91) / second_order(f, 2.37, 0.91) * (2.37 / 3.35) * (2.37 / 3.35);
+    return w;
+}
+
+/* ---- spectral density after Welch ------------------------------------------------------------------------ */
+
+/* Segments of SEGMENT samples, half over each other, each without its mean and under a Hann window. */
+enum { SEGMENT = 1024, LINES = SEGMENT / 2 };
+
+/* One-sided density of `count` samples, `sampling` apart, at k / (SEGMENT sampling) Hz for k from 0 to LINES - 1. */
+static void welch(int count, const double *sample, double density[LINES])
+{
+    double power = 0;
+    int segments = 0;
+    memset(density, 0, LINES * sizeof *density);
+    for (int i = 0; i < SEGMENT; ++i)
+        power += pow(sin(pi * i / SEGMENT), 4);
+    for (int from = 0; from + SEGMENT <= count; from += SEGMENT / 2, ++segments) {
+        double x[SEGMENT], mean = 0;
+        for (int i = 0; i < SEGMENT; ++i)
+            mean += sample[from + i] / SEGMENT;
+        for (int i = 0; i < SEGMENT; ++i)
+            x[i] = (sample[from + i] - mean) * pow(sin(pi * i / SEGMENT), 2);
+        gsl_fft_real_radix2_transform(x, 1, SEGMENT);
+        density[0] += x[0] * x[0];
+        for (int k = 1; k < LINES; ++k)
+            density[k] += 2 * (x[k] * x[k] + x[SEGMENT - k] * x[SEGMENT - k]);
+    }
+    for (int k = 0; k < LINES; ++k)
+        density[k] *= segments ? sampling / power / segments : 0;
+}
+
+/* Root of the sum of a density, weighted or not, over the band. */
+static double band_rms(const double density[LINES], const RideWeight *weight)
+{
+    const double apart = 1 / (SEGMENT * sampling);
+    double sum = 0;
+    for (int k = 1; k < LINES; ++k) {
+        const double f = k * apart, w = weight ? ride_weight(*weight, f) : 1;
+        if (f >= band[0] && f <= band[1])
+            sum += w * w * density[k] * apart;
+    }
+    return sqrt(sum);
+}
+
+/* ---- the results ------------------------------------------------------------------------------------------ */
+
+/* A curve of a density up to a frequency, in the logarithm of ten where people expect one. */
+static void add_curve(Manoeuvre *m, const double density[LINES], const char *title, const char *unit)
+{
+    const double most = 25, apart = 1 / (SEGMENT * sampling);
+    const int rows = (int)(most / apart);
+    double *x = pool_alloc(m->pool, (size_t)rows * sizeof *x), *y = pool_alloc(m->pool, (size_t)rows * sizeof *y);
+    for (int k = 1; k <= rows; ++k) {
+        x[k - 1] = k * apart;
+        y[k - 1] = log10(density[k]);
+    }
+    *POOL_PUSH(m->pool, m->table, m->tables) =
+        (ManoeuvreTable){pool_print(m->pool, "%s, log10 of the density", title), unit, "frequency, Hz", rows, x, y};
+}
+
+/* A channel from run_in on. */
+static int samples(const Trial *trial, Channel channel, double *out)
+{
+    int n = 0;
+    for (int i = 0; i < trial->rows; ++i)
+        if (trial->row[i][TRIAL_TIME] >= run_in)
+            out[n++] = trial->row[i][channel];
+    return n;
+}
+
+static void add_accelerations(Manoeuvre *m, const Trial *trial)
+{
+    static const struct {
+        Channel channel;
+        RideWeight weight;
+        const char *title;
+    } of[] = {{TRIAL_AX, RIDE_D, "Longitudinal"}, {TRIAL_AY, RIDE_D, "Lateral"}, {TRIAL_AZ, RIDE_K, "Vertical"}};
+    Sheet *s = m->result;
+    double density[LINES], total = 0;
+    double *x = pool_alloc(m->pool, (size_t)trial->rows * sizeof *x);
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        const char *name = trial_signal[of[i].channel].name;
+        welch(samples(trial, of[i].channel, x), x, density);
+        const double weighted = band_rms(density, &of[i].weight);
+        total += weighted * weighted;
+        sheet_add(s, i ? NULL : "Accelerations at the centre of mass", pool_print(m->pool, "%s.rms", name),
+                  pool_print(m->pool, "%s, rms", of[i].title), "m/s^2", band_rms(density, NULL));
+        sheet_add(s, NULL, pool_print(m->pool, "%s.weighted", name),
+                  pool_print(m->pool, "%s, weighted rms", of[i].title), "m/s^2", weighted);
+        if (of[i].channel == TRIAL_AZ)
+            add_curve(m, density, "Vertical acceleration", "(m/s^2)^2/Hz");
+    }
+    sheet_add(s, NULL, "total", "Vibration total value", "m/s^2", sqrt(total));
+    for (int k = 0; k < 2; ++k) {
+        const Channel c = k ? TRIAL_PITCH : TRIAL_ROLL;
+        const int n = samples(trial, c, x);
+        double mean = 0, square = 0;
+        for (int i = 0; i < n; ++i)
+            mean += x[i] / n;
+        for (int i = 0; i < n; ++i)
+            square += (x[i] - mean) * (x[i] - mean) / n;
+        sheet_add(s, NULL, pool_print(m->pool, "%s.rms", trial_signal[c].name), k ? "Pitch, rms" : "Roll, rms", "rad",
+                  sqrt(square));
+    }
+}
+
+static void add_loads(Manoeuvre *m, const Trial *trial)
+{
+    const Model *model = m->car->model;
+    for (int w = 0; w < model->wheels; ++w) {
+        double mean = 0, square = 0, road = 0, ground = 0;
+        int n = 0, up = 0;
+        for (int i = 0; i < trial->rows; ++i) {
+            if (trial->row[i][TRIAL_TIME] < run_in)
+                continue;
+            const double *at = trial->wheel + (i * model->wheels + w) * TRIAL_OF_WHEEL;
+            mean += at[TRIAL_WHEEL_LOAD];
+            square += at[TRIAL_WHEEL_LOAD] * at[TRIAL_WHEEL_LOAD];
+            road += at[TRIAL_WHEEL_ROAD];
+            ground += at[TRIAL_WHEEL_ROAD] * at[TRIAL_WHEEL_ROAD];
+            up += at[TRIAL_WHEEL_LOAD] <= 0;
+            ++n;
+        }
+        mean /= n;
+        road /= n;
+        const char *name = model->wheel[w].name;
+        sheet_add(m->result, w ? NULL : "Tires", pool_print(m->pool, "%s.dynamic_load", name),
+                  pool_print(m->pool, "Load of %s, rms of its change over its mean", name), "1",
+                  sqrt(fmax(0, square / n - mean * mean)) / mean);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.lifted", name),
+                  pool_print(m->pool, "Share of the time without load, %s", name), "1", (double)up / n);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.road", name),
+                  pool_print(m->pool, "Road under %s, rms", name), "m", sqrt(fmax(0, ground / n - road * road)));
+    }
+}
+
+void manoeuvre_ride(Manoeuvre *m)
+{
+    static const Channel over[] = {TRIAL_AZ, TRIAL_ROLL, TRIAL_PITCH, TRIAL_LOAD, TRIAL_SPEED};
+    TestCar *car = m->car;
+    const double speed = m->value[0], duration = run_in + m->value[2];
+    double aside[2];
+    const int class = (int)round(m->value[1]);
+    car_need_drive(car);
+    car_need_brake(car);
+    car_settle(car, speed);
+    sheet_axle_place(&car->sheet, &car->sheet.kc->axle[0], &aside[0]);
+    Text more = {.pool = m->pool};
+    text_print(&more,
+               "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n"
+               "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n",
+               'A' + class - 1, ceil(speed * (duration + 2) + 20), m->value[3], 10.0, 2 * aside[0], speed);
+    if (car->axle) /* which keeps it between its tracks */
+        text_print(&more,
+                   "  steering:\n    path: {points: [[-20, 0], [%.9g, 0]]}\n    input: %s\n    per_angle: %.17g\n"
+                   "    wheelbase: %.17g\n",
+                   ceil(speed * (duration + 10) + 100), car->model->input[car->steering].name, 1 / car->angle,
+                   car->sheet.wheelbase);
+    car->output_step = sampling;
+    const Trial *trial = trial_run(car, "ride", car_scene(car, duration, speed, false, more.s), NULL, NULL);
+    if (trial->tipped || trial->end)
+        car_refuse(car, "a smoother road, class=1, or a lower speed",
+                   trial->end ? trial->end : "the vehicle tips over");
+    manoeuvre_keep(m, trial);
+    add_accelerations(m, trial);
+    add_loads(m, trial);
+    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
+        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, over[i]};
+}
