@@ -402,6 +402,9 @@ typedef struct Seeds {
     const void *context;
     int givens; /* nodes whose derivatives are given, [givens] */
     const Ex *given, *slope;
+    bool
+        smooth; /* roots, powers and arcs have slopes, which are differentiated again: no 0 in place of 0 times infinity
+                 */
 } Seeds;
 
 /* The derivative of each node [nodes] that the roots need; of others 0. block: its checks hold; NULL: none do. At a

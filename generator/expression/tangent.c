@@ -14,10 +14,13 @@ static Ex where_moves(Dag *dag, Ex change, Ex then)
     return where_positive(dag, ex_op(dag, OP_ABS, change, 0, 0), then);
 }
 
-/* factor times change; 0 where the change is 0, whatever the factor. */
-static Ex chain(Dag *dag, Ex factor, Ex change)
+/* factor times change; 0 where the change is 0, whatever the factor, but if it is smooth. */
+static Ex chain(Dag *dag, Ex factor, Ex change, bool smooth)
 {
-    return ex_is(dag, change, 0) ? ex_literal(dag, 0) : where_moves(dag, change, ex_mul(dag, factor, change));
+    if (ex_is(dag, change, 0))
+        return ex_literal(dag, 0);
+    const Ex slope = ex_mul(dag, factor, change);
+    return smooth ? slope : where_moves(dag, change, slope);
 }
 
 static Ex sqrt_slope(Dag *dag, Ex root, Ex da, bool positive)
@@ -33,9 +36,9 @@ static Ex arc_factor(Dag *dag, Ex a)
     return ex_div(dag, one, ex_sqrt(dag, ex_sub(dag, one, ex_mul(dag, a, a))));
 }
 
-static Ex pow_slope(Dag *dag, Ex e, Ex a, Ex b, Ex da, Ex db)
+static Ex pow_slope(Dag *dag, Ex e, Ex a, Ex b, Ex da, Ex db, bool smooth)
 {
-    const Ex base = chain(dag, ex_mul(dag, b, ex_pow(dag, a, ex_sub(dag, b, ex_literal(dag, 1)))), da);
+    const Ex base = chain(dag, ex_mul(dag, b, ex_pow(dag, a, ex_sub(dag, b, ex_literal(dag, 1)))), da, smooth);
     if (ex_is(dag, db, 0))
         return base;
     return ex_add(dag, base, where_positive(dag, a, ex_mul(dag, ex_mul(dag, e, ex_op(dag, OP_LOG, a, 0, 0)), db)));
@@ -73,8 +76,9 @@ static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope, bool seve
     return ex_add(dag, ex_mul(dag, along[0], dx), ex_mul(dag, along[1], dy));
 }
 
-/* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0; several: see above. */
-static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool several)
+/* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0; several: see above; smooth: see
+ * Seeds. */
+static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool several, bool smooth)
 {
     const Node node = dag->node[e]; /* a copy: nodes move when there are more */
     const int arity = ex_arity((Op)node.op);
@@ -93,18 +97,18 @@ static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool s
             return ex_mul(dag, ex_add(dag, a, a), da);
         return ex_add(dag, ex_mul(dag, a, db), ex_mul(dag, da, b));
     case OP_DIV: return div_slope(dag, e, a, b, da, db);
-    case OP_SQRT: return sqrt_slope(dag, e, da, positive[a]);
+    case OP_SQRT: return sqrt_slope(dag, e, da, smooth || positive[a]);
     case OP_ABS: return ex_op(dag, OP_POSITIVE, a, da, where_positive(dag, ex_neg(dag, a), ex_neg(dag, da)));
     case OP_SIN: return ex_mul(dag, ex_op(dag, OP_COS, a, 0, 0), da);
     case OP_COS: return ex_neg(dag, ex_mul(dag, ex_op(dag, OP_SIN, a, 0, 0), da));
     case OP_TAN: return ex_mul(dag, ex_add(dag, one, ex_mul(dag, e, e)), da);
-    case OP_ASIN: return chain(dag, arc_factor(dag, a), da);
-    case OP_ACOS: return ex_neg(dag, chain(dag, arc_factor(dag, a), da));
+    case OP_ASIN: return chain(dag, arc_factor(dag, a), da, smooth);
+    case OP_ACOS: return ex_neg(dag, chain(dag, arc_factor(dag, a), da, smooth));
     case OP_ATAN: return ex_div(dag, da, ex_add(dag, one, ex_mul(dag, a, a)));
     case OP_EXP: return ex_mul(dag, e, da);
     case OP_LOG: return ex_div(dag, da, a);
     case OP_TANH: return ex_mul(dag, ex_sub(dag, one, ex_mul(dag, e, e)), da);
-    case OP_POW: return pow_slope(dag, e, a, b, da, db);
+    case OP_POW: return pow_slope(dag, e, a, b, da, db, smooth);
     case OP_ATAN2: return atan2_slope(dag, a, b, da, db);
     case OP_MIN: return ex_op(dag, OP_POSITIVE, ex_sub(dag, b, a), da, db);
     case OP_MAX: return ex_op(dag, OP_POSITIVE, ex_sub(dag, a, b), da, db);
@@ -147,7 +151,7 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
             element.slope = true;
             slope[e] = ex_input(dag, element, NULL);
         } else {
-            slope[e] = slope_of(dag, e, slope, positive, seeds->seed);
+            slope[e] = slope_of(dag, e, slope, positive, seeds->seed, seeds->smooth);
         }
     }
     return slope;

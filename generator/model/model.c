@@ -88,18 +88,53 @@ const char *const joint_type_name[JOINT_TYPES] = {
     [JOINT_PERPENDICULAR] = "perpendicular",
     [JOINT_SCREW] = "screw",
     [JOINT_RACK_AND_PINION] = "rack_and_pinion",
+    [JOINT_GEAR] = "gear",
+    [JOINT_COUPLER] = "coupler",
 };
 
 const int joint_equations[JOINT_TYPES] = {
     [JOINT_REVOLUTE] = 5,      [JOINT_SPHERICAL] = 3,       [JOINT_PRISMATIC] = 5, [JOINT_CYLINDRICAL] = 4,
     [JOINT_UNIVERSAL] = 4,     [JOINT_FIXED] = 6,           [JOINT_DISTANCE] = 1,  [JOINT_REVOLUTE_SPHERICAL] = 2,
     [JOINT_POINT_ON_LINE] = 2, [JOINT_POINT_IN_PLANE] = 1,  [JOINT_PARALLEL] = 2,  [JOINT_PERPENDICULAR] = 1,
-    [JOINT_SCREW] = 1,         [JOINT_RACK_AND_PINION] = 1,
+    [JOINT_SCREW] = 1,         [JOINT_RACK_AND_PINION] = 1, [JOINT_GEAR] = 1,      [JOINT_COUPLER] = 1,
 };
 
 bool joint_is_geared(JointType type)
 {
     return type == JOINT_SCREW || type == JOINT_RACK_AND_PINION;
+}
+
+bool joint_is_coupled(JointType type)
+{
+    return type == JOINT_GEAR || type == JOINT_COUPLER;
+}
+
+int joint_measure(JointType type)
+{
+    return type == JOINT_GEAR ? (int)COORDINATE_ANGLE : type == JOINT_COUPLER ? (int)COORDINATE_TRANSLATION : -1;
+}
+
+bool model_counts_turns(const Model *model)
+{
+    for (int i = 0; i < model->joints; ++i)
+        if (joint_is_geared(model->joint[i].type) || joint_is_coupled(model->joint[i].type))
+            return true;
+    return false;
+}
+
+bool law_follows(const Law *law, int coordinate)
+{
+    if (law->op == LAW_VALUE && (coordinate < 0 || law->index == coordinate))
+        return true;
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        if (law_follows(law->arg[i], coordinate))
+            return true;
+    return false;
+}
+
+bool joint_follows(const Joint *joint, int coordinate)
+{
+    return joint->value && law_follows(joint->value, coordinate);
 }
 
 const char *const coordinate_type_name[COORDINATE_TYPES] = {

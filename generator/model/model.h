@@ -123,6 +123,8 @@ typedef enum JointType {
     JOINT_PERPENDICULAR,
     JOINT_SCREW,
     JOINT_RACK_AND_PINION,
+    JOINT_GEAR,
+    JOINT_COUPLER,
     JOINT_TYPES
 } JointType;
 
@@ -132,15 +134,19 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3]; /* each in the frame of its body; axes are unit vectors */
-    double side[2][3];     /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies; of a rack
-                            * the one that it moves along */
-    double length, offset; /* as in the joint's equations, if the type has them; of a screw, and of a rack with the
-                            * other sign, the way that a turn by 1 rad makes */
-    bool drawn;            /* length and offset are those of the drawing, so that the joint fits without assembly */
+    double side[2][3]; /* a direction perpendicular to the axis of body[0] in the drawing, in both bodies; of a rack
+                        * the one that it moves along */
+    double length,
+        offset;       /* as in the joint's equations, if the type has them; of a screw, and of a rack with the
+                       * other sign, the way that a turn by 1 rad makes; of a gear or coupler `value` at the design */
+    const Law *value; /* of a gear or coupler: the turn or way, of numbers, parameters and coordinates */
+    bool drawn;       /* length and offset are those of the drawing, so that the joint fits without assembly */
 } Joint;
 
 /* True for joints that tie a way to a turn, of which whole turns count. */
 bool joint_is_geared(JointType type);
+/* True for joints that hold what a coordinate measures, see joint_measure(), at a formula of coordinates. */
+bool joint_is_coupled(JointType type);
 
 typedef enum CoordinateType {
     COORDINATE_LENGTH,
@@ -446,6 +452,9 @@ int model_held(const Model *model);
 /* Place of a rule's formula among the components of outputs; -1: it has none. */
 int rule_output(const Model *model, const ControlRule *rule);
 
+/* True if whole turns of angles move something: adding 2 pi to one is another configuration. */
+bool model_counts_turns(const Model *model);
+
 /* Number of discrete states: one of a free base, and those of a powertrain. */
 int model_discretes(const Model *model);
 /* True if the wheel has a `drive` or the powertrain drives it. */
@@ -469,6 +478,13 @@ bool model_reads(const Model *model, OutputType type);
 /* True if an output asks for the reaction of this joint; for the drive force of this coordinate. */
 bool reaction_wanted(const Model *model, int joint);
 bool drive_wanted(const Model *model, int coordinate);
+
+/* What a joint with a formula holds at its value; -1: the joint has no formula. */
+int joint_measure(JointType type);
+/* True if a formula reads the value of this coordinate; of any if coordinate is -1. */
+bool law_follows(const Law *law, int coordinate);
+/* True if a joint has a formula that does. */
+bool joint_follows(const Joint *joint, int coordinate);
 
 /* Call `see` for the signals that a formula reads by name, without those which they read in turn; law NULL: none. */
 void law_signals(const Law *law, void (*see)(void *user, const Law *signal), void *user);

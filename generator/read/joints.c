@@ -16,13 +16,14 @@
 #define LINKS (FORM(JOINT_DISTANCE) | FORM(JOINT_REVOLUTE_SPHERICAL))
 #define ONE_AXIS \
     (FORM(JOINT_REVOLUTE) | FORM(JOINT_PRISMATIC) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_REVOLUTE_SPHERICAL) | \
-     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | FORM(JOINT_PARALLEL) | FORM(JOINT_SCREW))
+     FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | FORM(JOINT_PARALLEL) | FORM(JOINT_SCREW) | COUPLED)
 #define TWO_AXES (FORM(JOINT_UNIVERSAL) | FORM(JOINT_PERPENDICULAR) | FORM(JOINT_RACK_AND_PINION))
 #define GEARED (FORM(JOINT_SCREW) | FORM(JOINT_RACK_AND_PINION))
 #define ONE_POINT \
     (FORM(JOINT_REVOLUTE) | FORM(JOINT_SPHERICAL) | FORM(JOINT_CYLINDRICAL) | FORM(JOINT_UNIVERSAL) | \
      FORM(JOINT_POINT_ON_LINE) | FORM(JOINT_POINT_IN_PLANE) | GEARED)
-#define MAYBE_POINT (FORM(JOINT_PRISMATIC) | FORM(JOINT_FIXED))
+#define COUPLED (FORM(JOINT_GEAR) | FORM(JOINT_COUPLER))
+#define MAYBE_POINT (FORM(JOINT_PRISMATIC) | FORM(JOINT_FIXED) | COUPLED)
 
 enum {
     LINK_TYPE,
@@ -34,6 +35,7 @@ enum {
     LINK_LENGTH,
     LINK_OFFSET,
     LINK_RATIO,
+    LINK_VALUE,
     LINK_KEYS
 };
 
@@ -42,11 +44,12 @@ static const Key joint_key[LINK_KEYS] = {
     [LINK_BODIES] = {"bodies", KEY_BODIES, ALL_FORMS, ALL_FORMS, BOUND_NONE, 0},
     [LINK_POINT] = {"point", KEY_POINT, ONE_POINT | MAYBE_POINT, ONE_POINT, BOUND_NONE, 0},
     [LINK_POINTS] = {"points", KEY_POINTS, LINKS, LINKS, BOUND_NONE, 0},
-    [LINK_AXIS] = {"axis", KEY_AXIS, ONE_AXIS, ONE_AXIS, BOUND_NONE, 0},
+    [LINK_AXIS] = {"axis", KEY_DUAL_AXIS, ONE_AXIS, ONE_AXIS, BOUND_NONE, 0},
     [LINK_AXES] = {"axes", KEY_AXES, TWO_AXES, TWO_AXES, BOUND_NONE, 0},
     [LINK_LENGTH] = {"length", KEY_MEASURE, LINKS, 0, BOUND_POSITIVE, 0},
     [LINK_OFFSET] = {"offset", KEY_MEASURE, FORM(JOINT_REVOLUTE_SPHERICAL), 0, BOUND_NONE, 0},
     [LINK_RATIO] = {"ratio", KEY_ODD, GEARED, GEARED, BOUND_NONE, 0},
+    [LINK_VALUE] = {"value", KEY_FORMULA, COUPLED, COUPLED, BOUND_NONE, 0},
 };
 
 /* Given lengths and offsets that differ from the drawing's by less than this share of the length count as equal. */
@@ -66,6 +69,8 @@ static const char *const joint_about[LINK_KEYS] = {
     [LINK_LENGTH] = "distance of the points, m; default: in the drawing",
     [LINK_OFFSET] = "part of the distance along the axis, m; default: in the drawing",
     [LINK_RATIO] = "way for a turn by 1 rad, m",
+    [LINK_VALUE] = "how far b turns about the axis (gear), rad, or moves along it (coupler), m: a smooth formula of "
+                   "coordinates, of which the difference to its value at design counts",
 };
 
 const Section joint_section = {joint_key, LINK_KEYS, joint_type_name, JOINT_TYPES, joint_type_name, NULL, joint_about};
@@ -285,6 +290,98 @@ void joints_read(Reader *reader, const Item *map)
     model->joint = pool_alloc(reader->pool, sizeof *model->joint * (size_t)(model->joints + 1));
     for (int i = 0; i < model->joints; ++i)
         joint_read(reader, entry + i, model->joint + i);
+}
+
+/* What a formula of a gear or coupler may not have; NULL: nothing. */
+static const char *unfit(const Law *law)
+{
+    static const char *const read[] = {
+        [LAW_INPUT] = "an input", [LAW_STATE] = "a state", [LAW_RATE] = "a rate", [LAW_TIME] = "time"};
+    const char *found = NULL;
+    switch (law->op) {
+    case LAW_INPUT:
+    case LAW_STATE:
+    case LAW_RATE:
+    case LAW_TIME: return read[law->op];
+    case LAW_TABLE: return "a table, which bends at its points";
+    case LAW_CALL:
+        if (law->call == OP_ABS || law->call == OP_MIN || law->call == OP_MAX || law->call == OP_POSITIVE)
+            return "`abs`, `min`, `max`, `if` or a condition, which bend or jump";
+        break;
+    default: break;
+    }
+    for (int i = 0; i < 3 && law->arg[i] && !found; ++i)
+        found = unfit(law->arg[i]);
+    return found;
+}
+
+/* The formula at the design values of the coordinates. */
+static Ex at_design(const Model *model, const Law *law)
+{
+    Ex arg[3] = {0};
+    if (law->op == LAW_VALUE)
+        return tuned_or_fixed(model, &model->coordinate[law->index].design);
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        arg[i] = at_design(model, law->arg[i]);
+    return law_top(model->tuning->dag, model, law, arg);
+}
+
+static double number_at_design(const Model *model, const Law *law)
+{
+    double x[3] = {0};
+    if (law->op == LAW_VALUE)
+        return model->coordinate[law->index].design;
+    if (law->op != LAW_CALL)
+        return law_number(law, model);
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        x[i] = number_at_design(model, law->arg[i]);
+    return op_value((Op)law->call, x[0], x[1], x[2]);
+}
+
+/* Parameters in a formula are numbers of the model, so that tunable ones act at set-up. */
+static void tune_parameters(const Model *model, const Law *law)
+{
+    if (law->op == LAW_PARAMETER) {
+        const Ex formula = law_expression(model->tuning->dag, model, law);
+        tuning_set(model->tuning, &law->number, &formula, 1);
+    }
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        tune_parameters(model, law->arg[i]);
+}
+
+static void coupler_read(Reader *reader, const Entry *entry, Joint *joint)
+{
+    const Model *model = reader->model;
+    const Item *item = doc_find(entry->item, joint_key[LINK_VALUE].name);
+    const char *what = pool_print(reader->pool, "value of %s", entry->what);
+    const LawNames names = {.model = model, .remedy = "write a formula of coordinates, numbers and parameters"};
+    const Law *law = law_parse(reader->pool, item, what, &names);
+    const char *wrong = unfit(law);
+    if (wrong)
+        diag_fail(item->at,
+                  "write a smooth formula of coordinates, numbers and parameters; what inputs and time move is a "
+                  "coordinate with `driven: true`",
+                  "%s has %s", what, wrong);
+    if (!law_follows(law, -1))
+        diag_fail(item->at, "name a coordinate in it, or take another joint",
+                  "%s follows no coordinate: nothing would move", what);
+    const Ex tuned = at_design(model, law);
+    joint->value = law;
+    joint->offset = number_at_design(model, law);
+    if (!isfinite(joint->offset))
+        diag_fail(item->at, "look for a division by zero or a root of a negative number",
+                  "%s is not a finite number at the design", what);
+    tuning_set(model->tuning, &joint->offset, &tuned, 1);
+    tune_parameters(model, law);
+}
+
+void couplers_read(Reader *reader, const Item *map)
+{
+    Model *model = reader->model;
+    Entry *entry = section_entries(reader, map, "joint", &model->joints);
+    for (int i = 0; i < model->joints; ++i)
+        if (joint_is_coupled(model->joint[i].type))
+            coupler_read(reader, entry + i, model->joint + i);
 }
 
 /* The given range or the default one around the design value. */

@@ -127,6 +127,7 @@ static const Model *read_model(Pool *pool, const Item *whole)
     ports_read(&reader, value[FILE_PORTS].item);
     states_declare(&reader, value[FILE_STATES].item);
     controllers_declare(&reader, value[FILE_CONTROLLERS].item);
+    couplers_read(&reader, value[FILE_JOINTS].item);
     signals_read(&reader, value[FILE_SIGNALS].item);
     forces_read(&reader, value[FILE_FORCES].item);
     tires_read(&reader, value[FILE_TIRES].item);

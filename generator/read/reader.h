@@ -38,7 +38,7 @@ typedef enum KeyKind {
     KEY_VECTOR,        /* number[0..2] */
     KEY_AXIS,          /* number[0..2], unit length */
     KEY_TURN,          /* as KEY_AXIS; an axis of rotation, which the mirror reverses (axial vector) */
-    KEY_DUAL_AXIS,     /* as KEY_TURN if the type is `angle`, else as KEY_AXIS */
+    KEY_DUAL_AXIS,     /* as KEY_TURN if the type is `angle` or `gear`, else as KEY_AXIS */
     KEY_AXES,          /* number[0..2], number[3..5], each of unit length */
     KEY_EULER,         /* number[0..3] */
     KEY_POINT,         /* number[0..2] */
@@ -255,6 +255,8 @@ void tables_read(Reader *reader, const Item *map);
 void ports_read(Reader *reader, const Item *map);
 
 void joints_read(Reader *reader, const Item *map);
+/* Formulas of gears and couplers, once all names are known that formulas may contain. */
+void couplers_read(Reader *reader, const Item *map);
 void coordinates_read(Reader *reader, const Item *map);
 void inputs_read(Reader *reader, const Item *map);
 void forces_read(Reader *reader, const Item *map);

@@ -297,7 +297,8 @@ static KeyKind kind_of(const Section *section, const Item *map, const char *name
     if (kind != KEY_DUAL_AXIS)
         return kind;
     const Item *type = doc_find(map, "type");
-    bool angle = type && type->kind == ITEM_SCALAR && !strcmp(type->text, coordinate_type_name[COORDINATE_ANGLE]);
+    const char *word = type && type->kind == ITEM_SCALAR ? type->text : "";
+    bool angle = !strcmp(word, coordinate_type_name[COORDINATE_ANGLE]) || !strcmp(word, joint_type_name[JOINT_GEAR]);
     return angle ? KEY_TURN : KEY_AXIS;
 }
 

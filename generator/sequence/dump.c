@@ -118,10 +118,16 @@ static bool has_points(JointType type)
     return type != JOINT_PARALLEL && type != JOINT_PERPENDICULAR;
 }
 
+/* Members of joints that measure a turn. */
+static bool has_sides(JointType type)
+{
+    return joint_is_geared(type) || joint_is_coupled(type);
+}
+
 static bool has_axis_b(JointType type)
 {
     return type == JOINT_REVOLUTE || type == JOINT_PRISMATIC || type == JOINT_CYLINDRICAL || type == JOINT_UNIVERSAL ||
-           type == JOINT_PARALLEL || type == JOINT_PERPENDICULAR || joint_is_geared(type);
+           type == JOINT_PARALLEL || type == JOINT_PERPENDICULAR || has_sides(type);
 }
 
 static bool has_axis_a(JointType type)
@@ -129,6 +135,9 @@ static bool has_axis_a(JointType type)
     return has_axis_b(type) || type == JOINT_REVOLUTE_SPHERICAL || type == JOINT_POINT_ON_LINE ||
            type == JOINT_POINT_IN_PLANE;
 }
+
+static void formula(Text *out, const Law *law, const Model *model);
+static void formula_pair(Text *out, const char *name, const Law *law, const Model *model);
 
 static void joints(Text *out, const Model *model)
 {
@@ -144,9 +153,11 @@ static void joints(Text *out, const Model *model)
         number_pair(out, "axis_a", joint->axis[0], 3, has_axis_a(joint->type));
         number_pair(out, "axis_b", joint->axis[1], 3, has_axis_b(joint->type));
         number_pair(out, "length", &joint->length, 0, hinged || joint->type == JOINT_DISTANCE);
-        number_pair(out, "offset", &joint->offset, 0, hinged || joint_is_geared(joint->type));
-        for (int k = 0; k < 2 && joint_is_geared(joint->type); ++k)
+        number_pair(out, "offset", &joint->offset, 0, hinged || has_sides(joint->type));
+        for (int k = 0; k < 2 && has_sides(joint->type); ++k)
             number_pair(out, k ? "side_b" : "side_a", joint->side[k], 3, true);
+        if (joint->value)
+            formula_pair(out, "value", joint->value, model);
         add(out, "}");
     }
 }
@@ -173,9 +184,6 @@ static void coordinates(Text *out, const Model *model)
         add(out, coordinate->driven ? "true}" : "false}");
     }
 }
-
-static void formula(Text *out, const Law *law, const Model *model);
-static void formula_pair(Text *out, const char *name, const Law *law, const Model *model);
 
 /* A signal by its formula; a component of an output by all that it follows. */
 static void signal_read(Text *out, const Law *law, const Model *model)

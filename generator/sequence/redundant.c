@@ -61,6 +61,8 @@ static Link link_of(const Model *model, const int *local, int edge)
             to_model(model, j->body[0], j->side[0], false, link.axis[1]);
         link.length = j->length;
         link.offset = j->offset;
+        link.coordinate = joint_is_coupled(j->type); /* it holds bodies as one does */
+        link.kind = link.coordinate ? (CoordinateType)joint_measure(j->type) : COORDINATE_LENGTH;
         return link;
     }
     const Coordinate *c = &model->coordinate[edge - model->joints];

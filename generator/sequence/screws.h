@@ -47,7 +47,7 @@ typedef struct Relax {
 
 /* True if the type is one of these letters: a revolute, b spherical, c prismatic, d cylindrical, e universal, f fixed,
  * g distance, h revolute_spherical, i point_on_line, j point_in_plane, k parallel, l perpendicular,
- * m screw, n rack_and_pinion. */
+ * m screw, n rack_and_pinion, o gear, p coupler. */
 bool screws_have(JointType type, const char *letters);
 /* Rank of the first `count` links without link `without` (-1: none) and without removed ones, with `other` (NULL:
  * none), at a configuration; *least: the smallest pivot. */

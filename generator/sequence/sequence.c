@@ -277,26 +277,33 @@ static void vertices_paint(Finder *finder, Vertex *vertex, int count, int carrie
     knowns_share(finder, vertex, count, -1);
 }
 
-/* Own coordinates, then those of the knowns but for a carrier, each once. Leaves their positions in finder->position.
- */
+static void dep_add(Finder *finder, Subset *subset, int coordinate)
+{
+    if (finder->position[coordinate] >= 0)
+        return;
+    finder->position[coordinate] = subset->deps;
+    subset->dep[subset->deps++] = coordinate;
+}
+
+/* Own coordinates, then those of the knowns but for a carrier, then those that joints follow, each once. Leaves their
+ * positions in finder->position. */
 static void deps_fill(Finder *finder, Subset *subset)
 {
-    int most = subset->coordinates;
+    int most = subset->coordinates + finder->model->coordinates;
     for (int i = 0; i < subset->knowns; ++i)
         most += subset_of(finder, subset->known[i])->deps;
     subset->dep = ints(finder->pool, most, 0);
-    for (int i = 0; i < subset->coordinates; ++i) {
-        finder->position[subset->coordinate[i]] = subset->deps;
-        subset->dep[subset->deps++] = subset->coordinate[i];
-    }
+    for (int i = 0; i < subset->coordinates; ++i)
+        dep_add(finder, subset, subset->coordinate[i]);
     for (int i = 0; i < subset->knowns; ++i) {
         const Subset *known = subset_of(finder, subset->known[i]);
         for (int d = 0; d < known->deps && subset->known[i] != subset->carrier; ++d)
-            if (finder->position[known->dep[d]] < 0) {
-                finder->position[known->dep[d]] = subset->deps;
-                subset->dep[subset->deps++] = known->dep[d];
-            }
+            dep_add(finder, subset, known->dep[d]);
     }
+    for (int i = 0; i < subset->joints; ++i)
+        for (int c = 0; c < finder->model->coordinates; ++c)
+            if (joint_follows(&finder->model->joint[subset->joint[i]], c))
+                dep_add(finder, subset, c);
 }
 
 /* Find the knowns and dependences of a subset and bring its lists into canonical order. */
@@ -367,6 +374,8 @@ static Signature signature_make(Finder *finder, int index)
     for (int i = 0; i < subset->joints; ++i) {
         const Joint *joint = &model->joint[subset->joint[i]];
         signature_add_edge(finder, &signature, (int)joint->type, joint->body);
+        if (joint->value) /* its formula is its own */
+            signature_add(finder, &signature, subset->joint[i]);
     }
     for (int i = 0; i < subset->coordinates; ++i) {
         const Coordinate *coordinate = &model->coordinate[subset->coordinate[i]];

@@ -167,8 +167,8 @@ static bool joint_fits(const Search *s, const Joint *a, const Joint *b, bool swa
 {
     double sign = 0;
     /* a way and a turn: their signs in the mirror are not looked into */
-    bool fits =
-        a->type == b->type && !joint_is_geared(a->type) && a->length == b->length && (!swapped || has_equal_ends(a));
+    bool fits = a->type == b->type && !joint_is_geared(a->type) && !joint_is_coupled(a->type) &&
+                a->length == b->length && (!swapped || has_equal_ends(a));
     for (int end = 0; end < 2 && fits; ++end) {
         const int other = swapped ? 1 - end : end;
         fits = b->body[other] == body_image(s, a->body[end]) && point_fits(a, end, b, other);

@@ -38,10 +38,17 @@ const int joint_parts[JOINT_TYPES] = {
     [JOINT_PERPENDICULAR] = PART_CROSS,
     [JOINT_SCREW] = PART_GEAR,
     [JOINT_RACK_AND_PINION] = PART_GEAR,
+    [JOINT_GEAR] = PART_HELD,
+    [JOINT_COUPLER] = PART_HELD,
 };
 
 /* Parts that need points. */
 static const int parts_with_points = PART_POINT | PART_LINE | PART_LENGTH | PART_ALONG | PART_GEAR;
+
+static bool joint_has_points(JointType type)
+{
+    return joint_parts[type] & parts_with_points || type == JOINT_COUPLER;
+}
 
 /* Differences and unit vectors carry the rounding of their computation: values this near to 0 or 1 are taken as 0 or 1.
  */
@@ -73,7 +80,7 @@ static void relative_points(const int body[2], const double point[2][3], const d
 void fixture_of_joint(const Joint *joint, const double (*origin)[3], double number[FIXTURE_NUMBERS])
 {
     memset(number, 0, FIXTURE_NUMBERS * sizeof number[0]);
-    if (joint_parts[joint->type] & parts_with_points)
+    if (joint_has_points(joint->type))
         relative_points(joint->body, joint->point, origin, number);
     memcpy(number + NUMBER_AXIS, joint->axis, sizeof joint->axis);
     for (int end = 0; end < 2; ++end) {
@@ -153,7 +160,7 @@ void fixture_tuned_joint(const Model *model, const Joint *joint, const double (*
     formula[NUMBER_SQUARE] = ex_mul(dag, length, length);
     formula[NUMBER_OFFSET] = tuned_or_fixed(model, &joint->offset);
     drop_fixed(dag, formula, FIXTURE_NUMBERS);
-    if (joint_parts[joint->type] & parts_with_points)
+    if (joint_has_points(joint->type))
         tuned_points(model, joint->body, joint->point, origin, formula);
 }
 

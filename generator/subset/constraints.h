@@ -15,7 +15,8 @@ enum {
     PART_LENGTH = 16,  /* norm(x_b - x_a): 1 */
     PART_ALONG = 32,   /* u_a . (x_b - x_a): 1 */
     PART_CROSS = 64,   /* u_a perpendicular to u_b: 1 */
-    PART_GEAR = 128    /* a turn about u_a goes with u_a . (x_b - x_a), or with a side of it: 1 */
+    PART_GEAR = 128,   /* a turn about u_a goes with u_a . (x_b - x_a), or with a side of it: 1 */
+    PART_HELD = 256    /* as for a dual coordinate, at the value of a formula: 1 */
 };
 
 extern const int joint_parts[JOINT_TYPES];

@@ -91,9 +91,7 @@ static bool reassemble(Work *w, const Subset *member, int sample, double *q, dou
                 largest = fmax(
                     largest, fabs(wide[r][j] = ex_value(w->dag, w->J[n * r + j], sample) / (j % 6 < 3 ? w->size : 1)));
             for (int j = 0; j < member->deps; ++j)
-                largest = fmax(largest, fabs(wide[r][n + j] = tie->is_coordinate && tie->dep == j
-                                                                  ? ex_value(w->dag, w->row[r].dual, sample)
-                                                                  : 0));
+                largest = fmax(largest, fabs(wide[r][n + j] = subset_dual_value(w, tie, r, j, sample)));
             b[r] = -ex_value(w->dag, w->row[r].value, sample) / largest;
             for (int j = 0; j < n + member->deps; ++j)
                 wide[r][j] /= largest;

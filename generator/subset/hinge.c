@@ -53,7 +53,7 @@ static Ex common_sign(const Work *w, const Ex a[3], const Ex b[3])
 
 static Hinge hinge_of(const Work *w, const Connection *angle)
 {
-    if (w->model->coordinate[angle->index].type != COORDINATE_ANGLE)
+    if (angle->measure != COORDINATE_ANGLE)
         return (Hinge){.tie = NULL};
     for (int i = 0; i < w->connections; ++i) {
         const Connection *tie = &w->connection[i];

@@ -31,8 +31,7 @@ static int place_of(const int *list, int count, int what)
 
 /* ---- the class's data --------------------------------------------------------------------------------------- */
 
-/* A number of every member: a constant of the class, or an input d[] if it follows tunable parameters. */
-static Ex class_number(Work *w, const double *value, const Ex *formula)
+Ex subset_number(Work *w, const double *value, const Ex *formula)
 {
     int members = w->class->members, slot = 0;
     Ex own[members], opposite[members];
@@ -70,7 +69,7 @@ Ex subset_constant(Work *w, SubsetNumber *get, int a, int b)
         formula[i] = 0;
         value[i] = get(w, i, a, b, &formula[i]);
     }
-    return class_number(w, value, formula);
+    return subset_number(w, value, formula);
 }
 
 static void make_fixture(Work *w, Connection *tie, int position)
@@ -96,7 +95,7 @@ static void make_fixture(Work *w, Connection *tie, int position)
             value[i] = number[i][j];
             formula[i] = tuned_number[i][j];
         }
-        out[j] = class_number(w, value, formula);
+        out[j] = subset_number(w, value, formula);
         ex_describe(w->dag, out[j], "%s.%s", connection_name(w, tie), fixture_name(j));
     }
 }
@@ -129,6 +128,8 @@ static void make_connections(Work *w)
             tie->end[end] = end_of(w, body[end]);
         if (tie->is_coordinate)
             tie->dep = place_of(first->dep, first->deps, tie->index);
+        tie->measure = tie->is_coordinate ? (int)w->model->coordinate[tie->index].type
+                                          : joint_measure(w->model->joint[tie->index].type);
         make_fixture(w, tie, position);
     }
 }
@@ -204,11 +205,12 @@ static void make_rows(Work *w, const Motion *unknown, Row *row, int *row_of)
                 motion_side(w->dag, &turned, tie->fixture.side[j][0], tie->across[j]);
             end[0] = &turned;
         }
-        if (tie->is_coordinate) {
-            row[rows] = coordinate_row(w->dag, w->model->coordinate[tie->index].type, &tie->fixture, end,
-                                       w->x[tie->dep], w->rate[tie->dep]);
+        if (tie->measure >= 0) {
+            row[rows] = coordinate_row(w->dag, (CoordinateType)tie->measure, &tie->fixture, end, tie->x, tie->rate);
             if (!w->plain)
                 subset_hinge_row(w, tie, end, &row[rows]);
+            if (tie->second)
+                row[rows].bias = ex_add(w->dag, row[rows].bias, ex_mul(w->dag, row[rows].dual, tie->second));
         } else {
             made = joint_rows(w->dag, w->model->joint[tie->index].type, &tie->fixture, end,
                               tie->end[0].unknown >= 0 && tie->end[1].unknown < 0, row + rows);
@@ -365,7 +367,7 @@ static void unit_rate(Work *w, int j, Ex *b)
 {
     for (int r = 0; r < w->n; ++r) {
         const Connection *tie = &w->connection[w->row_of[r]];
-        Ex sum = tie->is_coordinate && tie->dep == j ? w->row[r].dual : 0;
+        Ex sum = subset_dual(w, tie, &w->row[r], j);
         for (int end = 0; end < 2; ++end)
             if (tie->end[end].known >= 0 && !w->anchored)
                 for (int i = 0; i < 6; ++i)
@@ -445,6 +447,7 @@ Work *subset_open(Pool *pool, const Model *model, const Sequence *sequence, cons
     w->alive = pool_alloc(pool, (size_t)w->dag->samples * sizeof *w->alive);
     make_connections(w);
     make_motions(w);
+    subset_measures(w);
     w->size = subset_size(w);
     make_rows(w, w->pose, w->row, w->row_of);
     make_jacobian(w, w->row, w->row_of, w->J);

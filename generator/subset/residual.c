@@ -84,8 +84,8 @@ static void make_rows(Residual *r)
 
 static bool is_length(const Work *w, const Connection *tie)
 {
-    return tie->is_coordinate ? w->model->coordinate[tie->index].type == COORDINATE_LENGTH
-                              : (joint_parts[w->model->joint[tie->index].type] & PART_LENGTH) != 0;
+    return tie->measure >= 0 ? tie->measure == COORDINATE_LENGTH
+                             : (joint_parts[w->model->joint[tie->index].type] & PART_LENGTH) != 0;
 }
 
 /* From the row's derivatives at the design; for a length also its present value, which may be much larger than there.
@@ -153,7 +153,7 @@ static const Motion *motion_at(const Residual *r, End end)
 static Ex unit_rate(const Residual *r, int row, int j)
 {
     const Connection *tie = &r->w->connection[r->row_of[row]];
-    Ex sum = tie->is_coordinate && tie->dep == j ? r->row[row].dual : 0;
+    Ex sum = subset_dual(r->w, tie, &r->row[row], j);
     for (int end = 0; end < 2; ++end) {
         const Motion *motion = motion_at(r, tie->end[end]);
         for (int i = 0; motion && i < 6; ++i)
@@ -175,8 +175,9 @@ static Ex unit_error(const Residual *r, int j, Ex *norm)
     for (int i = 0; i < r->w->n; ++i) {
         const Connection *tie = &r->w->connection[r->row_of[i]];
         error = plus(dag, error, ex_mul(dag, r->scale[i], unit_rate(r, i, j)));
-        if (tie->is_coordinate && tie->dep == j)
-            *norm = ex_add(dag, *norm, magnitude(dag, ex_mul(dag, r->scale[i], r->row[i].dual)));
+        const Ex dual = subset_dual(r->w, tie, &r->row[i], j);
+        if (dual)
+            *norm = ex_add(dag, *norm, magnitude(dag, ex_mul(dag, r->scale[i], dual)));
     }
     return error;
 }

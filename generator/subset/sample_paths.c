@@ -133,7 +133,7 @@ static void store_unit_velocities(Work *w, Sampling *sampling, const Subset *mem
     for (int j = 0; j < member->deps; ++j) {
         for (int r = 0; r < w->n; ++r) {
             const Connection *tie = &w->connection[w->row_of[r]];
-            b[r] = tie->is_coordinate && tie->dep == j ? -ex_value(w->dag, w->row[r].dual, s) : 0;
+            b[r] = -subset_dual_value(w, tie, r, j, s);
             for (int end = 0; end < 2 && !w->anchored; ++end) {
                 if (tie->end[end].known < 0)
                     continue;

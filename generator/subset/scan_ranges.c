@@ -55,7 +55,7 @@ static bool scan_subset(Scan *scan, int s, double value, double *q)
         return false;
     subset_get_poses(w, subset, sample, scan->pose);
     for (int r = 0; r < w->n; ++r)
-        if (w->connection[w->row_of[r]].is_coordinate && w->row[r].guard &&
+        if (w->connection[w->row_of[r]].measure >= 0 && w->row[r].guard &&
             !(ex_value(w->dag, w->row[r].guard, sample) > lost_below))
             return false; /* the direction that defines the angle is along its axis */
     const double share = subset_determinant(w, sample) / scan->determinant[s];

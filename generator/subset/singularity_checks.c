@@ -117,8 +117,8 @@ Ex determinant_check(Work *w, Formula *formula, const Factors *factors, bool clo
     Dag *dag = w->dag;
     for (int r = 0; r < w->n; ++r) {
         const Connection *tie = &w->connection[w->row_of[r]];
-        if (w->row[r].guard && !(closed && (tie->is_coordinate ? subset_is_hinged : joint_gives_directions)(w, tie)))
-            block_check(&formula->solve, w->row[r].guard, false, tie->is_coordinate ? determinant_loss : 0,
+        if (w->row[r].guard && !(closed && (tie->measure >= 0 ? subset_is_hinged : joint_gives_directions)(w, tie)))
+            block_check(&formula->solve, w->row[r].guard, false, tie->measure >= 0 ? determinant_loss : 0,
                         GIC_ERROR_SINGULAR);
     }
     const Ex determinant = varying_determinant(w, factors);

@@ -107,8 +107,25 @@ void fixture_tuned_coordinate(const Model *model, const Coordinate *coordinate, 
  * were chosen. */
 int joint_rows(Dag *dag, JointType type, const Fixture *fixture, const Motion *const end[2], int across,
                Row row[ROWS_MAX]);
-/* x, rate: value and rate of the coordinate. */
+/* x, rate: value and rate of the coordinate. Of a joint with a formula (joint_measure()) the same row, x and rate being
+ * those of the formula. */
 Row coordinate_row(Dag *dag, CoordinateType type, const Fixture *fixture, const Motion *const end[2], Ex x, Ex rate);
+
+/* ---- coupling.c: formulas of gears and couplers */
+
+/* A formula f of coordinates x. */
+typedef struct Coupling {
+    Ex x, rate; /* f, its rate */
+    Ex second;  /* what remains of its second derivative where those of all coordinates are 0 */
+    Ex *slope;  /* [coordinates of the model] derivatives by them */
+} Coupling;
+
+/* A number that follows tunable parameters. */
+typedef Ex CouplingNumber(void *context, Ex formula, double value);
+
+/* x, rate: [coordinates of the model], those that the formula reads. */
+Coupling coupling_make(Dag *dag, const Model *model, const Law *law, const Ex *x, const Ex *rate,
+                       CouplingNumber *number, void *context);
 
 /* ---- sampling.c: admissible configurations to choose pivots at */
 

@@ -21,6 +21,10 @@ typedef struct Connection {
     End end[2];
     Fixture fixture;
     int dep;         /* index among the deps, of a coordinate */
+    int measure;     /* a CoordinateType, of a coordinate or of a joint with a formula; -1: neither. Then: */
+    Ex x, rate;      /* what is measured */
+    Ex second;       /* what remains of its second derivative where those of the coordinates are 0 */
+    const Ex *slope; /* [deps] derivatives of a formula by the coordinates; NULL: there is none */
     bool still;      /* the first end's axis never turns; then: */
     Ex across[2][3]; /* directions perpendicular to it in the base frame, used instead of `side` */
 } Connection;
@@ -59,6 +63,8 @@ const Subset *subset_member(const Work *w, int i);
 /* A constant of the class from each member's number; *formula: its formula if it follows parameters. */
 typedef double SubsetNumber(const Work *w, int member, int a, int b, Ex *formula);
 Ex subset_constant(Work *w, SubsetNumber *get, int a, int b);
+/* A number of every member [members]: a constant of the class, or an input d[] if it follows tunable parameters. */
+Ex subset_number(Work *w, const double *value, const Ex *formula);
 
 /* length_unit.c. Unit of length of a class, m: the largest distance of a connection's point from its body's reference
  * point; the extent of the bodies, at most 1 m, if that is a hundred times larger; 1 m if all points are reference
@@ -130,6 +136,14 @@ void subset_to_base(const Work *w, const Motion *relative, Motion *out);
  * coordinate, `carrier` being the anchor's (not read: the base). */
 void subset_pose_in_base(const Work *w, int b, int s, double pose[12]);
 void subset_twist_in_base(const Work *w, int b, int s, const double carrier[6], double twist[6]);
+
+/* measures.c: set what connections measure, once their deps are there. */
+void subset_measures(Work *w);
+/* The derivative of a connection's row by dep j; 0 if it measures nothing. */
+Ex subset_dual(const Work *w, const Connection *tie, const Row *row, int j);
+
+/* The same of row r as a number, at sample s. */
+double subset_dual_value(const Work *w, const Connection *tie, int r, int j, int s);
 
 /* The motion of an end of a connection in the subset's frame, for given motions of the unknowns. */
 const Motion *subset_motion(const Work *w, const Motion *unknown, End end);

@@ -48,8 +48,8 @@ static void compare_rows(Comparison *c, Kind which, const double (*x)[BODY_Q], c
         const Tie *tie = &world->tie[t];
         for (int r = 0; r < tie->rows; ++r) {
             double scale = 0, rest = row_product(c, t, r, x, &scale);
-            if (tie->coordinate >= 0) {
-                const double term = world->dual[tie->coordinate] * w[tie->coordinate];
+            if (r == 0) {
+                const double term = world_dual(world, t, w);
                 rest += term;
                 scale += fabs(term);
             }

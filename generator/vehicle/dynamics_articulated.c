@@ -437,13 +437,18 @@ const double articulated_most_mass = 1e4;
 const char *articulated_missing(const Model *model)
 {
     const int first = model->free_base ? BODY_BASE : BODY_BASE + 1;
+    for (int j = 0; j < model->joints; ++j)
+        if (joint_is_coupled(model->joint[j].type))
+            return "does not know joints that follow coordinates of other bodies (gear, coupler)";
     double light = 0, heavy = 0;
     for (int b = first; b < model->bodies; ++b) {
         const double mass = model->body[b].mass;
         light = b == first || mass < light ? mass : light;
         heavy = b == first || mass > heavy ? mass : heavy;
     }
-    return heavy > articulated_most_mass * light ? "a body has more than 10000 times the mass of another" : NULL;
+    return heavy > articulated_most_mass * light
+               ? "would lose digits: a body has more than 10000 times the mass of another"
+               : NULL;
 }
 
 Block *articulated_block(Whole *whole)

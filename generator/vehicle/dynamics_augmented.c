@@ -6,10 +6,12 @@
  *     [ J    0   ] [ lambda       ] = [ -bias                          ]
  *
  * and w'' of the free coordinates behind them, each from its own equation: what acts along a free coordinate acts on
- * the bodies, so that its multiplier vanishes. The equation of a driven coordinate is a constraint like the joints'.
- * Elimination goes in the order of the topology: first the bodies, whose M is m I and J where the centre of mass is
- * their point; then the equations of joints, which couple where they share a body; last a free base, which all of them
- * would couple by. What is left after the bodies is, with the index 0 for the base,
+ * the bodies, so that its multiplier vanishes. The equation of a driven coordinate is a constraint like the joints'. A
+ * joint that follows free coordinates by a formula has their equations added to its own, so that their accelerations
+ * are gone from it: it concerns their bodies, too. Elimination goes in the order of the topology: first the bodies,
+ * whose M is m I and J where the centre of mass is their point; then the equations of joints, which couple where they
+ * share a body; last a free base, which all of them would couple by. What is left after the bodies is, with the index 0
+ * for the base,
  *
  *     [ J M^-1 J^T   J_0  ] [ lambda         ]   [ -bias - J M^-1 (applied less gyroscopic forces) ]
  *     [ J_0^T       -M_0  ] [ acceleration_0 ] = [ -(applied less gyroscopic forces)_0             ]
@@ -28,15 +30,21 @@
 
 #include <string.h>
 
+/* What an equation has to do with a body. */
+typedef struct Side {
+    int body;
+    Ex J[6], Z[6]; /* Z: M^-1 J^T, except for the base */
+} Side;
+
 /* One equation of a joint or a dual coordinate. */
 typedef struct Equation {
-    Row row;
-    int body[2];
+    int sides;
+    Side *side;
+    Ex dual, bias;
     int coordinate; /* the coordinate it belongs to; -1: none */
     int multiplier; /* its place in lambda[] */
     bool wanted;    /* true if an output needs its multiplier */
     Ex held;        /* the part of its multiplier that holds the forces along a driven coordinate */
-    Ex Z[2][6];     /* M^-1 J^T, except for the base */
 } Equation;
 
 typedef struct System {
@@ -120,32 +128,100 @@ static void open_body(System *s, int b)
 
 /* ---- equations ------------------------------------------------------------------------------------------- */
 
+/* Add `factor` times what a row has to do with its bodies. */
+static void add_sides(System *s, Equation *equation, const Row *row, const int body[2], Ex factor)
+{
+    Dag *dag = s->dag;
+    for (int end = 0; end < 2; ++end) {
+        Side *side = equation->side;
+        while (side < equation->side + equation->sides && side->body != body[end])
+            ++side;
+        if (side == equation->side + equation->sides) {
+            side = POOL_PUSH(dag->pool, equation->side, equation->sides);
+            *side = (Side){.body = body[end]};
+        }
+        for (int i = 0; i < 6; ++i)
+            side->J[i] = ex_add(dag, side->J[i], ex_mul(dag, factor, row->J[end][i]));
+    }
+}
+
+static void solve_sides(System *s, Equation *equation)
+{
+    for (Side *side = equation->side; side < equation->side + equation->sides; ++side) {
+        memcpy(side->Z, side->J, sizeof side->Z);
+        if (side->body != BODY_BASE)
+            solve_body(s, side->body, side->Z);
+    }
+}
+
 static void open_equation(System *s, Equation *equation, const Row *row, const int body[2], int coordinate,
                           int multiplier, bool wanted)
 {
-    *equation = (Equation){.row = *row,
+    *equation = (Equation){.dual = row->dual,
+                           .bias = row->bias,
                            .coordinate = coordinate,
                            .multiplier = multiplier,
                            .wanted = wanted,
                            .held = ex_literal(s->dag, 0)};
-    for (int end = 0; end < 2; ++end) {
-        equation->body[end] = body[end];
-        memcpy(equation->Z[end], row->J[end], sizeof equation->Z[end]);
-        if (body[end] != BODY_BASE)
-            solve_body(s, body[end], equation->Z[end]);
+    add_sides(s, equation, row, body, ex_literal(s->dag, 1));
+}
+
+static Row row_of_coordinate(const System *s, int index, const double (*origin)[3])
+{
+    const Coordinate *coordinate = &s->whole->model->coordinate[index];
+    const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
+    Fixture fixture = whole_coordinate_fixture(s->whole, coordinate, origin);
+    return coordinate_row(s->dag, coordinate->type, &fixture, end, s->whole->x[index], s->whole->xd[index]);
+}
+
+/* The row of a joint with a formula f: J q'' + dual f'' + bias = 0, f'' = sum slope w'' + second. Accelerations of free
+ * coordinates come from their own rows, J_w q'' + dual_w w'' + bias_w = 0. */
+static void open_coupler(System *s, int index, const double (*origin)[3], int multiplier)
+{
+    const Model *model = s->whole->model;
+    Dag *dag = s->dag;
+    const Joint *joint = &model->joint[index];
+    const Motion *const end[2] = {&s->motion[joint->body[0]], &s->motion[joint->body[1]]};
+    Fixture fixture = whole_joint_fixture(s->whole, joint, origin);
+    const Coupling f = whole_coupling(s->whole, joint);
+    const Row row = coordinate_row(dag, (CoordinateType)joint_measure(joint->type), &fixture, end, f.x, f.rate);
+    const Ex *driven = whole_driven_accelerations(s->whole);
+    Equation *equation = &s->equation[s->equations++];
+    bool wanted = reaction_wanted(model, index);
+    for (int w = 0; w < model->coordinates; ++w)
+        wanted = wanted || (joint_follows(joint, w) && drive_wanted(model, w));
+    open_equation(s, equation, &row, joint->body, -1, multiplier, wanted);
+    equation->bias = ex_add(dag, equation->bias, ex_mul(dag, row.dual, f.second));
+    for (int w = 0; w < model->coordinates; ++w) {
+        const Ex share = ex_mul(dag, row.dual, f.slope[w]);
+        if (model->coordinate[w].driven) {
+            equation->bias = ex_add(dag, equation->bias, ex_mul(dag, share, driven[w]));
+        } else if (!ex_is(dag, share, 0)) {
+            const Row own = row_of_coordinate(s, w, origin);
+            const Ex factor = ex_neg(dag, ex_div(dag, share, own.dual));
+            add_sides(s, equation, &own, model->coordinate[w].body, factor);
+            equation->bias = ex_add(dag, equation->bias, ex_mul(dag, factor, own.bias));
+        }
     }
+    solve_sides(s, equation);
 }
 
 static int open_joint(System *s, int index, const double (*origin)[3], int multiplier)
 {
     const Joint *joint = &s->whole->model->joint[index];
+    if (joint->value) {
+        open_coupler(s, index, origin, multiplier);
+        return 1;
+    }
     const Motion *const end[2] = {&s->motion[joint->body[0]], &s->motion[joint->body[1]]};
     Fixture fixture = whole_joint_fixture(s->whole, joint, origin);
     Row row[ROWS_MAX];
     int rows = joint_rows(s->dag, joint->type, &fixture, end, sequence_known_end(s->whole->plan->sequence, joint), row);
-    for (int r = 0; r < rows; ++r)
-        open_equation(s, &s->equation[s->equations++], &row[r], joint->body, -1, multiplier + r,
-                      reaction_wanted(s->whole->model, index));
+    for (int r = 0; r < rows; ++r) {
+        Equation *equation = &s->equation[s->equations++];
+        open_equation(s, equation, &row[r], joint->body, -1, multiplier + r, reaction_wanted(s->whole->model, index));
+        solve_sides(s, equation);
+    }
     return rows;
 }
 
@@ -166,11 +242,10 @@ static void open_coordinate(System *s, int index, const double (*origin)[3], int
 {
     Whole *whole = s->whole;
     const Coordinate *coordinate = &whole->model->coordinate[index];
-    const Motion *const end[2] = {&s->motion[coordinate->body[0]], &s->motion[coordinate->body[1]]};
-    Fixture fixture = whole_coordinate_fixture(whole, coordinate, origin);
-    Row row = coordinate_row(s->dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
+    const Row row = row_of_coordinate(s, index, origin);
     Equation *equation = coordinate->driven ? &s->equation[s->equations++] : &s->free[s->frees++];
     open_equation(s, equation, &row, coordinate->body, index, multiplier, drive_wanted(whole->model, index));
+    solve_sides(s, equation);
     const Ex share = ex_div(s->dag, s->loads->own[index], row.dual);
     /* a drive holds what acts along its coordinate, and nothing moves by it: among the wrenches it would leave rounding
      */
@@ -278,15 +353,16 @@ static Ex *reduced_matrix(const System *s)
     for (int i = 0; i < s->equations; ++i) {
         const Equation *a = &s->equation[i];
         for (int j = i; j < s->equations; ++j)
-            for (int k = 0; k < 4; ++k) {
-                const Equation *b = &s->equation[j];
-                if (a->body[k / 2] == b->body[k % 2] && a->body[k / 2] != BODY_BASE)
-                    H[n * i + j] = ex_add(dag, H[n * i + j], dot6(dag, a->row.J[k / 2], b->Z[k % 2]));
+            for (int k = 0; k < a->sides * s->equation[j].sides; ++k) {
+                const Side *own = &a->side[k / s->equation[j].sides];
+                const Side *other = &s->equation[j].side[k % s->equation[j].sides];
+                if (own->body == other->body && own->body != BODY_BASE)
+                    H[n * i + j] = ex_add(dag, H[n * i + j], dot6(dag, own->J, other->Z));
             }
-        for (int end = 0; end < 2; ++end)
-            if (a->body[end] == BODY_BASE)
+        for (const Side *side = a->side; side < a->side + a->sides; ++side)
+            if (side->body == BODY_BASE)
                 for (int j = base; j < n; ++j)
-                    H[n * i + j] = a->row.J[end][j - base];
+                    H[n * i + j] = side->J[j - base];
     }
     for (int i = base; i < n; ++i)
         for (int j = i; j < base + 3; ++j)
@@ -300,11 +376,11 @@ static Ex *reduced_matrix(const System *s)
 static Ex deviation(const System *s, const Equation *equation, const Ex *driven)
 {
     Dag *dag = s->dag;
-    Ex sum = equation->row.bias;
-    for (int end = 0; end < 2; ++end)
-        sum = ex_add(dag, sum, dot6(dag, equation->row.J[end], s->acceleration[equation->body[end]]));
+    Ex sum = equation->bias;
+    for (const Side *side = equation->side; side < equation->side + equation->sides; ++side)
+        sum = ex_add(dag, sum, dot6(dag, side->J, s->acceleration[side->body]));
     if (equation->coordinate >= 0)
-        sum = ex_add(dag, sum, ex_mul(dag, equation->row.dual, driven[equation->coordinate]));
+        sum = ex_add(dag, sum, ex_mul(dag, equation->dual, driven[equation->coordinate]));
     return sum;
 }
 
@@ -323,9 +399,9 @@ static void shortfall(const System *s, const Ex *driven, Ex *out)
     for (int part = 0; part < 6; part += 3)
         ex_sub3(dag, base + part, s->wrench[BODY_BASE] + part, base + part);
     for (int i = 0; i < s->equations; ++i)
-        for (int end = 0; end < 2; ++end)
-            for (int part = 0; part < 6 && s->equation[i].body[end] == BODY_BASE; part += 3) {
-                ex_scale3(dag, s->lambda[i], s->equation[i].row.J[end] + part, t);
+        for (int k = 0; k < s->equation[i].sides; ++k)
+            for (int part = 0; part < 6 && s->equation[i].side[k].body == BODY_BASE; part += 3) {
+                ex_scale3(dag, s->lambda[i], s->equation[i].side[k].J + part, t);
                 ex_sub3(dag, base + part, t, base + part);
             }
 }
@@ -338,11 +414,11 @@ static void add_solution(System *s, const Ex *x)
     Ex t[3];
     for (int i = 0; i < s->equations; ++i) {
         s->lambda[i] = ex_add(dag, s->lambda[i], x[i]);
-        for (int end = 0; end < 2; ++end) {
-            const Equation *equation = &s->equation[i];
-            Ex *acceleration = s->acceleration[equation->body[end]];
-            for (int part = 0; part < 6 && equation->body[end] != BODY_BASE; part += 3) {
-                ex_scale3(dag, x[i], equation->Z[end] + part, t);
+        for (int k = 0; k < s->equation[i].sides; ++k) {
+            const Side *side = &s->equation[i].side[k];
+            Ex *acceleration = s->acceleration[side->body];
+            for (int part = 0; part < 6 && side->body != BODY_BASE; part += 3) {
+                ex_scale3(dag, x[i], side->Z + part, t);
                 ex_add3(dag, acceleration + part, t, acceleration + part);
             }
         }
@@ -373,7 +449,7 @@ static void store_rates(System *s, Block *block, const Ex *driven)
     for (int i = 0; i < s->frees; ++i) {
         const Equation *equation = &s->free[i];
         z[plan->coordinate_unknown[equation->coordinate]] =
-            ex_neg(dag, ex_div(dag, deviation(s, equation, driven), equation->row.dual));
+            ex_neg(dag, ex_div(dag, deviation(s, equation, driven), equation->dual));
     }
     whole_store_rates(whole, block, z);
 }
@@ -382,8 +458,8 @@ static void store_rates(System *s, Block *block, const Ex *driven)
 static int equation_subset(const Whole *whole, const Equation *equation)
 {
     int last = -1;
-    for (int end = 0; end < 2; ++end) {
-        const int own = whole->plan->sequence->body_subset[equation->body[end]];
+    for (int k = 0; k < equation->sides; ++k) {
+        const int own = whole->plan->sequence->body_subset[equation->side[k].body];
         last = own > last ? own : last;
     }
     return last;

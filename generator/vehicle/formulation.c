@@ -106,7 +106,7 @@ static const Sequence *chain_for(Pool *pool, const Model *model, const Sequence 
         return NULL;
     if (missing)
         diag_fail((Place){model->source, 0, 0}, "use the reduced form, which looks at what is left of every inertia",
-                  "the articulated form of the equations of motion would lose digits: %s", missing);
+                  "the articulated form of the equations of motion %s", missing);
     const Sequence *chained = sequence_chain(pool, model, sequence);
     if (!chained && solve == SOLVE_ARTICULATED)
         diag_fail(
@@ -216,10 +216,8 @@ double coordinate_piece(const Formulation *f, int coordinate)
 
 bool coordinate_unwinds(const Formulation *f, int coordinate)
 {
-    for (int i = 0; i < f->model->joints; ++i)
-        if (joint_is_geared(f->model->joint[i].type))
-            return false;
-    return f->model->coordinate[coordinate].type == COORDINATE_ANGLE && coordinate_piece(f, coordinate) < 3;
+    return !model_counts_turns(f->model) && f->model->coordinate[coordinate].type == COORDINATE_ANGLE &&
+           coordinate_piece(f, coordinate) < 3;
 }
 
 void body_design(const Formulation *f, int anchor, int body, double q[7])

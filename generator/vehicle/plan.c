@@ -287,6 +287,16 @@ Fixture whole_coordinate_fixture(Whole *whole, const Coordinate *coordinate, con
     return whole_fixture(whole, number, formula);
 }
 
+static Ex coupling_number(void *context, Ex formula, double value)
+{
+    return derived_number(context, formula, value);
+}
+
+Coupling whole_coupling(Whole *whole, const Joint *joint)
+{
+    return coupling_make(whole->dag, whole->model, joint->value, whole->x, whole->xd, coupling_number, whole);
+}
+
 void whole_position(Whole *whole, const Vector *point, Ex out[3])
 {
     ex_apply(whole->dag, whole->R, point->v, out);

@@ -51,6 +51,20 @@ static int multiplier_place(const Plan *plan, bool is_coordinate, int index)
     return -1;
 }
 
+/* What a joint that follows a coordinate takes from its drive: its dual times slope times its multiplier. */
+static Ex coupler_share(Whole *whole, int index, int coordinate)
+{
+    Dag *dag = whole->dag;
+    const Plan *plan = whole->plan;
+    const Joint *joint = &whole->model->joint[index];
+    const Motion *const end[2] = {&whole->motion[joint->body[0]], &whole->motion[joint->body[1]]};
+    Fixture fixture = whole_joint_fixture(whole, joint, plan->origin);
+    const Coupling f = whole_coupling(whole, joint);
+    const Row row = coordinate_row(dag, (CoordinateType)joint_measure(joint->type), &fixture, end, f.x, f.rate);
+    const Ex lambda = ex_input(dag, element_at(ARRAY_lambda, multiplier_place(plan, false, index)), NULL);
+    return ex_mul(dag, ex_mul(dag, row.dual, f.slope[coordinate]), lambda);
+}
+
 Ex whole_drive_reaction(Whole *whole, int index)
 {
     Dag *dag = whole->dag;
@@ -61,7 +75,11 @@ Ex whole_drive_reaction(Whole *whole, int index)
     Row row = coordinate_row(dag, coordinate->type, &fixture, end, whole->x[index], whole->xd[index]);
     Ex lambda = ex_input(dag, element_at(ARRAY_lambda, multiplier_place(plan, true, index)), NULL);
     /* J^T lambda acts on the bodies; J twist = -dual w' */
-    return ex_neg(dag, ex_mul(dag, row.dual, lambda));
+    Ex force = ex_mul(dag, row.dual, lambda);
+    for (int i = 0; i < whole->model->joints; ++i)
+        if (joint_follows(&whole->model->joint[i], index))
+            force = ex_add(dag, force, coupler_share(whole, i, index));
+    return ex_neg(dag, force);
 }
 
 /* Forces along the directions that the recovery used across the first body's axis. */
@@ -106,8 +124,12 @@ void whole_reaction(Whole *whole, int index, Ex force[3], Ex torque[3])
     if (plan->solve != SOLVE_AUGMENTED)
         add_across(whole, index, &fixture, &first);
     Row row[ROWS_MAX];
-    int rows = joint_rows(dag, joint->type, &fixture, end, sequence_known_end(plan->sequence, joint), row),
-        place = multiplier_place(plan, false, index);
+    int rows = 1, place = multiplier_place(plan, false, index);
+    if (joint->value)
+        row[0] = coordinate_row(dag, (CoordinateType)joint_measure(joint->type), &fixture, end,
+                                whole_coupling(whole, joint).x, ex_literal(dag, 0));
+    else
+        rows = joint_rows(dag, joint->type, &fixture, end, sequence_known_end(plan->sequence, joint), row);
     ex_zero3(dag, force);
     ex_zero3(dag, torque);
     for (int r = 0; r < rows; ++r) {

@@ -107,6 +107,8 @@ Vector whole_point(Whole *whole, int body, const double s[3]);
 /* Fixtures of a joint or coordinate in this graph; origin: reference points. */
 Fixture whole_joint_fixture(Whole *whole, const Joint *joint, const double (*origin)[3]);
 Fixture whole_coordinate_fixture(Whole *whole, const Coordinate *coordinate, const double (*origin)[3]);
+/* What a joint with a formula measures, by the coordinates. */
+Coupling whole_coupling(Whole *whole, const Joint *joint);
 /* World position and velocity of a point given relative to the base. */
 void whole_position(Whole *whole, const Vector *point, Ex out[3]);
 void whole_velocity(Whole *whole, const Vector *point, Ex out[3]);
@@ -233,8 +235,8 @@ Block *dynamics_block(Whole *whole);
 /* dynamics_articulated.c: the same for a chained sequence; coordinates of carried subsets are eliminated from the tips.
  */
 Block *articulated_block(Whole *whole);
-/* Reason why the articulated form can't be used for a model; NULL: it can. articulated_most_mass: largest ratio of
- * masses, tuned ones included. */
+/* Why the articulated form can't be used for a model: "would lose digits: ..."; NULL: it can. articulated_most_mass:
+ * largest ratio of masses, tuned ones included. */
 extern const double articulated_most_mass;
 const char *articulated_missing(const Model *model);
 /* Accelerations of the driven coordinates, which are inputs; 0 for the others [coordinates]. */
@@ -359,8 +361,8 @@ StateNumber state_number(Pool *pool, const Formulation *f, int index);
 /* The largest change of a coordinate that is followed in one piece: no body turns by more than about a tenth of a
  * radian. */
 double coordinate_piece(const Formulation *f, int coordinate);
-/* True for an angle whose pieces are less than half a turn, in a model without screws and racks: adding 2 pi changes no
- * pose. */
+/* True for an angle whose pieces are less than half a turn, in a model without joints that count turns: adding 2 pi
+ * changes no pose. */
 bool coordinate_unwinds(const Formulation *f, int coordinate);
 /* Design pose of a body relative to the base, as in a Newton start: reference point, Euler parameters; for a model with
  * a tuning the drawn pose, where set-up begins. */

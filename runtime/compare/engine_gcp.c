@@ -7,8 +7,10 @@
  * The state is all of q and q'. Of it the right-hand side uses the independent ones; the dependent ones, integrated
  * along, are where Newton begins, so that it has little to do, and their rates' history is there when the choice
  * changes: no multistep history is lost. */
+#include "base/message.h"
 #include "base/random.h"
 #include "compare/compare.h"
+#include "compare/coupled.h"
 #include "compare/interpreted.h"
 #include "compare/partition.h"
 #include "engine/engine.h"
@@ -41,6 +43,8 @@ typedef struct Gcp {
     const Instance *recovered; /* the instance whose Jacobian the World holds; NULL: none, because its recovery
                                 * failed */
     int (*outputs)(void *self), (*poses)(void *self, double *pose);
+    CoupledRows coupled; /* of gears and couplers */
+    const double *near;  /* [coordinates] where the instance that is being evaluated has been */
     int columns;
     double *b; /* [rows of the partition] */
 } Gcp;
@@ -75,18 +79,21 @@ static int column_of(const World *world, int body)
 }
 
 /* Phi_q at the World's configuration, of which the partition reads the numbers. */
-static bool find_jacobian(World *world)
+static bool find_jacobian(const Gcp *gcp, World *world)
 {
     bool right = true;
+    coupled_rows_place(&gcp->coupled, world, gcp->near);
     for (int t = 0; t < world->constraints; ++t)
         right = world_rows(world, t) && right;
+    coupled_rows_differentiate(&gcp->coupled, world);
     return right;
 }
 
-static bool refactor(World *world, Partition *partition, EngineProfile *profile)
+static bool refactor(const Gcp *gcp, World *world, EngineProfile *profile)
 {
+    Partition *partition = gcp->partition;
     ++profile->factorizations;
-    find_jacobian(world);
+    find_jacobian(gcp, world);
     const double begun = profile_clock(profile);
     const bool good = partition_factor(partition);
     profile->recovery_solver += profile_clock(profile) - begun;
@@ -94,8 +101,9 @@ static bool refactor(World *world, Partition *partition, EngineProfile *profile)
 }
 
 /* Phi at the present q, followed by the normalizations (p^T p - 1) / 2. */
-static void find_values(World *world, double *b)
+static void find_values(const Gcp *gcp, World *world, double *b)
 {
+    coupled_rows_place(&gcp->coupled, world, gcp->near);
     for (int t = 0; t < world->constraints; ++t)
         world_values(world, t);
     memcpy(b, world->value, sizeof *b * (size_t)world->constraint_rows);
@@ -107,14 +115,15 @@ static void find_values(World *world, double *b)
 }
 
 /* Phi_q q' + Phi_t, with J of the present q. */
-static void find_rates(const World *world, double *b)
+static void find_rates(const Gcp *gcp, World *world, double *b)
 {
+    coupled_rows_place(&gcp->coupled, world, gcp->near);
     for (int t = 0; t < world->constraints; ++t) {
         const Tie *tie = &world->tie[t];
         for (int r = 0; r < tie->rows; ++r)
             *b++ = world_product(world, t, r, (const double(*)[BODY_Q])world->qd);
-        if (tie->coordinate >= 0)
-            b[-1] += world->dual[tie->coordinate] * world->xd[tie->coordinate];
+        if (tie->law || tie->coordinate >= 0)
+            b[-1] += world_dual(world, t, world->xd);
     }
     for (int body = world->first; body < world->bodies; ++body) {
         const double *p = world->q[body] + 3, *pd = world->qd[body] + 3;
@@ -177,7 +186,7 @@ static int recover_positions(const Interpreted *context, Instance *self)
             far = fmax(far, fabs(world->q[body][i]));
     const double enough = fmax(rounding, 4e-16 * far / world->size);
     for (int i = 0; i < CORRECTIONS; ++i) {
-        find_values(world, gcp->b);
+        find_values(gcp, world, gcp->b);
         const double step = solved(gcp->partition, context->profile, world, gcp->b, q);
         ++self->head.correction_count;
         if (!(step < leap))
@@ -191,7 +200,7 @@ static int recover_positions(const Interpreted *context, Instance *self)
             return GIC_OK;
         }
         if (ratio > slow || (!i && step > slow)) {
-            if (!refactor(world, gcp->partition, context->profile))
+            if (!refactor(gcp, world, context->profile))
                 return GIC_ERROR_SINGULAR;
             before = INFINITY;
         } else {
@@ -210,7 +219,7 @@ static int recover_rates(const Interpreted *context)
     for (int j = 0; j < gcp->columns; ++j)
         scale = fmax(scale, fabs(qd[j]) / (j % BODY_Q < 3 ? world->size : 1));
     for (int i = 0; i < CORRECTIONS; ++i) {
-        find_rates(world, gcp->b);
+        find_rates(gcp, world, gcp->b);
         const double step = solved(gcp->partition, context->profile, world, gcp->b, qd) / scale;
         const double ratio = step / before;
         if (!(step < INFINITY))
@@ -279,7 +288,7 @@ static int use_partition(const Interpreted *context, const Instance *self, const
         return GIC_ERROR_SINGULAR;
     if (!memcmp(partition->chosen, memory->chosen, sizeof(double) * (size_t)gcp->columns))
         return GIC_OK;
-    find_jacobian(context->world);
+    find_jacobian(gcp, context->world);
     return partition_adopt(partition, memory->chosen, *memory->usual) ? GIC_OK : GIC_ERROR_SINGULAR;
 }
 
@@ -289,6 +298,7 @@ static int recover(const Interpreted *context, Instance *self, const Memory *mem
     EngineProfile *profile = context->profile;
     Gcp *gcp = context->engine;
     const double begun = profile_clock(profile), solver = profile->recovery_solver;
+    gcp->near = memory->near;
     set_positions(world, state);
     set_rates(world, state + gcp->columns);
     gather_driven(world);
@@ -297,7 +307,7 @@ static int recover(const Interpreted *context, Instance *self, const Memory *mem
     if (status == GIC_OK)
         status = recover_positions(context, self);
     if (status == GIC_OK)
-        status = find_jacobian(world) ? recover_rates(context) : GIC_ERROR_NEWTON;
+        status = find_jacobian(gcp, world) ? recover_rates(context) : GIC_ERROR_NEWTON;
     if (status == GIC_OK) {
         find_coordinates(world, memory);
         gcp->recovered = self;
@@ -376,7 +386,7 @@ static bool degraded(const Memory *memory, Partition *partition)
 static int choose(const Interpreted *context, const Memory *memory)
 {
     const Gcp *gcp = context->engine;
-    find_jacobian(context->world);
+    find_jacobian(gcp, context->world);
     if (!partition_choose(gcp->partition))
         return GIC_ERROR_SINGULAR;
     memcpy(memory->chosen, gcp->partition->chosen, sizeof(double) * (size_t)gcp->columns);
@@ -401,9 +411,10 @@ static int settle(void *instance, double *state)
     const bool shifted = *memory.shifted > 0;
     for (int j = 0; j < 2 * gcp->columns; ++j)
         moved[j] = state[j] + (shifted ? memory.shift[j] : 0);
+    ((Gcp *)context->engine)->near = memory.near;
     set_positions(world, moved);
     if (gcp->recovered != self)
-        find_jacobian(world);
+        find_jacobian(gcp, world);
     int status = use_partition(context, self, &memory);
     const bool bad = status == GIC_OK && degraded(&memory, gcp->partition);
     /* What becomes independent must fit what was, or the change would be felt. An integrator of variable steps has no
@@ -459,6 +470,7 @@ static int enter(gic_head *head, const double *standard)
     world->input = instance_array(head, own->input_offset);
     gather_driven(world);
     take_share(context, self);
+    ((Gcp *)context->engine)->near = memory.near;
     ((Gcp *)context->engine)->recovered = NULL;
     return head->status = choose(context, &memory);
 }
@@ -504,8 +516,22 @@ static void add_entry(PartitionRow *row, int column, const double *value)
     row->value[row->count++] = value;
 }
 
+/* All derivatives by the bodies of such a row: slopes of a formula may vanish anywhere. */
+static void coupled_pattern(const World *world, const CoupledRow *coupled, PartitionRow *row)
+{
+    for (int k = 0; k < coupled->bodies; ++k)
+        for (int i = 0; i < BODY_Q && coupled->body[k] >= world->first; ++i) {
+            if (row->count == PARTITION_WIDTH)
+                diag_fail(world->model->joint[coupled->tie].at, "use --engine gic, or those of generated code",
+                          "joint '%s' follows coordinates of too many bodies for engines gcp1 and gcp2",
+                          world->model->joint[coupled->tie].name);
+            row->column[row->count] = column_of(world, coupled->body[k]) + i;
+            row->value[row->count++] = &coupled->J[k][i];
+        }
+}
+
 /* Which derivatives can be other than 0: those that are not, at some placement of the bodies without any symmetry. */
-static PartitionRow *find_pattern(Pool *pool, World *world)
+static PartitionRow *find_pattern(Pool *pool, World *world, const CoupledRows *coupled)
 {
     const int bodies = world->bodies - world->first, rows = world->constraint_rows + bodies;
     PartitionRow *row = pool_alloc(pool, ((size_t)rows + 1) * sizeof *row), *next = row;
@@ -522,6 +548,13 @@ static PartitionRow *find_pattern(Pool *pool, World *world)
     }
     for (int t = 0; t < world->constraints; ++t) {
         const Tie *tie = &world->tie[t];
+        const CoupledRow *own = coupled->row;
+        while (own < coupled->row + coupled->rows && own->tie != t)
+            ++own;
+        if (own < coupled->row + coupled->rows) {
+            coupled_pattern(world, own, next++);
+            continue;
+        }
         world_rows(world, t);
         for (int r = 0; r < tie->rows; ++r, ++next)
             for (int end = 0; end < 2; ++end)
@@ -593,9 +626,10 @@ static const Engine *open_gcp(Pool *pool, const char *name, const Model *drawn, 
     const int rows = world->constraint_rows + bodies;
     *gcp = (Gcp){.gic = engine_gic(pool, model, options),
                  .columns = columns,
+                 .coupled = coupled_rows_new(pool, world),
                  .b = pool_alloc(pool, ((size_t)rows + 1) * sizeof(double))};
     for (int i = 0; i < SHARES; ++i)
-        gcp->share[i].partition = partition_new(pool, rows, columns, find_pattern(pool, world));
+        gcp->share[i].partition = partition_new(pool, rows, columns, find_pattern(pool, world, &gcp->coupled));
     gcp->start = (Instance *)(void *)instance_new(pool, gcp->gic);
     world_set_solver(pool, world, solver);
     context->design = design;

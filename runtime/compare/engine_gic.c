@@ -193,8 +193,7 @@ static void velocities(const Interpreted *context, const Part *part, double *sta
         const double *J = world->J + ROW_J * tie->first;
         for (int r = 0; r < tie->rows; ++r)
             next[r] = 0;
-        if (tie->coordinate >= 0)
-            next[0] = -world->dual[tie->coordinate] * world->xd[tie->coordinate];
+        next[0] -= world_dual(world, part->tie[t], world->xd);
         for (int end = 0; end < 2; ++end, J += BODY_Q * tie->rows) {
             const double *qd = world->qd[tie->body[end]];
             for (int r = 0; part->end[t][end] < 0 && r < tie->rows; ++r)
@@ -484,8 +483,7 @@ const Engine *engine_gic(Pool *pool, const Model *drawn, const EngineOptions *op
             at += factors_size(gic->part[s].n);
         }
     gic->piece = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof(double));
-    for (int j = 0; j < model->joints; ++j)
-        gic->geared = gic->geared || joint_is_geared(model->joint[j].type);
+    gic->geared = model_counts_turns(model);
     gic->b = pool_alloc(pool, ((size_t)most + 1) * sizeof(double));
     gic->design = pool_alloc(pool, (size_t)gic->start_size * sizeof(double));
     context->engine = gic;

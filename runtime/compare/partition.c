@@ -46,7 +46,10 @@ Partition *partition_new(Pool *pool, int rows, int columns, const PartitionRow *
 {
     Partition *partition = pool_alloc(pool, sizeof *partition);
     PartitionFactors *factors = pool_alloc(pool, sizeof *factors);
-    const size_t m = (size_t)rows + 1, n = (size_t)columns + 1, entries = m * PARTITION_WIDTH;
+    const size_t m = (size_t)rows + 1, n = (size_t)columns + 1;
+    size_t entries = 1;
+    for (int i = 0; i < rows; ++i)
+        entries += (size_t)row[i].count;
     *partition = (Partition){.rows = rows,
                              .columns = columns,
                              .row = row,

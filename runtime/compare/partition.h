@@ -12,8 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Most coordinates in one equation: those of two bodies. */
-enum { PARTITION_WIDTH = 14 };
+/* Most coordinates in one equation: those of two bodies, or of ten that a gear or coupler has to do with. */
+enum { PARTITION_WIDTH = 70 };
 
 /* value: where the caller keeps the numbers; they are read whenever they are needed. */
 typedef struct PartitionRow {

@@ -548,19 +548,22 @@ int world_forces(World *world)
     return GIC_OK;
 }
 
+void world_push(World *world, int coordinate, double force)
+{
+    /* the multiplier of Psi: Psi_w^T multiplier = force */
+    const Tie *tie = &world->tie[world->coordinate_tie[coordinate]];
+    const double *J = world->J + ROW_J * tie->first, multiplier = force / world->dual[coordinate];
+    for (int end = 0; end < 2; ++end, J += BODY_Q) {
+        double *wrench = world->wrench[tie->body[end]], torque[3];
+        add_scaled3(-multiplier, J, wrench);
+        euler_turn(world->q[tie->body[end]] + 3, J + 3, torque); /* the p part is 2 E^T torque */
+        add_scaled3(-0.5 * multiplier, torque, wrench + 3);
+    }
+}
+
 void world_spread(World *world)
 {
-    for (int c = 0; c < world->model->coordinates; ++c) {
-        if (world->along[c] == 0)
-            continue;
-        /* the multiplier of Psi: Psi_w^T multiplier = along */
-        const Tie *tie = &world->tie[world->coordinate_tie[c]];
-        const double *J = world->J + ROW_J * tie->first, multiplier = world->along[c] / world->dual[c];
-        for (int end = 0; end < 2; ++end, J += BODY_Q) {
-            double *wrench = world->wrench[tie->body[end]], torque[3];
-            add_scaled3(-multiplier, J, wrench);
-            euler_turn(world->q[tie->body[end]] + 3, J + 3, torque); /* the p part is 2 E^T torque */
-            add_scaled3(-0.5 * multiplier, torque, wrench + 3);
-        }
-    }
+    for (int c = 0; c < world->model->coordinates; ++c)
+        if (world->along[c] != 0)
+            world_push(world, c, world->along[c]);
 }

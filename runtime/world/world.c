@@ -43,6 +43,8 @@ static const int parts_of_joint[JOINT_TYPES] = {
     [JOINT_PERPENDICULAR] = PART_CROSS,
     [JOINT_SCREW] = PART_SCREW,
     [JOINT_RACK_AND_PINION] = PART_RACK,
+    [JOINT_GEAR] = PART_TURN,
+    [JOINT_COUPLER] = PART_ALONG,
 };
 
 static const int parts_of_coordinate[COORDINATE_TYPES] = {
@@ -64,6 +66,7 @@ static Tie tie_of_joint(const Model *model, int index)
                .coordinate = -1,
                .rows = joint_equations[joint->type],
                .parts = parts_of_joint[joint->type],
+               .law = joint->value,
                .length = joint->length,
                .offset = joint->offset};
     if (tie.parts & parts_with_points)
@@ -72,7 +75,7 @@ static Tie tie_of_joint(const Model *model, int index)
     copy3(joint->side[0], tie.side[0]);
     cross3(joint->axis[0], joint->side[0], tie.side[1]);
     cross3(joint->axis[1], joint->side[1], tie.other);
-    if (tie.parts & parts_geared)
+    if (tie.parts & (parts_geared | PART_TURN))
         copy3(joint->side[1], tie.other);
     return tie;
 }
@@ -190,6 +193,7 @@ World *world_unsolved(Pool *pool, const Model *model, const Sequence *sequence)
     world->value = pool_alloc(pool, rows * number);
     world->J = pool_alloc(pool, rows * ROW_J * number);
     world->dual = pool_alloc(pool, coordinates * number);
+    world->tie_dual = pool_alloc(pool, ((size_t)world->ties + 1) * number);
     world->gamma = pool_alloc(pool, rows * number);
     world->vectors = pool_alloc(pool, ((size_t)world->ties + 1) * sizeof *world->vectors);
     world->wrench = pool_alloc(pool, bodies * sizeof *world->wrench);
@@ -313,6 +317,8 @@ static inline double wanted_length(const World *world, const Tie *tie)
 
 static inline double wanted_offset(const World *world, const Tie *tie)
 {
+    if (tie->law)
+        return world_jet(world, tie->law, NULL).value - tie->offset;
     return tie->coordinate >= 0 ? world->x[tie->coordinate] - tie->offset : tie->offset;
 }
 
@@ -327,7 +333,7 @@ static inline const double *way_of(const Tie *tie, const TieVectors *v)
 static inline void turned(const World *world, const Tie *tie, const TieVectors *v, double along[3], double across[3])
 {
     const double angle =
-        tie->parts & parts_geared ? dot3(way_of(tie, v), v->d) / tie->offset : world->x[tie->coordinate] - tie->offset;
+        tie->parts & parts_geared ? dot3(way_of(tie, v), v->d) / tie->offset : wanted_offset(world, tie);
     const double c = cos(angle), s = sin(angle);
     for (int i = 0; i < 3; ++i) {
         along[i] = c * v->side[0][i] + s * v->side[1][i];
@@ -489,6 +495,7 @@ bool world_rows(World *world, int index)
     by_q(world, tie, (const double(*)[TWISTS])twist);
     if (tie->coordinate >= 0)
         world->dual[tie->coordinate] = dual;
+    world->tie_dual[index] = dual;
     return right;
 }
 
@@ -518,6 +525,7 @@ void world_gamma(World *world, int index)
     const double *va = world->qd[tie->body[0]], *vb = world->qd[tie->body[1]];
     const double *wa = world->omega[tie->body[0]], *wb = world->omega[tie->body[1]];
     double *gamma = world->gamma + tie->first;
+    const Jet f = tie->law ? world_jet(world, tie->law, world->xd) : (Jet){0, 0, 0};
     Swing d = {{0}, {0}}, axis = d, other, side[2];
     if (tie->parts & parts_with_points) {
         const Swing a = swing(wa, v->arm[0]), b = swing(wb, v->arm[1]);
@@ -553,7 +561,7 @@ void world_gamma(World *world, int index)
     if (tie->parts & (PART_ALONG | PART_CROSS))
         axis = swing(wa, v->axis[0]);
     if (tie->parts & PART_ALONG)
-        *gamma++ = -bias_of(v->axis[0], &axis, v->d, &d);
+        *gamma++ = f.second - bias_of(v->axis[0], &axis, v->d, &d);
     if (tie->parts & PART_CROSS) {
         other = swing(wb, v->axis[1]);
         *gamma++ = -bias_of(v->axis[0], &axis, v->axis[1], &other);
@@ -564,17 +572,25 @@ void world_gamma(World *world, int index)
         const Swing a = swing(wa, along), c = swing(wa, across);
         other = swing(wb, v->other);
         const double rate = dot3(a.rate, v->other) + dot3(along, other.rate);
-        double turn_rate = tie->coordinate >= 0 ? world->xd[tie->coordinate] : 0;
+        double turn_rate = tie->coordinate >= 0 ? world->xd[tie->coordinate] : f.rate;
         if (tie->parts & parts_geared) {
             const double *way = way_of(tie, v), share = dot3(along, v->other) / tie->offset;
             axis = swing(wa, way);
             turn_rate = (dot3(axis.rate, v->d) + dot3(way, d.rate)) / tie->offset;
             *gamma = share * bias_of(way, &axis, v->d, &d);
         } else {
-            *gamma = 0;
+            *gamma = dot3(along, v->other) * f.second;
         }
         *gamma++ += 2 * turn_rate * rate - bias_of(across, &c, v->other, &other);
     }
+}
+
+double world_dual(const World *world, int index, const double *w)
+{
+    const Tie *tie = &world->tie[index];
+    if (tie->law)
+        return world->tie_dual[index] * world_jet(world, tie->law, w).rate;
+    return tie->coordinate >= 0 ? world->dual[tie->coordinate] * w[tie->coordinate] : 0;
 }
 
 double world_product(const World *world, int index, int row, const double (*x)[BODY_Q])

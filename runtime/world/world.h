@@ -26,9 +26,10 @@ typedef struct Tie {
     int body[2], joint, coordinate; /* index in the model, or -1 */
     int rows, first;                /* equations, and the place of the first one among all */
     int parts;                      /* what it consists of; world.c */
-    double arm[2][3];               /* points from the centres of mass, body frames */
-    double axis[2][3], side[2][3];  /* u_a, u_b; two directions perpendicular to u_a, in body a */
-    double other[3];                /* second side, in body b; of an angle f_1 */
+    const Law *law;                /* of a gear or coupler: the value that it holds, as a coordinate has one; or NULL */
+    double arm[2][3];              /* points from the centres of mass, body frames */
+    double axis[2][3], side[2][3]; /* u_a, u_b; two directions perpendicular to u_a, in body a */
+    double other[3];               /* second side, in body b; of an angle f_1 */
     double length, offset;
 } Tie;
 
@@ -76,11 +77,12 @@ typedef struct World {
     double *x, *xd, *xdd;              /* [coordinates] */
 
     /* equations: world_rows(), world_gamma() */
-    double *value; /* [rows] Phi, Psi; m, m^2 / 2 of lengths, or 1 */
-    double *J;     /* derivatives by q; a tie: two blocks [its rows][7], one a body, from ROW_J x its first row on.
-                    * The derivative along p itself is 0, as if p were brought to unit length */
-    double *dual;  /* [coordinates] Psi_w */
-    double *gamma; /* [rows] J q'' + Psi_w w'' = gamma */
+    double *value;    /* [rows] Phi, Psi; m, m^2 / 2 of lengths, or 1 */
+    double *J;        /* derivatives by q; a tie: two blocks [its rows][7], one a body, from ROW_J x its first row on.
+                       * The derivative along p itself is 0, as if p were brought to unit length */
+    double *dual;     /* [coordinates] Psi_w */
+    double *tie_dual; /* [ties] the same of those that measure, gears and couplers too */
+    double *gamma;    /* [rows] J q'' + Psi_w w'' = gamma */
     TieVectors *vectors; /* [ties] */
 
     /* applied forces: world_forces() */
@@ -133,6 +135,8 @@ void world_values(World *world, int tie);
 bool world_rows(World *world, int tie);
 /* gamma from the vectors of the last call of one of the above, rates and xd. */
 void world_gamma(World *world, int tie);
+/* What rates or accelerations w [coordinates] add to the first row of a tie; 0 if it measures nothing. */
+double world_dual(const World *world, int tie, const double *w);
 /* J x of a row, x one of q', q'' or the like. */
 double world_product(const World *world, int tie, int row, const double (*x)[BODY_Q]);
 /* A dual coordinate as the explicit function of q and q': out = w, w'. An angle is the one nearest to `near`. Leaves
@@ -141,6 +145,15 @@ void world_coordinate(World *world, int coordinate, double near, double out[2]);
 /* Largest constraint residual at the present configuration, relative to world->size; of one tie alone. */
 double world_residual(World *world);
 double world_tie_residual(World *world, int tie);
+
+/* ---- coupling.c: formulas of gears and couplers ---------------------------------------------------------- */
+
+/* A formula of coordinates, and its first and second derivative along `way` [coordinates]; NULL: value alone. */
+typedef struct Jet {
+    double value, rate, second;
+} Jet;
+
+Jet world_jet(const World *world, const Law *law, const double *way);
 
 /* ---- forces.c: forces ----------------------------------------------------------------------------------- */
 
@@ -169,6 +182,8 @@ int world_wheels_turn(World *world, const double *fast, double *rate);
 int world_forces(World *world);
 /* Forces along coordinates as wrenches on the bodies; needs J and dual of the coordinates' ties. */
 void world_spread(World *world);
+/* A force along one coordinate, likewise. */
+void world_push(World *world, int coordinate, double force);
 
 /* ---- powertrain.c: the powertrain (POWERTRAIN.md) ----------------------------------------------------------- */
 

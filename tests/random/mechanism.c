@@ -448,12 +448,45 @@ static void gearing(Vehicle *v)
         slide(v, a, way, p, s);
 }
 
+/* A body that turns or slides by a formula of the turn of another one. */
+static void following(Vehicle *v)
+{
+    static const char *const formula[] = {"-2 * %s",
+                                          "%s - 0.3 * sin(%s)",
+                                          "sin(%s)",
+                                          "2 * cos(%s)",
+                                          "tanh(%s) + %s / 3",
+                                          "atan2(sin(%s), 3 + cos(%s))",
+                                          "exp(sin(%s)) / sqrt(1.5 + cos(%s)^2)"};
+    const Vec p = any_point(v), u = nice_axis(v), q = any_point(v), s = nice_axis(v);
+    const int a = any_body(v), first = body_at(v, "leader", p), c = any_body(v), b = body_at(v, "follower", q);
+    turn_on(v, a, first, p, u);
+    turning(v, a, first, u);
+    const Section *coordinates = &v->section[COORDINATE];
+    const char *leader = coordinates->entry[coordinates->count - 1].name;
+    const bool turns = chance(v, 0.6);
+    if (turns)
+        turn_on(v, c, b, q, s);
+    else
+        slide_on(v, c, b, q, s);
+    Entry *joint =
+        join(v, "follow", turns ? "gear" : "coupler", c, b, &(Geometry){.point = &q, .axis = &s, .ordered = true});
+    const char *form = formula[pick(v, (int)(sizeof formula / sizeof *formula))];
+    say(joint, ", value: \"");
+    for (; *form; ++form)
+        if (form[0] == '%' && form[1] == 's')
+            say(joint, "%s", leader), ++form;
+        else
+            say(joint, "%c", *form);
+    say(joint, "\"");
+}
+
 /* ---- the whole ---- */
 
 static void add_unit(Vehicle *v)
 {
     if (!v->halves && chance(v, 0.12)) {
-        gearing(v);
+        (chance(v, 0.5) ? gearing : following)(v);
         return;
     }
     switch (pick(v, 8)) {

@@ -41,6 +41,32 @@ static void mass_matrix(const Body *body, const quad *q, quad M[BODY_COORDINATES
     }
 }
 
+/* Derivative of the i-th row by coordinate c, by way of a formula. */
+static quad followed(const Solver *solver, int i, int c)
+{
+    const Row *row = &solver->row[i];
+    return row->follows ? row->w_slope * law_slope(solver->model, solver->configuration, row->follows, c) : 0;
+}
+
+/* A row that follows a free coordinate: its w'' has the place of the multiplier of the coordinate's own row, which is
+ * -(d row / dw) / (d own row / dw) times that of the row, since nothing else acts along w. */
+static void factor_follow(Solver *solver, int i, int c)
+{
+    const int n = solver->augmented->size, bodies = BODY_COORDINATES * solver->moving;
+    const int place = solver->rows - solver->model->coordinates + c;
+    const Row *own = &solver->row[place];
+    const quad slope = followed(solver, i, c);
+    quad *a = solver->augmented->a;
+    if (slope == 0 || solver->model->coordinate[c].driven)
+        return;
+    a[(bodies + i) * n + bodies + place] = slope;
+    for (int side = 0; side < 2; ++side)
+        for (int j = 0; j < BODY_COORDINATES && own->body[side] >= solver->first; ++j) {
+            const int column = BODY_COORDINATES * (own->body[side] - solver->first) + j;
+            a[column * n + bodies + i] -= slope / own->w_slope * own->slope[side][j];
+        }
+}
+
 static void factor_fill(Solver *solver)
 {
     const Model *model = solver->model;
@@ -71,6 +97,9 @@ static void factor_fill(Solver *solver)
         if (free_coordinate)
             a[line * n + line] = row->w_slope;
     }
+    for (int i = 0; i < solver->rows; ++i)
+        for (int c = 0; c < model->coordinates; ++c)
+            factor_follow(solver, i, c);
 }
 
 /* Right-hand sides of all second-derivative equations, into out[rows + bodies from `first_body`]. */
@@ -82,6 +111,9 @@ static void second_sides(const Solver *solver, const State *state, int first_bod
         out[i] = -row->bias;
         if (row->coordinate >= 0 && model->coordinate[row->coordinate].driven)
             out[i] -= row->w_slope * state->w_second[row->coordinate];
+        for (int c = 0; c < model->coordinates; ++c)
+            if (model->coordinate[c].driven)
+                out[i] -= followed(solver, i, c) * state->w_second[c];
     }
     for (int k = first_body; k < model->bodies; ++k) {
         const quad *rate = solver->configuration->rate[k] + 3;
@@ -226,7 +258,12 @@ static quad ends(const Solver *solver, const Coordinate *coordinate)
 static quad drive_force(const Solver *solver, int coordinate)
 {
     int row = solver->rows - solver->model->coordinates + coordinate;
-    return solver->model->coordinate[coordinate].driven ? *unknown_row(solver, row) * solver->row[row].w_slope : 0;
+    quad force = *unknown_row(solver, row) * solver->row[row].w_slope;
+    if (!solver->model->coordinate[coordinate].driven)
+        return 0;
+    for (int i = 0; i < solver->rows; ++i)
+        force += *unknown_row(solver, i) * followed(solver, i, coordinate);
+    return force;
 }
 
 /* Magnitudes of the moments about its centre of mass that all joints of a body exert on it. */

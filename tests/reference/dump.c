@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-const int joint_rows[JOINT_TYPES] = {5, 3, 5, 4, 4, 6, 1, 2, 2, 1, 2, 1, 1, 1};
+const int joint_rows[JOINT_TYPES] = {5, 3, 5, 4, 4, 6, 1, 2, 2, 1, 2, 1, 1, 1, 1, 1};
 
 static const char *const joint_name[JOINT_TYPES] = {
     "revolute", "spherical",          "prismatic",     "cylindrical",    "universal", "fixed",
     "distance", "revolute_spherical", "point_on_line", "point_in_plane", "parallel",  "perpendicular",
-    "screw",    "rack_and_pinion"};
+    "screw",    "rack_and_pinion",    "gear",          "coupler"};
 static const char *const coordinate_name[COORDINATE_TYPES] = {"length", "translation", "angle"};
 
 static int type_of(const Json *json, const char *const *name, int count)
@@ -65,10 +65,12 @@ static void read_joint(Joint *joint, const Json *json, int bodies)
     json_numbers(json, "axis_b", joint->axis[1], 3);
     joint->length = json_number(json, "length");
     joint->offset = json_number(json, "offset");
-    if (joint->type == SCREW || joint->type == RACK_AND_PINION) {
+    if (joint->type >= SCREW && joint->type <= COUPLED) {
         json_numbers(json, "side_a", joint->side[0], 3);
         json_numbers(json, "side_b", joint->side[1], 3);
     }
+    if (joint->type == GEARED || joint->type == COUPLED)
+        joint->value = formula_read(json_get(json, "value"));
 }
 
 static void read_coordinate(Coordinate *coordinate, const Json *json, int bodies)
@@ -470,8 +472,10 @@ void model_free(Model *model)
 {
     for (int i = 0; i < model->bodies; ++i)
         free(model->body[i].name);
-    for (int i = 0; i < model->joints; ++i)
+    for (int i = 0; i < model->joints; ++i) {
         free(model->joint[i].name);
+        formula_free(model->joint[i].value);
+    }
     for (int i = 0; i < model->coordinates; ++i)
         free(model->coordinate[i].name);
     for (int i = 0; i < model->subsets; ++i) {

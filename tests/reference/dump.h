@@ -29,6 +29,8 @@ typedef enum JointType {
     PERPENDICULAR,
     SCREW,
     RACK_AND_PINION,
+    GEARED,
+    COUPLED,
     JOINT_TYPES
 } JointType;
 
@@ -36,7 +38,8 @@ typedef struct Joint {
     JointType type;
     int body[2];
     double point[2][3], axis[2][3], length, offset;
-    double side[2][3]; /* of a screw or rack */
+    double side[2][3]; /* of a screw, rack, gear or coupler */
+    Formula *value;    /* of a gear or coupler */
     char *name;
 } Joint;
 

@@ -51,6 +51,11 @@ quad signal_value(const SignalSource *source, const Surroundings *around);
 
 Formula *formula_read(const Json *json);
 void formula_free(Formula *formula);
+/* series.c: a formula of coordinates alone, c[0] + c[1] t + c[2] t^2, where these are w + way t. */
+typedef struct Series {
+    quad c[3];
+} Series;
+Series formula_series(const Formula *formula, const quad *w, const quad *way);
 quad formula_value(const Formula *formula, const Surroundings *around);
 /* The sum of magnitudes of its terms, of which the value may be next to nothing. */
 quad formula_size(const Formula *formula, const Surroundings *around);

@@ -220,6 +220,43 @@ static Row geared(const Configuration *configuration, const Joint *joint, const 
     return row;
 }
 
+quad law_slope(const Model *model, const Configuration *at, const Formula *law, int coordinate)
+{
+    quad way[model->coordinates + 1];
+    for (int c = 0; c < model->coordinates; ++c)
+        way[c] = c == coordinate;
+    return formula_series(law, at->w, way).c[1];
+}
+
+static Row angle_row(const Configuration *configuration, const Coordinate *coordinate, quad theta, quad theta_rate);
+
+/* As a coordinate has it, of which the formula is value, rate and, but for w'', second derivative. */
+static Row coupled(const Model *model, const Configuration *configuration, const Joint *joint)
+{
+    const Series f = formula_series(joint->value, configuration->w, configuration->w_rate);
+    const quad value = f.c[0] - joint->offset, rate = f.c[1], second = 2 * f.c[2];
+    Row row;
+    if (joint->type == GEARED) {
+        Coordinate like = {.body = {joint->body[0], joint->body[1]}};
+        memcpy(like.axis, joint->axis[0], sizeof like.axis);
+        memcpy(like.reference, joint->side, sizeof like.reference);
+        row = angle_row(configuration, &like, value, rate);
+    } else {
+        quad axis[3];
+        widen(joint->axis[0], axis, 3);
+        const Arrow d = point_to_point(model, configuration, joint->body, joint->point),
+                    u = fixed_vector(configuration, joint->body[0], 0, axis);
+        row = dot(&u, &d);
+        row.value -= value;
+        row.w_slope = -1;
+        row.rate -= rate;
+    }
+    row.bias += row.w_slope * second;
+    row.coordinate = -1;
+    row.follows = joint->value;
+    return row;
+}
+
 static void joint_evaluate(const Model *model, const Configuration *configuration, const Joint *joint, Row *row)
 {
     int a = joint->body[0];
@@ -270,6 +307,8 @@ static void joint_evaluate(const Model *model, const Configuration *configuratio
         u[1] = fixed_vector(configuration, a, 0, axis[1]);
         *row++ = geared(configuration, joint, &u[1], &d);
         break;
+    case GEARED:
+    case COUPLED: *row++ = coupled(model, configuration, joint); break;
     case JOINT_TYPES: break;
     }
     for (Row *r = start; r < row; ++r)

@@ -24,7 +24,8 @@ typedef struct Row {
     int body[2];
     quad slope[2][BODY_COORDINATES]; /* dc/dq of the two bodies */
     int coordinate;                  /* whose definition it is, or -1 */
-    quad w_slope;                    /* dc/dw */
+    quad w_slope;                    /* dc/dw, of a gear or coupler by what its formula gives */
+    const Formula *follows;          /* that formula, or NULL */
     quad value;                      /* c */
     quad rate;                       /* dc/dt with the configuration's rates */
     quad bias;                       /* d2c/dt2 where all second derivatives of q and w are zero */
@@ -50,6 +51,8 @@ void add_force(const Configuration *configuration, int body, const quad point[3]
                quad (*Q)[BODY_COORDINATES]);
 /* The same of a torque (world) on the body. */
 void add_torque(const Configuration *configuration, int body, const quad torque[3], quad (*Q)[BODY_COORDINATES]);
+/* Derivative of a formula of coordinates by one of them. */
+quad law_slope(const Model *model, const Configuration *configuration, const Formula *law, int coordinate);
 /* A formula at a configuration; NULL: 0. */
 quad law_value(const Model *model, const Configuration *configuration, const Formula *law, Locals local);
 /* The sum of magnitudes of its terms. */

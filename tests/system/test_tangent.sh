@@ -27,6 +27,7 @@ sh "$root/tests/lib/chain.sh" 6 >"$work/chain.veh" && check 'a chain, articulate
 check 'states of a model, no wheels' compare "$root/tests/data/laws/states.veh"
 check 'bushings' compare "$root/tests/data/laws/bushing.veh"
 check 'air' compare "$root/tests/data/laws/aero.veh"
+check 'gears and couplers' compare "$root/tests/data/laws/coupled.veh" -n 2
 {
     cat "$models/hmmwv_tires.veh"
     printf 'states:\n  soft: {rate: "(rate(spring_f_l) - soft) / 0.05"}\n'

@@ -117,7 +117,7 @@ static bool is_geared(const Model *model)
 {
     bool geared = false;
     for (int j = 0; j < model->joints; ++j)
-        geared = geared || model->joint[j].type == SCREW || model->joint[j].type == RACK_AND_PINION;
+        geared = geared || (model->joint[j].type >= SCREW && model->joint[j].type <= COUPLED);
     return geared;
 }
 
