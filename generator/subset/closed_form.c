@@ -219,8 +219,8 @@ static int coordinate_scalar(const Closed *z, const Connection *tie, int end, Sc
 {
     Dag *dag = z->dag;
     const Fixture *fixture = &tie->fixture;
-    Ex x = z->w->x[tie->dep], turned[3];
-    switch (z->w->model->coordinate[tie->index].type) {
+    Ex x = tie->x, turned[3];
+    switch (tie->measure) {
     case COORDINATE_LENGTH: *out = sphere(z, tie, end, ex_mul(dag, x, x)); break;
     case COORDINATE_TRANSLATION: *out = plane(z, tie, end, fixture->axis[0], ex_sub(dag, x, fixture->offset)); break;
     case COORDINATE_ANGLE: {
@@ -290,7 +290,7 @@ static int collect_scalars(const Closed *z, int body, Scalar *out)
         if (!is_resolved(z, tie->end[1 - end]))
             count += sphere_of_neighbour(z, tie, end, out + count);
         else
-            count += (tie->is_coordinate ? coordinate_scalar : joint_scalars)(z, tie, end, out + count);
+            count += (tie->measure >= 0 ? coordinate_scalar : joint_scalars)(z, tie, end, out + count);
     }
     return count;
 }
@@ -326,7 +326,7 @@ static void turn_by_angle(Closed *z, KnownPose *hold, const Connection *angle, i
 {
     Dag *dag = z->dag;
     const Fixture *fixture = &angle->fixture;
-    const Ex turn = ex_sub(dag, z->w->x[angle->dep], fixture->offset);
+    const Ex turn = ex_sub(dag, angle->x, fixture->offset);
     const Ex c = ex_op(dag, OP_COS, turn, 0, 0), s = ex_op(dag, OP_SIN, turn, 0, 0);
     Ex axis[2][3], f2[3], e[3][3], f[3][3];
     for (int i = 0; i < 2; ++i)
@@ -355,7 +355,7 @@ static void find_held(Closed *z, int body, KnownPose *hold)
         int end = end_at(tie, body), parts = parts_of(z->w, tie);
         if (end < 0 || !is_resolved(z, tie->end[1 - end]))
             continue;
-        if (tie->is_coordinate && !hold->turned && subset_is_hinged(z->w, tie))
+        if (tie->measure >= 0 && !hold->turned && subset_is_hinged(z->w, tie))
             turn_by_angle(z, hold, tie, end);
         if (parts & PART_PARALLEL && !hold->turned && (!hold->triad || parts & PART_LOCK))
             add_triad(z, hold, tie, end);
@@ -677,6 +677,13 @@ static bool place_body(Closed *z, int body)
         for (int i = 0; i < count; ++i)
             projection[i] = projection_of(z, hold, &scalar[i]);
         if (!find_rotation(z, body, projection, count))
+            return false;
+    } else if (!hold->triad) { /* no point is known yet: directions alone, as those of three angles */
+        int directions = 0;
+        for (int i = 0; i < count; ++i)
+            if (scalar[i].kind == SCALAR_DIRECTION)
+                projection[directions++] = projection_of(z, hold, &scalar[i]);
+        if (!find_rotation(z, body, projection, directions))
             return false;
     } else {
         return false;

@@ -27,6 +27,7 @@ sh "$root/tests/lib/chain.sh" 6 >"$work/chain.veh" && check 'a chain, articulate
 check 'states of a model, no wheels' compare "$root/tests/data/laws/states.veh"
 check 'bushings' compare "$root/tests/data/laws/bushing.veh"
 check 'air' compare "$root/tests/data/laws/aero.veh"
+check 'bodies on bushings alone' compare "$root/tests/data/laws/free.veh" -n 2
 check 'gears and couplers' compare "$root/tests/data/laws/coupled.veh" -n 2
 {
     cat "$models/hmmwv_tires.veh"
