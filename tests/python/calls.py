@@ -249,8 +249,79 @@ class Calls(unittest.TestCase):
             model, 3, scene=COAST, actions={"rack": (-0.02, 0.02)}, observations=["chassis.y", "chassis_attitude.yaw"],
             reward=lambda seen, action: -seen[:, 0] ** 2, terminated=lambda seen, action: abs(seen[:, 0]) > 0.8,
             step=0.004, ratio=4, substeps=5, horizon=10, scatter={"r.y": 0.5}))
-        with self.assertRaisesRegex(KeyError, "is 'rack' meant"):
-            VectorEnv(model, 2, actions={"rak": (0, 1)}, observations=[], reward=None)
+
+    def test_env_refuses(self):
+        model, made = gicgen.Model(TIRES), {"actions": {"rack": (-0.02, 0.02)}, "observations": ["chassis.y"],
+                                            "reward": lambda seen, action: -seen[:, 0] ** 2, "scene": COAST}
+
+        def env(**changes):
+            return VectorEnv(model, 2, **{**made, **changes})
+
+        zeros = numpy.zeros((2, 1))
+        for call, kind, words in (
+                (lambda: env(actions={"rak": (0, 1)}), KeyError, "is 'rack' meant"),
+                (lambda: env(actions=["rack"]), TypeError, "actions: a dictionary is wanted"),
+                (lambda: env(actions={"rack": 1}), TypeError, r"action 'rack': a pair of bounds \(low, high\) is wanted"),
+                (lambda: env(actions={"rack": (1, 0)}), ValueError, "action 'rack': a least and a greatest number"),
+                (lambda: env(actions={"rack": (0, math.nan)}), ValueError, "action 'rack': a least and a greatest number"),
+                (lambda: env(actions={"rack": ("a", "b")}), ValueError, "action 'rack': numbers"),
+                (lambda: env(observations="chassis.y"), TypeError, "observations: a list of names"),
+                (lambda: env(observations=["chassis.yy"]), KeyError, "is 'chassis.y' meant"),
+                (lambda: env(reward=None), TypeError, "reward: a function"),
+                (lambda: env(terminated=1), TypeError, "terminated: a function"),
+                (lambda: env(step=0), ValueError, "step: a number above 0"),
+                (lambda: env(step=math.nan), ValueError, "step: a finite number"),
+                (lambda: env(substeps=0), ValueError, "substeps: a whole number from 1"),
+                (lambda: env(horizon=1.5), TypeError, "horizon: a whole number is wanted, not 1.5"),
+                (lambda: env(method="euler"), ValueError, "'ab3' or 'rk4'"),
+                (lambda: env(ratio=0), ValueError, "ratio: a whole number from 1"),
+                (lambda: env(scatter={"r.y": -1}), ValueError, "scatter of 'r.y': half a width"),
+                (lambda: env(scatter={"r.yy": 1}), KeyError, "no state 'r.yy'"),
+                (lambda: env(scatter=[1]), TypeError, "scatter: a dictionary"),
+                (lambda: env().reset(seed=-1), ValueError, "seed: a whole number from 0"),
+                (lambda: env().reset(seed=1.5), TypeError, "seed: a whole number is wanted, not 1.5"),
+                (lambda: env().reset(seed=[1, 2, 3]), ValueError, "seed: a number or 2 of them"),
+                (lambda: env().reset(seed=[1, -2]), ValueError, "seed: a whole number from 0"),
+                (lambda: env().reset(seed="ab"), TypeError, "seed: a whole number is wanted, not 'ab'"),
+                (lambda: env().reset(options={"reset_mask": [1, 0]}), ValueError, "options: this environment has none")):
+            with self.assertRaisesRegex(kind, words):
+                call()
+        self.assertEqual(env().reset(seed=numpy.int64(3))[0].shape, (2, 1))
+        again = [env(scatter={"r.y": 1.0}).reset(seed=[5, 6])[0] for _ in range(2)]
+        self.assertTrue(numpy.array_equal(*again) and again[0][0] != again[0][1])
+        for reward, words in ((lambda seen, action: seen, r"reward gives: shape \(2,\) is wanted, not \(2, 1\)"),
+                              (lambda seen, action: seen[:, 0] * math.nan, "reward gives: finite"),
+                              (lambda seen, action: ["a", "b"], "reward gives: numbers")):
+            wrong = env(reward=reward)
+            wrong.reset(seed=1)
+            with self.assertRaisesRegex((ValueError, TypeError), words):
+                wrong.step(zeros)
+        wrong = env()
+        wrong.reset(seed=1)
+        with self.assertRaisesRegex(TypeError, "actions: an array of numbers"):
+            wrong.step([["a"], ["b"]])
+
+    def test_env_start_refused(self):
+        """No observation of a vehicle whose start the model refuses: the library's message, at reset() and when an episode
+        begins anew; reset() mends it."""
+        model = gicgen.Model(QUARTER)
+        env = VectorEnv(model, 3, scene=SCENE, actions={}, observations=["carriage.z"], step=0.001, horizon=2,
+                        reward=lambda seen, action: seen[:, 0], scatter={"bounce": 0.001})
+        env.reset(seed=1)
+        env._scatter[0] = (env._scatter[0][0], 1e308)
+        with self.assertRaisesRegex(gicgen.RunError, "^libgic: error: vehicle [0-2] at t = 0 s: "):
+            env.reset(seed=1)
+        with self.assertRaisesRegex(RuntimeError, "reset"):
+            env.step(numpy.zeros((3, 0)))
+        env._scatter[0] = (env._scatter[0][0], 0.001)
+        first, _ = env.reset(seed=1)
+        self.assertTrue((first != 0).all())
+        env._scatter[0] = (env._scatter[0][0], 1e308)
+        env.step(numpy.zeros((3, 0)))
+        with self.assertRaisesRegex(gicgen.RunError, "vehicle [0-2] at t = 0 s: "):
+            env.step(numpy.zeros((3, 0)))
+        with self.assertRaisesRegex(RuntimeError, "reset"):
+            env.step(numpy.zeros((3, 0)))
 
 
 if __name__ == "__main__":
