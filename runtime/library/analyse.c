@@ -169,19 +169,16 @@ static void add_columns(void *context)
 static int analyse(gicl_library *library, gicl_handle model, const char *scene, bool wanted, double at,
                    void (*kind)(void *context), gicl_handle *result, gicl_messages *said)
 {
-    Use use;
     if (result)
         *result = 0;
-    int status = use_begin(&use, library, model, THING_MODEL, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = use_begin(library, model, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
     Work work = {.open = use.thing, .path = scene, .at = at};
     if (!result || (wanted && !scene))
-        return use_end(&use, call_wrong(said, NULL, "%s must not be NULL",
-                                        result ? "the scene"
-                                               : "the place for the "
-                                                 "handle"));
-    status = call_work(library, said, make_result, &work);
+        return use_end(
+            &use, call_wrong(said, NULL, "%s must not be NULL", result ? "the scene" : "the place for the handle"));
+    int status = call_work(library, said, make_result, &work);
     if (status != GICL_OK)
         return use_end(&use, status);
     status = call_work(library, said, kind, &work);

@@ -36,8 +36,8 @@ static const struct {
     bool shared; /* calls may overlap */
 } kind_of[THING_KINDS] = {
     [THING_MODEL] = {"model", "a", model_let, true},
-    [THING_INSTANCE] = {"instance", "an", instance_free, false},
-    [THING_BATCH] = {"batch", "a", batch_free, false},
+    [THING_INSTANCE] = {"instance", "an", vehicles_free, false},
+    [THING_BATCH] = {"batch", "a", vehicles_free, false},
     [THING_RESULT] = {"result", "a", result_free, true},
 };
 
@@ -126,31 +126,34 @@ static Slot *slot_of(const gicl_library *library, gicl_handle handle)
     return i < library->slots && library->slot[i].thing && handle_of(library, i) == handle ? &library->slot[i] : NULL;
 }
 
-int use_begin(Use *use, gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said)
+Use use_begin(gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said)
 {
+    Use use = {library, handle, NULL, GICL_WRONG};
     if (said)
         messages_clear(&said->list);
-    if (!library)
-        return call_wrong(said, "gicl_open() makes a library", "the library is NULL");
+    if (!library) {
+        call_wrong(said, "gicl_open() makes a library", "the library is NULL");
+        return use;
+    }
     pthread_mutex_lock(&library->lock);
     Slot *slot = slot_of(library, handle);
     const ThingKind found = slot ? slot->kind : kind;
     const bool busy = slot && slot->users && !kind_of[found].shared;
-    const bool good = slot && found == kind && !busy;
-    if (good) {
+    if (slot && found == kind && !busy) {
         ++slot->users;
-        *use = (Use){library, handle, slot->thing};
+        use.thing = slot->thing;
+        use.status = GICL_OK;
     }
     pthread_mutex_unlock(&library->lock);
-    if (good)
-        return GICL_OK;
     if (!slot)
-        return call_wrong(said, "use a handle from when it is given to when it is closed",
-                          "there is no open %s with this handle", kind_of[kind].name);
-    if (found != kind)
-        return call_wrong(said, NULL, "the handle is that of %s %s, where %s %s is wanted", kind_of[found].article,
-                          kind_of[found].name, kind_of[kind].article, kind_of[kind].name);
-    return call_wrong(said, "give each thread its own", "another call is using this %s", kind_of[kind].name);
+        call_wrong(said, "use a handle from when it is given to when it is closed",
+                   "there is no open %s with this handle", kind_of[kind].name);
+    else if (found != kind)
+        call_wrong(said, NULL, "the handle is that of %s %s, where %s %s is wanted", kind_of[found].article,
+                   kind_of[found].name, kind_of[kind].article, kind_of[kind].name);
+    else if (busy)
+        call_wrong(said, "give each thread its own", "another call is using this %s", kind_of[kind].name);
+    return use;
 }
 
 int use_end(const Use *use, int status)

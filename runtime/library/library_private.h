@@ -28,11 +28,12 @@ typedef struct Use {
     gicl_library *library;
     gicl_handle handle;
     void *thing;
+    int status; /* GICL_OK, or there is none: the call returns this */
 } Use;
 
-/* Begin a call: empties `said`, finds the thing. Calls that use a model may overlap, others not. Returns GICL_OK, or
- * GICL_WRONG with a message. */
-int use_begin(Use *use, gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said);
+/* Begin a call: empties `said`, finds the thing. Calls that use a model may overlap, others not. The status is GICL_OK,
+ * or GICL_WRONG with a message. */
+Use use_begin(gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said);
 /* End it; returns `status`. */
 int use_end(const Use *use, int status);
 /* A handle for a new thing, which its kind's free function frees; 0: no memory. */
@@ -71,25 +72,36 @@ void model_leave(OpenModel *model);
 /* Names of a kind, and where the array is in an instance. NULL: no such kind. */
 const gic_signal *model_signals(const gic_model *code, int kind, int *count, size_t *offset);
 
-/* ---- start.c: where instances begin, and how they go on */
+/* ---- vehicles.c: what instances and batches are */
 
-typedef struct Start {
+typedef struct Vehicles {
+    Pool *pool;
     OpenModel *model;
-    const Scene *scene; /* NULL: the model at design */
-} Start;
+    const gic_model *code;
+    const Scene *scene; /* where they begin; NULL: the model at design */
+    int count;
+    size_t stride; /* bytes from one to the next */
+    char *first;
+    gic_head *copy, *origin; /* copy: for trials; origin: as the start left the first */
+} Vehicles;
 
-/* Read the scene (a path, or NULL), into `pool`; ends in diag_fail. */
-Start start_read(Pool *pool, OpenModel *model, const char *scene);
-/* Bring an instance there. parameter: NULL: those of scene or model. Returns a status. */
-int start_go(const Start *start, gic_head *self, const double *parameter);
+/* gicl_instance_new() and gicl_batch_new(); kind: of the handle. */
+int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, ThingKind kind,
+                 gicl_handle *made, gicl_messages *said);
+void vehicles_free(void *vehicles);
+gic_head *vehicle_of(const Vehicles *vehicles, int v);
+/* gicl_view() of the first; false: there is no such kind, said says so. */
+bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count, gicl_messages *said);
+/* Bring a vehicle to the start, or leave it as it is. parameter: NULL: those of scene or model. `copy` then has what
+ * happened. Returns a status. */
+int vehicle_start(const Vehicles *vehicles, int v, const double *parameter);
+/* Steps by gic_step() or gic_step_dual(), up to the first that fails. Returns a status. */
+int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps);
+/* Outputs of the present state, by `copy`, which then has what happened. Returns a status. */
+int vehicle_outputs(const Vehicles *vehicles, int v);
 
-/* One step of an instance, by gic_step() or gic_step_dual(). Returns a status. */
-int start_step(const gic_model *code, gic_head *self, double step, int method, int ratio);
+/* ---- result.c */
 
-/* ---- instance.c, batch.c, result.c */
-
-void instance_free(void *instance);
-void batch_free(void *batch);
 void result_free(void *result);
 
 #endif

@@ -203,16 +203,14 @@ static void generate_code(void *context)
 
 int gicl_generate(gicl_library *library, gicl_handle handle, const char **c, const char **h, gicl_messages *said)
 {
-    Use use;
-    int status = use_begin(&use, library, handle, THING_MODEL, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = use_begin(library, handle, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
     if (!c || !h)
         return use_end(&use, call_wrong(said, NULL, "the places for the texts must not be NULL"));
     OpenModel *model = use.thing;
     pthread_mutex_lock(&model->lock);
-    if (!model->c)
-        status = call_work(library, said, generate_code, model);
+    const int status = model->c ? GICL_OK : call_work(library, said, generate_code, model);
     *c = model->c;
     *h = model->h;
     pthread_mutex_unlock(&model->lock);
@@ -245,30 +243,28 @@ const gic_signal *model_signals(const gic_model *code, int kind, int *count, siz
 }
 
 /* Begin a call about names; *signal: of that kind. */
-static int names_begin(Use *use, gicl_library *library, gicl_handle handle, int kind, const gic_signal **signal,
-                       int *count, gicl_messages *said)
+static Use names_begin(gicl_library *library, gicl_handle handle, int kind, const gic_signal **signal, int *count,
+                       gicl_messages *said)
 {
-    int status = use_begin(use, library, handle, THING_MODEL, said);
-    if (status != GICL_OK)
-        return status;
-    OpenModel *model = use->thing;
-    status = model_engine(library, model, said);
-    if (status != GICL_OK)
-        return use_end(use, status);
-    *signal = model_signals(model->engine->code, kind, count, NULL);
-    if (!*signal)
-        return use_end(use, call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind));
-    return GICL_OK;
+    Use use = use_begin(library, handle, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use;
+    OpenModel *model = use.thing;
+    use.status = model_engine(library, model, said);
+    if (use.status == GICL_OK && !(*signal = model_signals(model->engine->code, kind, count, NULL)))
+        use.status = call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind);
+    if (use.status != GICL_OK)
+        use_end(&use, use.status);
+    return use;
 }
 
 int gicl_count(gicl_library *library, gicl_handle model, int kind, int *count, gicl_messages *said)
 {
-    Use use;
-    const gic_signal *signal;
+    const gic_signal *signal = NULL;
     int found;
-    const int status = names_begin(&use, library, model, kind, &signal, &found, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = names_begin(library, model, kind, &signal, &found, said);
+    if (use.status != GICL_OK)
+        return use.status;
     if (!count)
         return use_end(&use, call_wrong(said, NULL, "the place for the number must not be NULL"));
     *count = found;
@@ -278,12 +274,11 @@ int gicl_count(gicl_library *library, gicl_handle model, int kind, int *count, g
 int gicl_signal(gicl_library *library, gicl_handle model, int kind, int index, const char **name, const char **unit,
                 gicl_messages *said)
 {
-    Use use;
-    const gic_signal *signal;
+    const gic_signal *signal = NULL;
     int count;
-    const int status = names_begin(&use, library, model, kind, &signal, &count, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = names_begin(library, model, kind, &signal, &count, said);
+    if (use.status != GICL_OK)
+        return use.status;
     if (index < 0 || index >= count)
         return use_end(&use, call_wrong(said, NULL, "there is no number %d among %d", index, count));
     if (name)
@@ -324,14 +319,14 @@ static void seek(void *context)
 
 int gicl_find(gicl_library *library, gicl_handle model, int kind, const char *name, int *index, gicl_messages *said)
 {
-    Use use;
     Seeking seeking = {.name = name, .kind = kind};
-    int status = names_begin(&use, library, model, kind, &seeking.signal, &seeking.count, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = names_begin(library, model, kind, &seeking.signal, &seeking.count, said);
+    if (use.status != GICL_OK)
+        return use.status;
     if (!name || !index)
         return use_end(&use, call_wrong(said, NULL, "the name and the place for its number must not be NULL"));
-    status = call_work(library, said, seek, &seeking);
+    if (call_work(library, said, seek, &seeking) != GICL_OK)
+        return use_end(&use, GICL_WRONG);
     *index = seeking.index;
-    return use_end(&use, status == GICL_OK ? GICL_OK : GICL_WRONG);
+    return use_end(&use, GICL_OK);
 }

@@ -42,10 +42,9 @@ void result_add(Result *result, const char *name, int64_t rows, int columns, con
 
 int gicl_array_count(gicl_library *library, gicl_handle handle, int *count, gicl_messages *said)
 {
-    Use use;
-    const int status = use_begin(&use, library, handle, THING_RESULT, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = use_begin(library, handle, THING_RESULT, said);
+    if (use.status != GICL_OK)
+        return use.status;
     if (!count)
         return use_end(&use, call_wrong(said, NULL, "the place for the number must not be NULL"));
     *count = ((const Result *)use.thing)->count;
@@ -55,10 +54,9 @@ int gicl_array_count(gicl_library *library, gicl_handle handle, int *count, gicl
 int gicl_array_get(gicl_library *library, gicl_handle handle, int index, gicl_array *array, size_t size,
                    gicl_messages *said)
 {
-    Use use;
-    const int status = use_begin(&use, library, handle, THING_RESULT, said);
-    if (status != GICL_OK)
-        return status;
+    const Use use = use_begin(library, handle, THING_RESULT, said);
+    if (use.status != GICL_OK)
+        return use.status;
     const Result *result = use.thing;
     if (!array || size != sizeof *array)
         return use_end(&use, call_wrong(said, "compile with the library's own gic.h", "an array has %zu bytes, not %zu",

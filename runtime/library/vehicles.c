@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ * Vehicles of instances and batches, side by side in memory: where they begin, a scene's road, parameters, initial
+ * state and inputs or the model's design, and how they go on. */
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "library/library_private.h"
+#include "run/run.h"
+#include "scene/scene.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { MOST = 1 << 24, LINE = 64 /* bytes, at whose multiples vectors are quickest from */ };
+
+typedef struct Making {
+    OpenModel *model;
+    const char *scene; /* path */
+    int count;
+    Vehicles *made;
+} Making;
+
+static const Scene *read_scene(Pool *pool, const OpenModel *model, const char *path)
+{
+    if (!path)
+        return NULL;
+    const Scene *scene =
+        scene_read(pool, pool_print(pool, "%s", path), model->model, model->integrator, model->tolerance);
+    scene_no_rig(scene);
+    return equilibrium_start(pool, model->model, scene, model->options.solve);
+}
+
+static void make(void *context)
+{
+    Making *making = context;
+    Pool *pool = pool_new();
+    Vehicles *vehicles = pool_alloc(pool, sizeof *vehicles);
+    const Engine *engine = making->model->engine;
+    const size_t stride = (engine->code->size + LINE - 1) / LINE * LINE;
+    *vehicles = (Vehicles){.pool = pool,
+                           .model = making->model,
+                           .code = engine->code,
+                           .scene = read_scene(pool, making->model, making->scene),
+                           .count = making->count,
+                           .stride = stride,
+                           .copy = instance_new(pool, engine),
+                           .origin = instance_new(pool, engine)};
+    char *room = pool_alloc(pool, stride * (size_t)making->count + LINE);
+    vehicles->first = room + (LINE - (uintptr_t)room % LINE);
+    making->made = vehicles;
+}
+
+void vehicles_free(void *freed)
+{
+    const Vehicles *vehicles = freed;
+    model_let(vehicles->model);
+    pool_free(vehicles->pool);
+}
+
+/* Bring an instance to the start. */
+static int start(const Vehicles *vehicles, gic_head *self, const double *parameter)
+{
+    int status;
+    if (vehicles->scene) {
+        Scene scene = *vehicles->scene;
+        if (parameter)
+            scene.parameter = (double *)parameter; /* only read */
+        scene.driver = NULL;
+        scene.rest = NULL;
+        scene.replay = NULL;
+        status = scene_start(vehicles->model->engine, &scene, self);
+    } else
+        status = parameter ? vehicles->code->setup_with(self, parameter) : vehicles->code->setup(self);
+    /* inputs are the caller's from here on */
+    self->input_function = NULL;
+    self->user = NULL;
+    return status;
+}
+
+int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, ThingKind kind,
+                 gicl_handle *made, gicl_messages *said)
+{
+    if (made)
+        *made = 0;
+    const Use use = use_begin(library, model, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
+    if (!made)
+        return use_end(&use, call_wrong(said, NULL, "the place for the handle must not be NULL"));
+    if (count < 1 || count > MOST)
+        return use_end(&use, call_wrong(said, NULL, "a batch has 1 to %d vehicles, not %d", MOST, count));
+    Making making = {use.thing, scene, count, NULL};
+    int status = model_engine(library, making.model, said);
+    if (status == GICL_OK)
+        status = call_work(library, said, make, &making);
+    if (status != GICL_OK)
+        return use_end(&use, status);
+    const Vehicles *vehicles = making.made;
+    model_keep(making.model);
+    model_enter(making.model);
+    status = call_status(said, vehicles->code, vehicles->origin, start(vehicles, vehicles->origin, NULL), "set-up");
+    for (int v = 0; v < count && status == GIC_OK; ++v)
+        status = vehicle_start(vehicles, v, NULL);
+    model_leave(making.model);
+    if (status == GIC_OK && !(*made = handle_new(library, kind, making.made)))
+        status = call_wrong(said, NULL, "no memory for another handle");
+    if (status != GICL_OK)
+        vehicles_free(making.made);
+    return use_end(&use, status);
+}
+
+gic_head *vehicle_of(const Vehicles *vehicles, int v)
+{
+    return (gic_head *)(void *)(vehicles->first + vehicles->stride * (size_t)v);
+}
+
+bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count, gicl_messages *said)
+{
+    size_t offset;
+    if (!model_signals(vehicles->code, kind, count, &offset)) {
+        call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind);
+        return false;
+    }
+    *data = instance_array(vehicle_of(vehicles, 0), offset);
+    return true;
+}
+
+int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
+{
+    gic_head *self = vehicle_of(vehicles, v), *copy = vehicles->copy;
+    int status = GIC_OK;
+    memcpy(copy, parameter ? self : vehicles->origin, vehicles->code->size);
+    if (parameter)
+        status = start(vehicles, copy, parameter);
+    if (status != GIC_OK)
+        return status;
+    copy->lane = v;
+    memcpy(self, copy, vehicles->code->size);
+    return status;
+}
+
+int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps)
+{
+    gic_head *self = vehicle_of(vehicles, v);
+    int status = GIC_OK;
+    if (ratio != 1 && method != GIC_AB3)
+        return GIC_ERROR_ARGUMENT;
+    for (int64_t i = 0; i < steps && status == GIC_OK; ++i)
+        status = ratio == 1 ? gic_step(vehicles->code, self, step, method)
+                            : gic_step_dual(vehicles->code, self, step, ratio);
+    return status;
+}
+
+int vehicle_outputs(const Vehicles *vehicles, int v)
+{
+    const gic_model *code = vehicles->code;
+    gic_head *self = vehicle_of(vehicles, v), *copy = vehicles->copy;
+    memcpy(copy, self, code->size);
+    copy->unchecked = 0; /* check results that are shown */
+    const int status = code->outputs(copy);
+    if (status == GIC_OK)
+        memcpy(instance_array(self, code->output_offset), instance_array(copy, code->output_offset),
+               sizeof(double) * (size_t)code->output_count);
+    return status;
+}
