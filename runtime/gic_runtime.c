@@ -1201,9 +1201,10 @@ static int sampled_step(const gic_model *model, void *self, gic_real step, int32
     const Whole whole = whole_begin(model, self);
     head->parted = 0;
     status = sample_now(model, self);
+    int32_t samples = 0;
     for (gic_real next; status == GIC_OK && (next = next_instant(model, state, end)) < end;) {
         head->parted = 1;
-        status = part_to(model, self, next, step / (gic_real)ratio);
+        status = samples++ < GIC_SAMPLES ? part_to(model, self, next, step / (gic_real)ratio) : GIC_ERROR_EVENTS;
         if (status == GIC_OK)
             status = sample_now(model, self);
     }

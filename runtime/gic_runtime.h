@@ -63,7 +63,8 @@ typedef double gic_real;
     X(GIC_ERROR_UNSTABLE, -14, "a state moves too far within a step: the run is unstable, or the step too long") \
     X(GIC_ERROR_RESIDUAL, -15, \
       "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error") \
-    X(GIC_ERROR_EVENTS, -16, "gears or contacts change more often within a step than a step can follow")
+    X(GIC_ERROR_EVENTS, -16, \
+      "gears or contacts change, or controllers sample, more often within a step than a step can follow")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
@@ -261,6 +262,9 @@ typedef struct gic_model {
 
 /* The most changes of gear in one step, and of contacts; more give GIC_ERROR_EVENTS. */
 #define GIC_CHANGES 32
+
+/* The most times at which controllers sample or values take effect in one step; more give GIC_ERROR_EVENTS. */
+#define GIC_SAMPLES 10000
 
 /* The most contacts that head.locate looks at. */
 #define GIC_CONTACTS 64

@@ -59,7 +59,8 @@ fi
 # ---- the library: its calls, threads and failures, and all broken models in one process ---------------------------
 
 make -C "$root" --no-print-directory -s -j2 WERROR=-Werror BUILD="$debug" CFLAGS="-O1 -g -fsanitize=address,undefined \
-    -fno-sanitize-recover=all -fno-omit-frame-pointer" "$debug/check/test_library" "$debug/check/library" >"$work/said" 2>&1 &&
+    -fno-sanitize-recover=all -fno-omit-frame-pointer" "$debug/check/test_library" "$debug/check/library" \
+    "$debug/check/library_calls" >"$work/said" 2>&1 &&
     (cd "$root" && GICGEN_CACHE='' "$debug/check/test_library") >"$work/out" 2>"$work/said"
 status=$?
 [ $status -ne 0 ] || : >"$work/said"
@@ -67,6 +68,12 @@ check $status "calls of the library"
 "$debug/check/library" open "$root"/tests/data/mistakes/*.veh 2>"$work/refused"
 [ $? -eq 1 ] && ! grep 'runtime error:\|Sanitizer' "$work/refused" >"$work/said"
 check $? "the library refuses broken models and leaves nothing of them"
+for threads in 1 3; do
+    (cd "$root" && GICGEN_CACHE='' "$debug/check/library_calls" 1 2 600 $threads \
+        models/quarter_car.veh=models/scenes/quarter_car.scene models/pendulum.veh=models/scenes/pendulum.scene \
+        models/controllers/skyhook.veh=models/controllers/skyhook.scene tests/data/tuning/car.veh) >"$work/out" 2>"$work/said"
+    check $? "calls in random order, threads: $threads"
+done
 
 # ---- gicgen -------------------------------------------------------------------------------------------------------
 

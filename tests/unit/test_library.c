@@ -392,6 +392,27 @@ static void test_text(void **state)
     assert_non_null(message.remedy);
 }
 
+/* A step in which a controller would sample without end. */
+static void test_endless_step(void **state)
+{
+    const Lib *lib = *state;
+    const double step[] = {1e308, 1e4};
+    const char *const engine[] = {"tcc", "tape"};
+    for (int e = 0; e < 2; ++e) {
+        const gicl_handle m = model(lib, "models/controllers/skyhook.veh", engine[e]), car = instance(lib, m, NULL);
+        double *data, before[64];
+        int count;
+        GOOD(gicl_view(lib->lib, car, GICL_STATE, &data, &count, lib->said));
+        memcpy(before, data, sizeof *data * (size_t)count);
+        for (size_t i = 0; i < sizeof step / sizeof *step; ++i) {
+            assert_int_equal(gicl_step(lib->lib, car, step[i], GICL_RK4, 1, 1, lib->said), -16);
+            assert_non_null(strstr(last(lib->said), "controllers sample"));
+            assert_memory_equal(before, data, sizeof *data * (size_t)count);
+        }
+        GOOD(gicl_step(lib->lib, car, 0.5, GICL_RK4, 1, 1, lib->said));
+    }
+}
+
 /* ---- threads -------------------------------------------------------------------------------------------------- */
 
 enum { THREADS = 8 };
@@ -468,6 +489,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_failures_leave_nothing, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_no_memory, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_text, open_lib, close_lib),
+        cmocka_unit_test_setup_teardown(test_endless_step, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_threads, open_lib, close_lib),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
