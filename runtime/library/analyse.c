@@ -12,7 +12,6 @@
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/run.h"
-#include "run/stability_watch.h"
 #include "scene/scene.h"
 #include "tape/engine_tape.h"
 
@@ -72,13 +71,10 @@ static void run_scene(void *context)
     const Scene *scene;
     const Model *model = read_scene(work, &scene);
     scene = equilibrium_start(pool, model, scene, open->options.solve);
-    EngineOptions options = open->options;
-    options.facts = open->general ? NULL : scene_facts(pool, model, scene, work->path, false);
-    options.validation = scene_validation(pool, model, scene);
-    work->engine = engine_open(pool, open->engine_name, model, &options);
+    work->engine = engine_open_run(pool, open->engine_name, model, scene, open->general ? NULL : work->path, false,
+                                   &open->options);
     const Request request = {.scene = work->path, .quiet = true, .columns = &work->columns};
-    simulate(pool, work->engine, model, scene_narrow(pool, scene, model, work->engine), NULL,
-             step_watch_new(pool, step_theory_new(pool, model), scene, work->engine, false), &request);
+    simulate(pool, work->engine, model, scene, NULL, &request);
 }
 
 /* An array of an instance of the engine tape as one row. */
@@ -132,11 +128,9 @@ static void find_linear(void *context)
     Work *work = context;
     Pool *pool = work->result->pool;
     Result *result = work->result;
-    const Solve solve = work->open->options.solve;
     const Scene *scene;
     const Model *model = read_scene(work, &scene);
-    const OperatingPoint point = isnan(work->at) ? operating_point_rest(pool, model, scene, solve)
-                                                 : operating_point_run(pool, model, scene, solve, work->at);
+    const OperatingPoint point = operating_point(pool, model, scene, work->open->options.solve, work->at);
     const LinearModel *m = linear_model(pool, &point, model->output_components, false);
     gic_signal *neutral = pool_alloc(pool, sizeof *neutral * (size_t)(m->neutral + 1));
     for (int k = 0; k < m->neutral; ++k)

@@ -46,3 +46,12 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
 {
     return engine_opener[engine_index(name)](pool, model, options);
 }
+
+const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
+                              bool drawn, const EngineOptions *options)
+{
+    EngineOptions own = *options;
+    own.facts = path ? scene_facts(pool, model, scene, path, drawn) : NULL;
+    own.validation = scene_validation(pool, model, scene);
+    return engine_open(pool, name, model, &own);
+}

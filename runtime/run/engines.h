@@ -7,6 +7,7 @@
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
+#include "scene/scene.h"
 
 /* The engines' names, ended by NULL; the first is the default. */
 extern const char *const engine_name[];
@@ -20,6 +21,10 @@ const char *engine_missing(Pool *pool, const char *name);
 
 /* Open the engine of that name for a model. Every failure ends in diag_fail. */
 const Engine *engine_open(Pool *pool, const char *name, const Model *model, const EngineOptions *options);
+/* The same for a run of a scene, validated at states of it. path: its file, NULL: the code is one for all scenes;
+ * drawn: what it plots is wanted. */
+const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
+                              bool drawn, const EngineOptions *options);
 
 /* engine_auto.c: the engine `tcc`, with a compiler for faster code in the background. */
 const Engine *engine_auto(Pool *pool, const Model *model, const EngineOptions *options);

@@ -13,7 +13,6 @@
 #include "run/manoeuvre.h"
 #include "run/run.h"
 #include "run/sheet.h"
-#include "run/stability_watch.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
 #include "subset/subset.h"
@@ -276,9 +275,7 @@ static Request read_command_line(int count, char **word)
 
 static void linear(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    const OperatingPoint point = isnan(request->at)
-                                     ? operating_point_rest(pool, model, scene, request->solve)
-                                     : operating_point_run(pool, model, scene, request->solve, request->at);
+    const OperatingPoint point = operating_point(pool, model, scene, request->solve, request->at);
     linear_report(pool, model, &point, request);
 }
 
@@ -361,21 +358,17 @@ int main(int count, char **word)
         scene = equilibrium_start(pool, model, scene, request.solve);
     if (request.recording)
         scene = scene_replay(pool, model, scene, request.recording);
-    const bool drawn = request.picture;
-    const Engine *engine =
-        engine_open(pool, request.engine, model,
-                    &(EngineOptions){.solve = request.solve,
-                                     .recovery = request.recovery,
-                                     .lanes = request.lanes,
-                                     .compiler = request.compiler,
-                                     .flags = request.flags,
-                                     /* a page shows whatever outputs tell; lanes are for code for all scenes */
-                                     .facts = runs && !request.general && !request.page && !request.driven &&
-                                                      !request.recording && !request.lanes
-                                                  ? scene_facts(pool, model, scene, request.scene, drawn)
-                                                  : NULL,
-                                     .validation = runs ? scene_validation(pool, model, scene) : NULL,
-                                     .quiet = request.quiet});
+    const EngineOptions options = {.solve = request.solve,
+                                   .recovery = request.recovery,
+                                   .lanes = request.lanes,
+                                   .compiler = request.compiler,
+                                   .flags = request.flags,
+                                   .quiet = request.quiet};
+    /* a page shows whatever outputs tell; lanes are for code for all scenes */
+    const bool general = request.general || request.page || request.driven || request.recording || request.lanes;
+    const Engine *engine = runs ? engine_open_run(pool, request.engine, model, scene, general ? NULL : request.scene,
+                                                  request.picture, &options)
+                                : engine_open(pool, request.engine, model, &options);
     if (request.driven)
         drive_write(pool, model, scene, engine, &request);
     else if (request.states)
@@ -383,10 +376,10 @@ int main(int count, char **word)
     else if (request.rests || request.modes)
         analyse(pool, model, scene, engine, &request);
     else
-        simulate(pool, engine, model, scene_narrow(pool, scene, model, engine),
+        simulate(pool, engine, model, scene,
                  request.page ? animation_new(pool, model, scene, request.scene, request.other, name_of(request.with))
                               : NULL,
-                 step_watch_new(pool, step_theory_new(pool, model), scene, engine, false), &request);
+                 &request);
     engine_close(engine);
     pool_free(pool);
     return 0;

@@ -27,6 +27,8 @@ typedef struct OperatingPoint {
  * and scene as scene_rig() leaves them. Both end in diag_fail where there is no such state. */
 OperatingPoint operating_point_rest(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 OperatingPoint operating_point_run(Pool *pool, const Model *model, const Scene *scene, Solve solve, double time);
+/* One of them; time: NaN: that at rest. */
+OperatingPoint operating_point(Pool *pool, const Model *model, const Scene *scene, Solve solve, double time);
 
 /* linear_model.c: matrices by rows; columns are those of the names. */
 typedef struct LinearModel {

@@ -114,3 +114,9 @@ OperatingPoint operating_point_run(Pool *pool, const Model *model, const Scene *
                             .source = scene->source,
                             .text = pool_print(pool, "about the state of the run at t = %.9g s", gic_time(way.self))};
 }
+
+OperatingPoint operating_point(Pool *pool, const Model *model, const Scene *scene, Solve solve, double time)
+{
+    return isnan(time) ? operating_point_rest(pool, model, scene, solve)
+                       : operating_point_run(pool, model, scene, solve, time);
+}

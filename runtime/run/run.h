@@ -77,8 +77,6 @@ void animation_write(Animation *animation, const char *path);
  * with a message when no compiler for it is there, or the page can't be written. */
 void drive_write(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request);
 
-typedef struct StepWatch StepWatch; /* stability_watch.h */
-
 /* ---- simulate.c, evaluate.c */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
@@ -104,7 +102,7 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
 /* Run a scene: results, picture, page (animation: NULL where none is asked for), summary. mechanism: what the engine
  * was made for. A failure on the way keeps what was computed, with the last good state, and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
-              StepWatch *watch, const Request *request);
+              const Request *request);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

@@ -652,9 +652,10 @@ static const char *explain(Run *run, const Model *mechanism, const gic_head *fai
     return pool_print(run->pool, "%s: subset '%s'", found.finding, run->engine->code->subset_name[subset]);
 }
 
-void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
-              StepWatch *watch, const Request *request)
+void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *whole, Animation *animation,
+              const Request *request)
 {
+    const Scene *scene = scene_narrow(pool, whole, mechanism, engine);
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
     Run run = {.pool = pool,
@@ -663,7 +664,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
                .scene = scene,
                .request = request,
                .animation = animation,
-               .watch = watch};
+               .watch = step_watch_new(pool, step_theory_new(pool, mechanism), whole, engine, false)};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);
@@ -708,7 +709,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
         plot_write(pool, &run.plot, request->picture);
     if (end)
         diag_fail(at, remedy, "the run ends at t = %.6g s: %s", gic_time(run.self), end);
-    const char *finding = watch && !run.interrupted ? step_watch_judge(watch, &remedy) : NULL;
+    const char *finding = run.watch && !run.interrupted ? step_watch_judge(run.watch, &remedy) : NULL;
     if (finding)
         diag_fail(at, remedy, "%s", finding);
 }

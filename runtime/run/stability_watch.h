@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 
 typedef struct StepTheory StepTheory;
+typedef struct StepWatch StepWatch;
 
 /* What the runs of a model have in common: its equations for small motions, opened when first asked for. The model: for
  * code for any scene, before scene_narrow(). */
