@@ -30,6 +30,9 @@ typedef struct gic_batch_model {
     int32_t (*outputs)(void *self);
     int (*status)(const void *self, int32_t vehicle);
     gic_real (*output)(const void *self, int32_t vehicle, int32_t output);
+    /* Numbers in place: block v / lanes, of `block_size` bytes, has the head of vehicle v at v % lanes *
+     * sizeof(gic_head), and number i of an array at its offset + (i * lanes + v % lanes) * sizeof(gic_real). */
+    size_t block_size, state_offset, rate_offset, input_offset, output_offset, parameter_offset, port_offset;
 } gic_batch_model;
 
 #ifdef __cplusplus

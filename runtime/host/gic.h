@@ -36,7 +36,7 @@ extern "C" {
 #endif
 
 /* Increased when a program must be compiled anew; that of the library itself, and gicgen's version as text. */
-#define GICL_VERSION 1
+#define GICL_VERSION 2
 GICL_API int gicl_version(void);
 GICL_API const char *gicl_release(void);
 
@@ -164,17 +164,21 @@ GICL_API int gicl_restore(gicl_library *library, gicl_handle instance, const voi
 
 /* ---- batches ------------------------------------------------------------------------------------------------ */
 
-/* `vehicles` instances side by side, each with the bits that it has alone. Scene as above. */
-GICL_API int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles,
+/* `vehicles` instances side by side, each with the bits that it has alone. Scene as above. lanes: 1: they make their
+ * steps one after another; 2, 4, 8 or 16: so many at once, in the lanes of the processor's vectors, by code that the C
+ * compiler makes, whatever the model's engine, and keeps in gicrun's cache; models with tires have none yet:
+ * GICL_FAILED. */
+GICL_API int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles, int lanes,
                             gicl_handle *batch, gicl_messages *said);
-/* An array of all of them: number i of vehicle v is at data[v * stride + i]; i below `count`. */
+/* An array of all of them: number i of vehicle v is at data[v / lanes * stride + i * lanes + v % lanes]; i below
+ * `count`, lanes as above. */
 GICL_API int gicl_batch_view(gicl_library *library, gicl_handle batch, int kind, double **data, int *count,
                              size_t *stride, gicl_messages *said);
 /* Steps of all; status: [vehicles], written; NULL: not wanted. One that fails keeps its last state, and disturbs no
  * other; the call then returns the status of the first that did. */
 GICL_API int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int ratio,
                              int64_t steps, int32_t *status, gicl_messages *said);
-/* Outputs of all, as gicl_outputs(). */
+/* Outputs of all, as gicl_outputs(); in lanes GICL_RATE becomes the rate of the present state. */
 GICL_API int gicl_batch_outputs(gicl_library *library, gicl_handle batch, int32_t *status, gicl_messages *said);
 /* Back to the start, at time 0, where which[v] is not 0; NULL: all. Parameters are those in the batch's array. */
 GICL_API int gicl_batch_reset(gicl_library *library, gicl_handle batch, const uint8_t *which, gicl_messages *said);

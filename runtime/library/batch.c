@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles, gicl_handle *batch,
-                   gicl_messages *said)
+int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles, int lanes,
+                   gicl_handle *batch, gicl_messages *said)
 {
-    return vehicles_new(library, model, scene, vehicles, THING_BATCH, batch, said);
+    return vehicles_new(library, model, scene, vehicles, lanes, THING_BATCH, batch, said);
 }
 
 int gicl_batch_view(gicl_library *library, gicl_handle batch, int kind, double **data, int *count, size_t *stride,
@@ -29,8 +29,9 @@ int gicl_batch_view(gicl_library *library, gicl_handle batch, int kind, double *
     return use_end(&use, GICL_OK);
 }
 
-/* Note the status of vehicle v; *first becomes the first that is not GIC_OK. */
-static void note(const Vehicles *many, int v, const gic_head *self, int status, int32_t *each, int *first,
+/* Note the status of vehicle v; *first becomes the first that is not GIC_OK. trial: NULL: the vehicle itself has what
+ * happened. */
+static void note(const Vehicles *many, int v, const gic_head *trial, int status, int32_t *each, int *first,
                  gicl_messages *said)
 {
     char what[40];
@@ -40,7 +41,7 @@ static void note(const Vehicles *many, int v, const gic_head *self, int status, 
         return;
     *first = status;
     snprintf(what, sizeof what, "vehicle %d", v);
-    call_status(said, many->code, self, status, what);
+    call_status(said, many->code, trial ? trial : vehicle_look(many, v), status, what);
 }
 
 int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int method, int ratio, int64_t steps,
@@ -54,8 +55,12 @@ int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int m
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
     int first = GIC_OK;
     model_enter(many->model);
-    for (int v = 0; v < many->count; ++v)
-        note(many, v, vehicle_of(many, v), vehicle_step(many, v, step, method, ratio, steps), each, &first, said);
+    if (many->many)
+        lanes_step(many, step, method, ratio, steps);
+    for (int v = 0; v < many->count; ++v) {
+        const int status = many->many ? vehicle_status(many, v) : vehicle_step(many, v, step, method, ratio, steps);
+        note(many, v, NULL, status, each, &first, said);
+    }
     model_leave(many->model);
     return use_end(&use, first);
 }
@@ -68,8 +73,12 @@ int gicl_batch_outputs(gicl_library *library, gicl_handle batch, int32_t *each, 
     const Vehicles *many = use.thing;
     int first = GIC_OK;
     model_enter(many->model);
-    for (int v = 0; v < many->count; ++v)
-        note(many, v, many->copy, vehicle_outputs(many, v), each, &first, said);
+    if (many->many)
+        lanes_outputs(many);
+    for (int v = 0; v < many->count; ++v) {
+        const int status = many->many ? vehicle_status(many, v) : vehicle_outputs(many, v);
+        note(many, v, many->many ? NULL : many->copy, status, each, &first, said);
+    }
     model_leave(many->model);
     return use_end(&use, first);
 }
@@ -86,7 +95,7 @@ int gicl_batch_reset(gicl_library *library, gicl_handle batch, const uint8_t *wh
     for (int v = 0; v < many->count; ++v) {
         if (which && !which[v])
             continue;
-        const double *own = instance_array(vehicle_of(many, v), place);
+        const double *own = instance_array(vehicle_look(many, v), place);
         const bool changed = memcmp(own, instance_array(many->origin, place), bytes) != 0;
         note(many, v, many->copy, vehicle_start(many, v, changed ? own : NULL), NULL, &first, said);
     }

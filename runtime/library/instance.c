@@ -14,7 +14,7 @@
 int gicl_instance_new(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *instance,
                       gicl_messages *said)
 {
-    return vehicles_new(library, model, scene, 1, THING_INSTANCE, instance, said);
+    return vehicles_new(library, model, scene, 1, 1, THING_INSTANCE, instance, said);
 }
 
 int gicl_set_up(gicl_library *library, gicl_handle instance, const double *parameter, int count, gicl_messages *said)

@@ -77,19 +77,24 @@ const gic_signal *model_signals(const gic_model *code, int kind, int *count, siz
 typedef struct Vehicles {
     Pool *pool;
     OpenModel *model;
+    const Engine *engine; /* the model's, or one of its own, for lanes */
     const gic_model *code;
-    const Scene *scene; /* where they begin; NULL: the model at design */
-    int count;
-    size_t stride; /* bytes from one to the next */
+    const gic_batch_model *many; /* NULL: one after another */
+    const Scene *scene;          /* where they begin; NULL: the model at design */
+    int count, lanes;
+    size_t stride; /* bytes from one to the next, or from one block of lanes to the next */
     char *first;
-    gic_head *copy, *origin; /* copy: for trials; origin: as the start left the first */
+    gic_head *copy, *origin, *seen; /* copy: for trials; origin: as the start left the first; seen: one out of lanes */
 } Vehicles;
 
 /* gicl_instance_new() and gicl_batch_new(); kind: of the handle. */
-int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, ThingKind kind,
+int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, int lanes, ThingKind kind,
                  gicl_handle *made, gicl_messages *said);
 void vehicles_free(void *vehicles);
+/* Its head; not of lanes: the instance. */
 gic_head *vehicle_of(const Vehicles *vehicles, int v);
+/* An instance with its numbers: itself, or `seen`. */
+gic_head *vehicle_look(const Vehicles *vehicles, int v);
 /* gicl_view() of the first; false: there is no such kind, said says so. */
 bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count, gicl_messages *said);
 /* Bring a vehicle to the start, or leave it as it is. parameter: NULL: those of scene or model. `copy` then has what
@@ -99,6 +104,10 @@ int vehicle_start(const Vehicles *vehicles, int v, const double *parameter);
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps);
 /* Outputs of the present state, by `copy`, which then has what happened. Returns a status. */
 int vehicle_outputs(const Vehicles *vehicles, int v);
+/* The same of all in lanes, which go on after a failure too: vehicle_status() takes what happened. */
+void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, int64_t steps);
+void lanes_outputs(const Vehicles *vehicles);
+int vehicle_status(const Vehicles *vehicles, int v);
 
 /* ---- result.c */
 

@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: MIT
  * Vehicles of instances and batches, side by side in memory: where they begin, a scene's road, parameters, initial
  * state and inputs or the model's design, and how they go on. */
+#include "base/message.h"
+#include "emit/emit.h"
 #include "engine/engine.h"
+#include "gic_batch.h"
 #include "gic_runtime.h"
 #include "library/library_private.h"
 #include "run/run.h"
 #include "scene/scene.h"
 
+#include <dlfcn.h>
 #include <stdint.h>
 #include <string.h>
 
-enum { MOST = 1 << 24, LINE = 64 /* bytes, at whose multiples vectors are quickest from */ };
+enum { MOST = 1 << 24, LANES_MOST = 16, LINE = 64 /* bytes, at whose multiples vectors are quickest from */ };
 
 typedef struct Making {
     OpenModel *model;
     const char *scene; /* path */
-    int count;
+    int count, lanes;
     Vehicles *made;
 } Making;
 
@@ -29,29 +33,51 @@ static const Scene *read_scene(Pool *pool, const OpenModel *model, const char *p
     return equilibrium_start(pool, model->model, scene, model->options.solve);
 }
 
+/* Code for all of them at once. */
+static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batch_model **many)
+{
+    const OpenModel *model = making->model;
+    const Batch batch = {making->count, making->lanes};
+    const char *why;
+    const Engine *engine = engine_batch(pool, model->model, &model->options, &batch, "-O3 -march=native", many, &why);
+    if (!engine)
+        diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
+                  "no code for many vehicles at once: %s", why);
+    return engine;
+}
+
 static void make(void *context)
 {
     Making *making = context;
     Pool *pool = pool_new();
     Vehicles *vehicles = pool_alloc(pool, sizeof *vehicles);
-    const Engine *engine = making->model->engine;
-    const size_t stride = (engine->code->size + LINE - 1) / LINE * LINE;
+    const Scene *scene = read_scene(pool, making->model, making->scene);
+    const gic_batch_model *many = NULL;
+    const Engine *engine = making->lanes > 1 ? open_lanes(pool, making, &many) : making->model->engine;
+    const size_t stride = many ? many->block_size : (engine->code->size + LINE - 1) / LINE * LINE;
+    const size_t line = many && many->alignment > LINE ? many->alignment : LINE;
     *vehicles = (Vehicles){.pool = pool,
                            .model = making->model,
+                           .engine = engine,
                            .code = engine->code,
-                           .scene = read_scene(pool, making->model, making->scene),
+                           .many = many,
+                           .scene = scene,
                            .count = making->count,
+                           .lanes = making->lanes,
                            .stride = stride,
                            .copy = instance_new(pool, engine),
-                           .origin = instance_new(pool, engine)};
-    char *room = pool_alloc(pool, stride * (size_t)making->count + LINE);
-    vehicles->first = room + (LINE - (uintptr_t)room % LINE);
+                           .origin = instance_new(pool, engine),
+                           .seen = instance_new(pool, engine)};
+    char *room = pool_alloc(pool, (many ? many->size : stride * (size_t)making->count) + line);
+    vehicles->first = room + (line - (uintptr_t)room % line);
     making->made = vehicles;
 }
 
 void vehicles_free(void *freed)
 {
     const Vehicles *vehicles = freed;
+    if (vehicles->many)
+        dlclose(vehicles->engine->library);
     model_let(vehicles->model);
     pool_free(vehicles->pool);
 }
@@ -67,7 +93,7 @@ static int start(const Vehicles *vehicles, gic_head *self, const double *paramet
         scene.driver = NULL;
         scene.rest = NULL;
         scene.replay = NULL;
-        status = scene_start(vehicles->model->engine, &scene, self);
+        status = scene_start(vehicles->engine, &scene, self);
     } else
         status = parameter ? vehicles->code->setup_with(self, parameter) : vehicles->code->setup(self);
     /* inputs are the caller's from here on */
@@ -76,7 +102,7 @@ static int start(const Vehicles *vehicles, gic_head *self, const double *paramet
     return status;
 }
 
-int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, ThingKind kind,
+int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, int count, int lanes, ThingKind kind,
                  gicl_handle *made, gicl_messages *said)
 {
     if (made)
@@ -88,7 +114,9 @@ int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, in
         return use_end(&use, call_wrong(said, NULL, "the place for the handle must not be NULL"));
     if (count < 1 || count > MOST)
         return use_end(&use, call_wrong(said, NULL, "a batch has 1 to %d vehicles, not %d", MOST, count));
-    Making making = {use.thing, scene, count, NULL};
+    if (lanes < 1 || lanes > LANES_MOST || (lanes & (lanes - 1)))
+        return use_end(&use, call_wrong(said, NULL, "lanes are 1, 2, 4, 8 or 16, not %d", lanes));
+    Making making = {use.thing, scene, count, lanes, NULL};
     int status = model_engine(library, making.model, said);
     if (status == GICL_OK)
         status = call_work(library, said, make, &making);
@@ -98,6 +126,8 @@ int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, in
     model_keep(making.model);
     model_enter(making.model);
     status = call_status(said, vehicles->code, vehicles->origin, start(vehicles, vehicles->origin, NULL), "set-up");
+    if (vehicles->many && status == GIC_OK)
+        status = call_status(said, vehicles->code, vehicles->origin, vehicles->many->setup(vehicles->first), "set-up");
     for (int v = 0; v < count && status == GIC_OK; ++v)
         status = vehicle_start(vehicles, v, NULL);
     model_leave(making.model);
@@ -110,7 +140,16 @@ int vehicles_new(gicl_library *library, gicl_handle model, const char *scene, in
 
 gic_head *vehicle_of(const Vehicles *vehicles, int v)
 {
-    return (gic_head *)(void *)(vehicles->first + vehicles->stride * (size_t)v);
+    const int lanes = vehicles->lanes;
+    return (gic_head *)(void *)(vehicles->first + vehicles->stride * (size_t)(v / lanes)) + v % lanes;
+}
+
+gic_head *vehicle_look(const Vehicles *vehicles, int v)
+{
+    if (!vehicles->many)
+        return vehicle_of(vehicles, v);
+    vehicles->many->store(vehicles->first, v, vehicles->seen);
+    return vehicles->seen;
 }
 
 bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count, gicl_messages *said)
@@ -120,21 +159,31 @@ bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count
         call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind);
         return false;
     }
-    *data = instance_array(vehicle_of(vehicles, 0), offset);
+    const gic_batch_model *many = vehicles->many;
+    if (many) {
+        const size_t of[GICL_KINDS] = {[GICL_STATE] = many->state_offset,         [GICL_RATE] = many->rate_offset,
+                                       [GICL_INPUT] = many->input_offset,         [GICL_OUTPUT] = many->output_offset,
+                                       [GICL_PARAMETER] = many->parameter_offset, [GICL_PORT] = many->port_offset};
+        offset = of[kind];
+    }
+    *data = (double *)(void *)(vehicles->first + offset);
     return true;
 }
 
 int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
 {
-    gic_head *self = vehicle_of(vehicles, v), *copy = vehicles->copy;
+    gic_head *copy = vehicles->copy;
     int status = GIC_OK;
-    memcpy(copy, parameter ? self : vehicles->origin, vehicles->code->size);
+    memcpy(copy, parameter ? vehicle_look(vehicles, v) : vehicles->origin, vehicles->code->size);
     if (parameter)
         status = start(vehicles, copy, parameter);
     if (status != GIC_OK)
         return status;
     copy->lane = v;
-    memcpy(self, copy, vehicles->code->size);
+    if (vehicles->many)
+        vehicles->many->load(vehicles->first, v, copy);
+    else
+        memcpy(vehicle_of(vehicles, v), copy, vehicles->code->size);
     return status;
 }
 
@@ -160,5 +209,30 @@ int vehicle_outputs(const Vehicles *vehicles, int v)
     if (status == GIC_OK)
         memcpy(instance_array(self, code->output_offset), instance_array(copy, code->output_offset),
                sizeof(double) * (size_t)code->output_count);
+    return status;
+}
+
+void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, int64_t steps)
+{
+    const gic_batch_model *many = vehicles->many;
+    const bool known = ratio == 1 ? method == GIC_AB3 || method == GIC_RK4 : ratio > 1 && method == GIC_AB3;
+    for (int v = 0; v < vehicles->count && !known; ++v)
+        vehicle_of(vehicles, v)->status = GIC_ERROR_ARGUMENT;
+    while (known && steps > 0) {
+        const int32_t next = steps < INT32_MAX ? (int32_t)steps : INT32_MAX;
+        steps = many->step(vehicles->first, step, method, next) > 0 ? steps - next : 0;
+    }
+}
+
+void lanes_outputs(const Vehicles *vehicles)
+{
+    vehicles->many->outputs(vehicles->first);
+}
+
+int vehicle_status(const Vehicles *vehicles, int v)
+{
+    gic_head *self = vehicle_of(vehicles, v);
+    const int status = self->status;
+    self->status = GIC_OK;
     return status;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""batch_cost.py STEPS.so MODEL SCENE VEHICLES STEP ROUNDS: processor time of a step of a batch by Python, against the same
+"""batch_cost.py STEPS.so MODEL SCENE VEHICLES LANES STEP ROUNDS: processor time of a step of a batch by Python, against the same
 steps in C (batch_steps.c) of the same batch: least of the rounds, which alternate. Prints both, s, and the quotient."""
 import ctypes
 import sys
@@ -9,11 +9,11 @@ import time
 import gicgen
 from gicgen import _library
 
-steps, path, scene, vehicles, step, rounds = sys.argv[1:]
+steps, path, scene, vehicles, lanes, step, rounds = sys.argv[1:]
 in_c = ctypes.CDLL(steps).batch_steps
 in_c.argtypes = [ctypes.c_void_p, ctypes.c_uint64, ctypes.c_double, ctypes.c_int]
 vehicles, step = int(vehicles), float(step)
-batch = gicgen.Model(path).batch(vehicles, scene)
+batch = gicgen.Model(path).batch(vehicles, scene, int(lanes))
 MANY = 20
 
 

@@ -213,6 +213,46 @@ class Calls(unittest.TestCase):
         batch.step(0.001)
         self.assertEqual(batch.states[1, 0] != batch.states[0, 0], True)
 
+    def test_lanes(self):
+        """Vehicles in lanes: names, places, bits of those one after another, which are gicrun's."""
+        batches = [self.model.batch(7, SCENE, lanes=lanes) for lanes in (1, 2, 4)]
+        for lanes, batch in zip((1, 2, 4), batches):
+            if lanes > 1:
+                self.assertEqual(batch.states.array.shape, (-(-7 // lanes), lanes, 4))
+            self.assertEqual(batch.states["bounce"].shape, (7,))
+            self.assertEqual(numpy.asarray(batch.states).shape, (7, 4))
+            batch.states["bounce"] = 0.05 - 0.003 * numpy.arange(7)
+            batch.states[1:3, 2] = 0.01
+            batch.step(0.001, 100, "rk4")
+            batch.step(0.001, 50)
+            batch.reset([0, 0, 1, 0, 0, 0, 1])
+            batch.step(0.001, 50, check=False)
+            self.assertTrue((batch.status == 0).all())
+        for batch in batches[1:]:
+            for kind in ("states", "outputs", "inputs", "parameters", "rates"):
+                mine, theirs = getattr(batch, kind), getattr(batches[0], kind)
+                if kind != "rates":
+                    self.assertTrue(numpy.array_equal(mine[:], theirs[:]), kind)
+                self.assertEqual(mine[:].shape, theirs[:].shape)
+            self.assertEqual(batch.states[3, 1], batches[0].states[3, 1])
+            self.assertTrue(numpy.array_equal(batch.states[["bounce", "spring"]], batches[0].states[["bounce", "spring"]]))
+        columns, batch = gicgen.Model(QUARTER, general=True).run(SCENE), self.model.batch(5, SCENE, lanes=4)
+        for row in range(40):
+            self.assertTrue((batch.outputs["carriage.z"] == columns["carriage.z"][row]).all())
+            batch.step(0.002, 5, "rk4")
+        batch.states[4, 0] = 1e9
+        with self.assertRaisesRegex(gicgen.RunError, "vehicle 4"):
+            batch.step(0.001)
+        for call, kind, words in (
+                (lambda: self.model.batch(3, lanes=3), gicgen.WrongCall, "lanes are 1, 2, 4, 8 or 16, not 3"),
+                (lambda: self.model.batch(3, lanes=0), ValueError, "lanes: a whole number from 1 to 16"),
+                (lambda: gicgen.Model(TIRES).batch(3, lanes=4), gicgen.Error, "wheels with tires"),
+                (lambda: batch.states["bonce"], KeyError, "is 'bounce' meant"),
+                (lambda: batch.states.__setitem__("bounce", [1, 2]), ValueError, r"shape \(5,\) is wanted, not \(2,\)"),
+                (lambda: batch.states.__setitem__("bounce", math.nan), ValueError, "finite")):
+            with self.assertRaisesRegex(kind, words):
+                call()
+
     def test_linear(self):
         linear, modes = self.model.linearize(), self.model.modes()
         self.assertEqual(linear.A.shape, (4, 4))

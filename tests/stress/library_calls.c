@@ -24,7 +24,7 @@ typedef struct Thing {
     Kind kind;
     bool open;
     int made_as; /* of models, instances and batches: which model, with which options */
-    int vehicles;
+    int vehicles, lanes;
 } Thing;
 
 /* What threads see of one another. */
@@ -138,7 +138,7 @@ static int judge(Fuzz *f, const char *call, int wrong, int status)
 
 /* ---- handles ---------------------------------------------------------------------------------------------------- */
 
-static void keep(Fuzz *f, gicl_handle handle, Kind kind, int made_as, int vehicles)
+static void keep(Fuzz *f, gicl_handle handle, Kind kind, int made_as, int vehicles, int lanes)
 {
     int place = f->things;
     if (f->things < THINGS)
@@ -149,7 +149,7 @@ static void keep(Fuzz *f, gicl_handle handle, Kind kind, int made_as, int vehicl
         while (f->thing[place].open && !once_in(f, THINGS));
     if (f->thing[place].open)
         judge(f, "free", false, gicl_free(f->lib, f->thing[place].handle, f->said));
-    f->thing[place] = (Thing){handle, kind, true, made_as, vehicles};
+    f->thing[place] = (Thing){handle, kind, true, made_as, vehicles, lanes};
     if (f->shared) {
         pthread_mutex_lock(&f->shared->lock);
         f->shared->handle[f->shared->count++ % FOREIGN] = handle;
@@ -180,6 +180,7 @@ static Thing pick(Fuzz *f, Kind kind, int *wrong)
     return picked;
 }
 
+/* The first number of vehicle v; others follow at `lanes` places each. */
 static double *view(Fuzz *f, const Thing *thing, int v, int kind, int *count)
 {
     double *data;
@@ -188,35 +189,36 @@ static double *view(Fuzz *f, const Thing *thing, int v, int kind, int *count)
                            ? gicl_batch_view(f->lib, thing->handle, kind, &data, count, &stride, f->said)
                            : gicl_view(f->lib, thing->handle, kind, &data, count, f->said);
     judge(f, "view", false, status);
-    return status == GICL_OK ? data + stride * (size_t)v : NULL;
+    return status == GICL_OK ? data + stride * (size_t)(v / thing->lanes) + v % thing->lanes : NULL;
 }
 
 typedef struct Look {
-    int count;
+    int count, lanes;
     double *at, number[NUMBERS];
 } Look;
 
 static Look look(Fuzz *f, const Thing *thing, int v, int kind)
 {
-    Look l = {0};
+    Look l = {.lanes = thing->lanes};
     l.at = view(f, thing, v, kind, &l.count);
     if (l.count > NUMBERS)
         found(f, "view", 0, "more numbers than this program has room for");
-    if (l.at)
-        memcpy(l.number, l.at, sizeof(double) * (size_t)l.count);
+    for (int i = 0; l.at && i < l.count; ++i)
+        l.number[i] = l.at[i * l.lanes];
     return l;
 }
 
 static void check_same(const Fuzz *f, const char *call, int status, const Look *before)
 {
-    if (before->at && memcmp(before->at, before->number, sizeof(double) * (size_t)before->count) != 0)
-        found(f, call, status, "the state has changed");
+    for (int i = 0; before->at && i < before->count; ++i)
+        if (memcmp(&before->at[i * before->lanes], &before->number[i], sizeof(double)) != 0)
+            found(f, call, status, "the state has changed");
 }
 
-static void check_finite(const Fuzz *f, const char *call, const double *number, int count)
+static void check_finite(const Fuzz *f, const char *call, const double *number, int count, int lanes)
 {
     for (int i = 0; number && i < count; ++i)
-        if (!isfinite(number[i]))
+        if (!isfinite(number[i * lanes]))
             found(f, call, 0, "a number is not finite");
 }
 
@@ -257,7 +259,7 @@ static void open_model(Fuzz *f)
     }
     const int status = judge(f, "model_open", wrong, gicl_model_open(f->lib, given, &options, &handle, f->said));
     if (status == GICL_OK)
-        keep(f, handle, MODEL, 3 * m + e, 0);
+        keep(f, handle, MODEL, 3 * m + e, 0, 1);
     else if (handle)
         found(f, "model_open", status, "a handle of nothing");
 }
@@ -280,7 +282,7 @@ static void open_text(Fuzz *f)
     const int status =
         judge(f, "model_text", !name || !given, gicl_model_text(f->lib, name, given, size, NULL, &handle, f->said));
     if (status == GICL_OK)
-        keep(f, handle, MODEL, -1, 0);
+        keep(f, handle, MODEL, -1, 0, 1);
     else if (handle)
         found(f, "model_text", status, "a handle of nothing");
 }
@@ -341,13 +343,16 @@ static void make_vehicles(Fuzz *f)
         while (vehicles > 1000 && vehicles <= 1 << 24); /* 16 million are allowed, and take long */
         wrong |= vehicles < 1 || vehicles > 1000;
     }
+    int lanes = 1;
+    if (batch && vehicles == 3) /* one number of vehicles, for code is compiled for it */
+        wrong |= (lanes = once_in(f, 4) ? odd_count(f) : 2) < 1 || lanes > 2;
     const bool none = once_in(f, 10);
     gicl_handle *place = none ? NULL : &handle;
     const int status = judge(f, "new", wrong || none,
-                             batch ? gicl_batch_new(f->lib, model.handle, scene, vehicles, place, f->said)
+                             batch ? gicl_batch_new(f->lib, model.handle, scene, vehicles, lanes, place, f->said)
                                    : gicl_instance_new(f->lib, model.handle, scene, place, f->said));
     if (status == GICL_OK)
-        keep(f, handle, batch ? BATCH : INSTANCE, model.made_as, batch ? vehicles : 1);
+        keep(f, handle, batch ? BATCH : INSTANCE, model.made_as, batch ? vehicles : 1, lanes);
     else if (!none && handle)
         found(f, "new", status, "a handle of nothing");
 }
@@ -362,7 +367,7 @@ static void write_numbers(Fuzz *f)
     int count = 0;
     double *data = view(f, &thing, v, below(f, GICL_KINDS), &count);
     if (data && count > 0) {
-        double *number = &data[below(f, count)];
+        double *number = &data[below(f, count) * thing.lanes];
         *number = once_in(f, 3) ? odd_number(f) : *number * (1 + 1e-3 * (below(f, 100) - 50));
     }
 }
@@ -439,10 +444,10 @@ static void step(Fuzz *f)
         check_same(f, "step", status, &before);
         return;
     }
-    check_finite(f, "step", before.at, steps ? before.count : 0);
+    check_finite(f, "step", before.at, steps ? before.count : 0, 1);
     status = judge(f, "step", false, gicl_step(f->lib, one.handle, s.step, s.method, s.ratio, s.steps, f->said));
     if (status == GICL_OK && steps)
-        check_finite(f, "step", before.at, before.count);
+        check_finite(f, "step", before.at, before.count, 1);
 }
 
 static void step_batch(Fuzz *f)
@@ -489,7 +494,7 @@ static void step_batch(Fuzz *f)
         if (each[v] != 0)
             check_same(f, "batch_step", status, &before);
         else if (s.steps)
-            check_finite(f, "batch_step", before.at, before.count);
+            check_finite(f, "batch_step", before.at, before.count, before.lanes);
     }
     for (int i = many.vehicles - 1; i >= 0 && status != GICL_WRONG; --i)
         first = each[i] ? each[i] : first;
@@ -513,7 +518,7 @@ static void evaluate(Fuzz *f)
                        gicl_rhs(f->lib, one.handle, time, state, rate, count, f->said));
     check_same(f, "rhs", status, &own);
     if (status == GICL_OK)
-        check_finite(f, "rhs", rate, n);
+        check_finite(f, "rhs", rate, n, 1);
     judge(f, "rhs", true, gicl_rhs(f->lib, one.handle, time, NULL, rate, n, f->said));
     if (wrong || !own.at)
         return;
@@ -522,7 +527,7 @@ static void evaluate(Fuzz *f)
         memcpy(again, own.number, sizeof again);
         if (judge(f, "rhs", false, gicl_rhs(f->lib, one.handle, 0, again, again, n, f->said)) != GICL_OK)
             found(f, "rhs", 0, "a state is refused that was good");
-        check_finite(f, "rhs", again, n);
+        check_finite(f, "rhs", again, n, 1);
         for (int i = 0; i < n; ++i)
             if (fabs(again[i] - rate[i]) > 1e-6 * (1 + fabs(rate[i])))
                 found(f, "rhs", 0, "another rate where state and rate are one array");
@@ -531,7 +536,7 @@ static void evaluate(Fuzz *f)
     check_same(f, "outputs", status, &own);
     if (status == GICL_OK) {
         const Look outputs = look(f, &one, 0, GICL_OUTPUT);
-        check_finite(f, "outputs", outputs.at, outputs.count);
+        check_finite(f, "outputs", outputs.at, outputs.count, 1);
     }
 }
 
@@ -602,7 +607,7 @@ static void analyse(Fuzz *f)
     if (none)
         return;
     if (handle)
-        keep(f, handle, RESULT, 0, 0);
+        keep(f, handle, RESULT, 0, 0, 1);
     else if (status == GICL_OK)
         found(f, "analyse", status, "no result");
 }

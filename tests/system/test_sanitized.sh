@@ -69,7 +69,7 @@ check $status "calls of the library"
 [ $? -eq 1 ] && ! grep 'runtime error:\|Sanitizer' "$work/refused" >"$work/said"
 check $? "the library refuses broken models and leaves nothing of them"
 for threads in 1 3; do
-    (cd "$root" && GICGEN_CACHE='' "$debug/check/library_calls" 1 2 600 $threads \
+    (cd "$root" && GICGEN_CACHE="$work/calls" "$debug/check/library_calls" 1 2 600 $threads \
         models/quarter_car.veh=models/scenes/quarter_car.scene models/pendulum.veh=models/scenes/pendulum.scene \
         models/controllers/skyhook.veh=models/controllers/skyhook.scene tests/data/tuning/car.veh) >"$work/out" 2>"$work/said"
     check $? "calls in random order, threads: $threads"

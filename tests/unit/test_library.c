@@ -141,7 +141,7 @@ static void test_batch(void **state)
     int count;
     size_t stride;
     int32_t each[VEHICLES];
-    GOOD(gicl_batch_new(lib->lib, m, scene, VEHICLES, &batch, lib->said));
+    GOOD(gicl_batch_new(lib->lib, m, scene, VEHICLES, 1, &batch, lib->said));
     GOOD(gicl_batch_view(lib->lib, batch, GICL_STATE, &all, &count, &stride, lib->said));
     for (int v = 0; v < VEHICLES; ++v)
         all[(size_t)v * stride + (size_t)count / 2] += 0.01 * v;
@@ -187,8 +187,8 @@ static void test_wrong_calls(void **state)
     assert_int_equal(gicl_rhs(lib->lib, car, 0, number, number + 100, states + 1, lib->said), GICL_WRONG);
     assert_int_equal(gicl_rhs(lib->lib, car, 0, NULL, number, states, lib->said), GICL_WRONG);
     assert_int_equal(gicl_set_up(lib->lib, car, number, 199, lib->said), GICL_WRONG);
-    assert_int_equal(gicl_batch_new(lib->lib, m, NULL, 0, &other, lib->said), GICL_WRONG);
-    assert_int_equal(gicl_batch_new(lib->lib, m, NULL, -5, &other, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_batch_new(lib->lib, m, NULL, 0, 1, &other, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_batch_new(lib->lib, m, NULL, -5, 1, &other, lib->said), GICL_WRONG);
     assert_int_equal(gicl_run(lib->lib, m, NULL, &result, lib->said), GICL_WRONG);
     assert_int_equal(gicl_linearize(lib->lib, m, NULL, 1, &result, lib->said), GICL_WRONG);
     assert_int_equal(gicl_restart(lib->lib, car, NAN, lib->said), GICL_WRONG);
@@ -341,7 +341,7 @@ static int many_calls(gicl_library *lib, gicl_messages *said)
     if (!status)
         status = gicl_step(lib, car, 0.001, GICL_AB3, 1, 3, said);
     if (!status)
-        status = gicl_batch_new(lib, m, NULL, 3, &batch, said);
+        status = gicl_batch_new(lib, m, NULL, 3, 1, &batch, said);
     if (!status)
         status = gicl_run(lib, m, scene, &result, said);
     return status;
@@ -390,6 +390,70 @@ static void test_text(void **state)
     assert_string_equal(message.file, "mine.veh");
     assert_true(message.line > 0 && message.column > 0);
     assert_non_null(message.remedy);
+}
+
+/* Vehicles in lanes have the bits of those that go one after another, whatever happens to some of them. */
+static void test_lanes(void **state)
+{
+    enum { VEHICLES = 11, BAD = 5, STEPS = 60 };
+    const Lib *lib = *state;
+    const gicl_handle m = model(lib, quarter, "tcc");
+    const int lanes[] = {1, 4, 8};
+    double kept[3][STEPS][VEHICLES][16];
+    memset(kept, 0, sizeof kept);
+    for (int way = 0; way < 3; ++way) {
+        gicl_handle batch;
+        double *data, *input;
+        int count, inputs;
+        size_t stride, input_stride;
+        int32_t each[VEHICLES];
+        const int w = lanes[way];
+        GOOD(gicl_batch_new(lib->lib, m, scene, VEHICLES, w, &batch, lib->said));
+        GOOD(gicl_batch_view(lib->lib, batch, GICL_STATE, &data, &count, &stride, lib->said));
+        GOOD(gicl_batch_view(lib->lib, batch, GICL_INPUT, &input, &inputs, &input_stride, lib->said));
+        assert_true(count <= 8);
+#define AT(v, i) data[(size_t)((v) / w) * stride + (size_t)((i)*w + (v) % w)]
+        for (int v = 0; v < VEHICLES; ++v)
+            AT(v, 0) += 0.002 * v;
+        GOOD(gicl_batch_restart(lib->lib, batch, NULL, lib->said));
+        for (int k = 0; k < STEPS; ++k) {
+            uint8_t which[VEHICLES] = {0};
+            if (k == 20)
+                AT(BAD, 1) = NAN;
+            const int status =
+                gicl_batch_step(lib->lib, batch, 0.002, k < 40 ? GICL_AB3 : GICL_RK4, 1, 3, each, lib->said);
+            assert_int_equal(status != 0, k >= 20 && k < 30);
+            for (int v = 0; v < VEHICLES; ++v)
+                assert_int_equal(each[v], v == BAD ? status : 0);
+            if (k == 25)
+                assert_int_equal(gicl_batch_outputs(lib->lib, batch, each, lib->said) != 0, 1);
+            which[BAD] = which[2] = 1;
+            if (k == 29)
+                GOOD(gicl_batch_reset(lib->lib, batch, which, lib->said));
+            if (k == 50)
+                GOOD(gicl_batch_outputs(lib->lib, batch, NULL, lib->said));
+            for (int v = 0; v < VEHICLES; ++v)
+                for (int i = 0; i < count; ++i)
+                    kept[way][k][v][i] = AT(v, i);
+        }
+#undef AT
+        GOOD(gicl_batch_view(lib->lib, batch, GICL_OUTPUT, &data, &count, &stride, lib->said));
+        for (int v = 0; v < VEHICLES; ++v)
+            for (int i = 0; i < count && i < 8; ++i)
+                kept[way][0][v][8 + i] = data[(size_t)(v / w) * stride + (size_t)(i * w + v % w)];
+        assert_memory_equal(kept[0], kept[way], sizeof kept[0]);
+        assert_int_equal(gicl_batch_step(lib->lib, batch, 0.002, 7, 1, 1, each, lib->said), -1);
+        assert_int_equal(gicl_batch_step(lib->lib, batch, 0.002, GICL_AB3, 0, 1, each, lib->said), -1);
+        GOOD(gicl_free(lib->lib, batch, lib->said));
+    }
+    gicl_handle other;
+    for (int w = -1; w < 40; ++w)
+        if (w != 1 && w != 2 && w != 4 && w != 8 && w != 16)
+            assert_int_equal(gicl_batch_new(lib->lib, m, scene, 3, w, &other, lib->said), GICL_WRONG);
+    assert_int_equal(
+        gicl_batch_new(lib->lib, model(lib, "models/hmmwv_tires.veh", "tape"), NULL, 3, 4, &other, lib->said),
+        GICL_FAILED);
+    assert_non_null(strstr(last(lib->said), "wheels with tires"));
 }
 
 /* A step in which a controller would sample without end. */
@@ -489,6 +553,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_failures_leave_nothing, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_no_memory, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_text, open_lib, close_lib),
+        cmocka_unit_test_setup_teardown(test_lanes, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_endless_step, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_threads, open_lib, close_lib),
     };

@@ -95,6 +95,38 @@ class Named(_ByName):
         return f"<{self.kind}s {dict(self.items())}>"
 
 
+class Lanes(Named):
+    """Numbers of vehicles in lanes: `array` is [blocks, lanes, numbers]. What is read is a copy, [vehicles, numbers]."""
+
+    def __init__(self, array, names, units, kind, changed, vehicles):
+        super().__init__(array, names, units, kind, changed)
+        self._vehicles = vehicles
+
+    def _copy(self):
+        blocks, lanes, count = self.array.shape
+        return numpy.array(self.array).reshape(blocks * lanes, count)[:self._vehicles]
+
+    def __getitem__(self, key):
+        if isinstance(key, str):
+            return self.array[..., place(self.names, self.kind, key)].flatten()[:self._vehicles]
+        found = self._copy()[self._place(key)]
+        return found if numpy.ndim(found) else float(found)
+
+    def __setitem__(self, key, value):
+        values = Named(self._copy(), self.names, self.units, self.kind)
+        values[key] = value
+        blocks, lanes, count = self.array.shape
+        full = self._vehicles // lanes
+        self.array[:full] = values.array[:full * lanes].reshape(full, lanes, count)
+        if full < blocks:
+            self.array[full, :self._vehicles - full * lanes] = values.array[full * lanes:]
+        if self._changed:
+            self._changed()
+
+    def __array__(self, dtype=None, copy=None):
+        return self._copy().astype(dtype or float)
+
+
 class Table(_ByName):
     """Columns with names and units. `table["time"]` is one; `data` all of them, [rows, columns]; `units` those by name.
     `pandas.DataFrame(dict(table))` makes a data frame of it."""

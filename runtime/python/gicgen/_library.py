@@ -4,7 +4,7 @@ import ctypes
 import os
 import threading
 
-API = 1  # GICL_VERSION of gic.h
+API = 2  # GICL_VERSION of gic.h
 OK, FAILED, WRONG = 0, 1, 2
 STATE, RATE, INPUT, OUTPUT, PARAMETER, PORT = range(6)
 Handle = ctypes.c_uint64
@@ -108,7 +108,7 @@ _ARGUMENTS = {
     "snapshot_size": [Handle, _P],
     "snapshot": [Handle, _P, ctypes.c_size_t],
     "restore": [Handle, _P, ctypes.c_size_t],
-    "batch_new": [Handle, ctypes.c_char_p, ctypes.c_int, _P],
+    "batch_new": [Handle, ctypes.c_char_p, ctypes.c_int, ctypes.c_int, _P],
     "batch_view": [Handle, ctypes.c_int, _P, _P, _P],
     "batch_step": [Handle, ctypes.c_double, ctypes.c_int, ctypes.c_int, ctypes.c_int64, _P],
     "batch_outputs": [Handle, _P],
