@@ -125,12 +125,40 @@ class Calls(unittest.TestCase):
             y = y + h / 6 * (a + 2 * b + 2 * c + d)
         car.step(h, 50, "rk4")
         numpy.testing.assert_allclose(y, car.states[:], rtol=1e-11)
+
+    def test_scipy(self):
+        """Where SciPy is: its integrators, equations and least squares work on a vehicle as it is."""
         try:
             from scipy.integrate import solve_ivp
+            from scipy.optimize import least_squares, root
         except ImportError:
             return
-        found = solve_ivp(other.rhs, (0, 0.1), self.car().states[:], rtol=1e-10, atol=1e-12)
-        numpy.testing.assert_allclose(found.y[:, -1], y, atol=2e-6)
+        car, other = self.car(), self.car()
+        car.step(2e-5, 5000, "rk4")
+        for method in ("RK45", "DOP853", "Radau", "BDF", "LSODA"):
+            found = solve_ivp(other.rhs, (0, 0.1), self.car().states[:], method=method, rtol=1e-9, atol=1e-11)
+            self.assertTrue(found.success)
+            numpy.testing.assert_allclose(found.y[:, -1], car.states[:], atol=2e-6, err_msg=method)
+        rest = root(lambda x: other.rhs(0, x), self.model.instance().states[:], tol=1e-12)
+        self.assertTrue(rest.success)
+        numpy.testing.assert_allclose(rest.x, self.model.equilibrium().states[:], atol=1e-9)
+        with open(QUARTER) as file:
+            text = file.read().replace("stiffness: 167070.9, damping: 17490.8", "stiffness: k, damping: c")
+        text += "parameters:\n  k: {value: 150000, unit: N/m, tunable: true}\n  c: {value: 15000, unit: N s/m, tunable: true}\n"
+        car = gicgen.Model(text=text, name=QUARTER).instance(SCENE)
+
+        def motion(p):
+            car.set_up(1e5 * p)
+            heights = []
+            for _ in range(40):
+                car.step(0.002, 5, "rk4")
+                heights.append(car.states["bounce"])
+            return numpy.array(heights)
+
+        true = numpy.array([1.670709, 0.174908])
+        measured = motion(true)
+        found = least_squares(lambda p: motion(p) - measured, [1.5, 0.15], xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        numpy.testing.assert_allclose(found.x, true, rtol=1e-6)
 
     def test_files_with_mistakes(self):
         with self.assertRaises(gicgen.Error) as caught:
