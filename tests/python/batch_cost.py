@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""batch_cost.py STEPS.so MODEL SCENE VEHICLES LANES STEP ROUNDS: processor time of a step of a batch by Python, against the same
-steps in C (batch_steps.c) of the same batch: least of the rounds, which alternate. Prints both, s, and the quotient."""
+"""batch_cost.py STEPS.so MODEL SCENE VEHICLES LANES STEP ROUNDS: processor time of a step of a batch by Python, against
+the same steps in C (batch_steps.c) of the same batch: least of the rounds, which alternate. Prints both, s, and the
+quotient."""
 import ctypes
 import sys
 import time

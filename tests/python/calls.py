@@ -144,7 +144,8 @@ class Calls(unittest.TestCase):
         numpy.testing.assert_allclose(rest.x, self.model.equilibrium().states[:], atol=1e-9)
         with open(QUARTER) as file:
             text = file.read().replace("stiffness: 167070.9, damping: 17490.8", "stiffness: k, damping: c")
-        text += "parameters:\n  k: {value: 150000, unit: N/m, tunable: true}\n  c: {value: 15000, unit: N s/m, tunable: true}\n"
+        text += "parameters:\n  k: {value: 150000, unit: N/m, tunable: true}\n"
+        text += "  c: {value: 15000, unit: N s/m, tunable: true}\n"
         car = gicgen.Model(text=text, name=QUARTER).instance(SCENE)
 
         def motion(p):
@@ -263,7 +264,8 @@ class Calls(unittest.TestCase):
                     self.assertTrue(numpy.array_equal(mine[:], theirs[:]), kind)
                 self.assertEqual(mine[:].shape, theirs[:].shape)
             self.assertEqual(batch.states[3, 1], batches[0].states[3, 1])
-            self.assertTrue(numpy.array_equal(batch.states[["bounce", "spring"]], batches[0].states[["bounce", "spring"]]))
+            two = ["bounce", "spring"]
+            self.assertTrue(numpy.array_equal(batch.states[two], batches[0].states[two]))
         columns, batch = gicgen.Model(QUARTER, general=True).run(SCENE), self.model.batch(5, SCENE, lanes=4)
         for row in range(40):
             self.assertTrue((batch.outputs["carriage.z"] == columns["carriage.z"][row]).all())
@@ -329,9 +331,9 @@ class Calls(unittest.TestCase):
         for call, kind, words in (
                 (lambda: env(actions={"rak": (0, 1)}), KeyError, "is 'rack' meant"),
                 (lambda: env(actions=["rack"]), TypeError, "actions: a dictionary is wanted"),
-                (lambda: env(actions={"rack": 1}), TypeError, r"action 'rack': a pair of bounds \(low, high\) is wanted"),
+                (lambda: env(actions={"rack": 1}), TypeError, r"'rack': a pair of bounds \(low, high\) is wanted"),
                 (lambda: env(actions={"rack": (1, 0)}), ValueError, "action 'rack': a least and a greatest number"),
-                (lambda: env(actions={"rack": (0, math.nan)}), ValueError, "action 'rack': a least and a greatest number"),
+                (lambda: env(actions={"rack": (0, math.nan)}), ValueError, "'rack': a least and a greatest number"),
                 (lambda: env(actions={"rack": ("a", "b")}), ValueError, "action 'rack': numbers"),
                 (lambda: env(observations="chassis.y"), TypeError, "observations: a list of names"),
                 (lambda: env(observations=["chassis.yy"]), KeyError, "is 'chassis.y' meant"),
@@ -351,7 +353,7 @@ class Calls(unittest.TestCase):
                 (lambda: env().reset(seed=[1, 2, 3]), ValueError, "seed: a number or 2 of them"),
                 (lambda: env().reset(seed=[1, -2]), ValueError, "seed: a whole number from 0"),
                 (lambda: env().reset(seed="ab"), TypeError, "seed: a whole number is wanted, not 'ab'"),
-                (lambda: env().reset(options={"reset_mask": [1, 0]}), ValueError, "options: this environment has none")):
+                (lambda: env().reset(options={"reset_mask": [1, 0]}), ValueError, "options: this one has none")):
             with self.assertRaisesRegex(kind, words):
                 call()
         self.assertEqual(env().reset(seed=numpy.int64(3))[0].shape, (2, 1))
@@ -370,8 +372,8 @@ class Calls(unittest.TestCase):
             wrong.step([["a"], ["b"]])
 
     def test_env_start_refused(self):
-        """No observation of a vehicle whose start the model refuses: the library's message, at reset() and when an episode
-        begins anew; reset() mends it."""
+        """No observation of a vehicle whose start the model refuses: the library's message, at reset() and when an
+        episode begins anew; reset() mends it."""
         model = gicgen.Model(QUARTER)
         env = VectorEnv(model, 3, scene=SCENE, actions={}, observations=["carriage.z"], step=0.001, horizon=2,
                         reward=lambda seen, action: seen[:, 0], scatter={"bounce": 0.001})

@@ -96,7 +96,7 @@ class Named(_ByName):
 
 
 class Lanes(Named):
-    """Numbers of vehicles in lanes: `array` is [blocks, lanes, numbers]. What is read is a copy, [vehicles, numbers]."""
+    """Numbers of vehicles in lanes: `array` is [blocks, lanes, numbers]; read are copies, [vehicles, numbers]."""
 
     def __init__(self, array, names, units, kind, changed, vehicles):
         super().__init__(array, names, units, kind, changed)

@@ -99,7 +99,8 @@ class VectorEnv:
             raise TypeError(f"observations: a list of names is wanted, not {observations!r}")
         self.batch = model.batch(num_envs, scene)
         self.num_envs = n = self.batch.vehicles
-        each = {self._place("inputs", name): _pair(pair, f"action {name!r}") for name, pair in _by_name(actions, "actions")}
+        each = {self._place("inputs", name): _pair(pair, f"action {name!r}")
+                for name, pair in _by_name(actions, "actions")}
         self._inputs = list(each)
         self._outputs = [self._place("outputs", name) for name in observations]
         self._scatter = []
@@ -147,10 +148,10 @@ class VectorEnv:
         return [None if each is None else _count(each, "seed", 0, 2**128 - 1) for each in seed]
 
     def reset(self, *, seed=None, options=None):
-        """Observations [num_envs, ...] and info. seed: a whole number from 0, from which each vehicle gets its own, or a
+        """Observations [num_envs, ...] and info. seed: a whole number from 0, of which each vehicle gets its own, or a
         list of them; None: random numbers go on, at first from the system. options: there are none."""
         if options:
-            raise ValueError(f"options: this environment has none, not {options!r}")
+            raise ValueError(f"options: this one has none, not {options!r}")
         if seed is not None or self._random is None:
             self._random = [numpy.random.default_rng(each) for each in self._seeds(seed)]
         return self._begin(numpy.ones(self.num_envs, dtype=bool)).copy(), {}
