@@ -182,12 +182,40 @@ static void write_work(void *context, Text *out, int indent)
 {
     Generation *g = context;
     const RateColumns *columns = columns_of(g);
-    line(out, indent,
-         "enum { LANES = %d }; /* columns that change accelerations, and some more, for vectors of them */",
-         room((columns->lanes + 7) / 8 * 8));
     line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM] = {R(0.0)};", g->upper, g->upper);
-    line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][LANES];", room(columns->size),
-         room(columns->factors), g->upper);
+    line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][%s_COLUMN_LANES];", room(columns->size),
+         room(columns->factors), g->upper, g->upper);
+    if (columns->wheels)
+        line(out, indent, "gic_real local[%d], part[%d][%s_COLUMN_LANES];", room(columns->wheels->locals),
+             room(columns->wheels->parts), g->upper);
+}
+
+static void write_lanes(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    line(out, indent,
+         "enum { %s_COLUMN_LANES = %d }; /* columns that change accelerations or fast rates, and some more, for "
+         "vectors of them "
+         "*/",
+         g->upper, room((columns_of(g)->lanes + 7) / 8 * 8));
+}
+
+static void write_wheel_functions_along(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    write_wheel_columns(g, out);
+}
+
+static void write_call_wheels(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    if (!columns_of(g)->wheels)
+        return;
+    line(out, indent, "memset(part, 0, sizeof part);");
+    line(out, indent, "status = %s_columns_wheels(self, time, y, e, column, local, part);", g->model->name);
+    line(out, indent, "if (status != GIC_OK)");
+    line(out, indent + 4, "return status;");
 }
 
 static void write_euler(void *context, Text *out, int indent)
@@ -205,6 +233,9 @@ const Insertions columns_class_points = {(const char *const[]){"columns_class.c.
 
 static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns calls", write_calls},
+                                  {"columns lanes", write_lanes},
+                                  {"columns wheels", write_wheel_functions_along},
+                                  {"columns wheels call", write_call_wheels},
                                   {"columns rates", write_rates},
                                   {"columns accelerations", write_accelerations},
                                   {"columns turn", write_turn},

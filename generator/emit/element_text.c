@@ -460,7 +460,9 @@ const char *element_text(Pool *pool, const Naming *naming, Element e)
     case ARRAY_step:
     case ARRAY_rest: return array_text[e.array];
     case ARRAY_right:
-        return pool_print(pool, "right[%d][%s]", e.index, e.which < 0 ? "c" : pool_print(pool, "%d", e.which));
+    case ARRAY_part:
+        return pool_print(pool, "%s[%d][%s]", array_text[e.array], e.index,
+                          e.which < 0 ? "c" : pool_print(pool, "%d", e.which));
     default: return pool_print(pool, "%s[%s]", array_name(pool, e), index_text(pool, naming, e));
     }
 }

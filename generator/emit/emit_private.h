@@ -156,6 +156,9 @@ void write_tangent_header(void *context, Text *out, int indent);
 extern const Insertions columns_points, columns_class_points;
 const struct RateColumns *columns_of(Generation *g);
 void write_jacobian_columns(void *context, Text *out, int indent);
+/* wheel_columns.c: the same through wheels; nothing for models without fast states. */
+extern const Insertions columns_wheels_points, columns_wheel_points;
+void write_wheel_columns(Generation *g, Text *out);
 
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);

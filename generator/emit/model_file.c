@@ -721,6 +721,8 @@ static void check_templates(Pool *pool, const char *templates)
                                         &tangent_header_points,
                                         &columns_points,
                                         &columns_class_points,
+                                        &columns_wheels_points,
+                                        &columns_wheel_points,
                                         NULL};
     templates_check(pool, templates, points);
 }

@@ -78,6 +78,9 @@ typedef struct Table Table; /* base/table.h */
     X(which, "which", "1 for the dependent Euler parameter, 0 for the others") \
     X(right, "right", \
       "right-hand sides, or solutions, of Element.which, one column of several; of column c where it is -1") \
+    X(part, "part", "derivatives of what moves wheels, and of fast rates, of one column as `right`") \
+    X(local, "local", "derivatives of what wheels, own states and the powertrain do by what moves each of them") \
+    X(half, "half", "derivatives of a wheel's contact and tire by what moves the wheel") \
     X(factor, "factor", "factors of the mass matrix")
 
 typedef enum Array {

@@ -76,6 +76,16 @@ static Ex road_part_slope(Dag *dag, const Node *part, const Ex *slope, bool seve
     return ex_add(dag, ex_mul(dag, along[0], dx), ex_mul(dag, along[1], dy));
 }
 
+/* Friction moves likewise. */
+static Ex friction_slope(Dag *dag, Ex friction, Ex dx, Ex dy, bool several)
+{
+    const Ex one = ex_literal(dag, 1), zero = ex_literal(dag, 0);
+    if (!several)
+        return ex_op(dag, OP_FRICTION_CHANGE, friction, dx, dy);
+    return ex_add(dag, ex_mul(dag, ex_op(dag, OP_FRICTION_CHANGE, friction, one, zero), dx),
+                  ex_mul(dag, ex_op(dag, OP_FRICTION_CHANGE, friction, zero, one), dy));
+}
+
 /* Of a node whose arguments have derivatives. positive: [nodes] checked to be above 0; several: see above; smooth: see
  * Seeds. */
 static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool several, bool smooth)
@@ -114,7 +124,7 @@ static Ex slope_of(Dag *dag, Ex e, const Ex *slope, const bool *positive, bool s
     case OP_MAX: return ex_op(dag, OP_POSITIVE, ex_sub(dag, a, b), da, db);
     case OP_POSITIVE: return db == dc ? db : ex_op(dag, OP_POSITIVE, a, db, dc);
     case OP_TABLE: return ex_mul(dag, ex_op(dag, OP_TABLE_SLOPE, a, b, 0), da);
-    case OP_FRICTION: return ex_op(dag, OP_FRICTION_CHANGE, e, da, db);
+    case OP_FRICTION: return friction_slope(dag, e, da, db, several);
     default: return zero;
     }
 }

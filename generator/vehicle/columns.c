@@ -21,13 +21,14 @@ typedef struct Differentiation {
     const RateColumns *all;
     const Plan *plan;
     Origin from;
+    bool *moved;             /* rows of part[] that it moves */
     const Ex *accelerations; /* [unknowns] their derivatives; NULL: they stand still */
 } Differentiation;
 
 static Origin origin_of(const Plan *plan, int column)
 {
     const Model *model = plan->model;
-    const int kinds[] = {plan->states, model->inputs, model->tunables};
+    const int kinds[] = {plan->states + model->fast_states, model->inputs, model->tunables};
     const Array array[] = {ARRAY_y, ARRAY_u, ARRAY_p};
     for (int k = 0; k < 3; ++k) {
         if (column < kinds[k])
@@ -144,14 +145,41 @@ static bool push(const Differentiation *d, Dag *dag, const Ex *b, int lane, Bloc
     return out->stores > before;
 }
 
-/* The derivatives of the rates [states] by one column, with those of the accelerations in right[]; lane -1: these are
- * 0.
- */
+/* What moves wheels, along one column. True where anything does. */
+static bool push_wheels(const Differentiation *d, WheelColumns *w, int lane)
+{
+    const Seeds seeds = {.seed = seed, .context = d};
+    const Block *link = &w->wheels->link;
+    const int slow = d->plan->states, before = w->link.stores;
+    Ex root[link->stores + 1];
+    for (int i = 0; i < link->stores; ++i)
+        root[i] = link->store[i].value;
+    const Ex *slope = dag_slopes(link->dag, NULL, root, link->stores, &seeds);
+    for (int i = 0; i < w->moving; ++i) {
+        Element e = w->part[i];
+        if (e.array == ARRAY_fast)
+            e = element_at(ARRAY_y, slow + e.index);
+        const Ex moved = e.array == ARRAY_link ? slope[root[e.index]] : seed(d, link->dag, e);
+        d->moved[i] = !ex_is(link->dag, moved, 0);
+        if (d->moved[i])
+            block_store(&w->link, moved, element_of(ARRAY_part, lane, i));
+    }
+    return w->link.stores > before;
+}
+
+/* The derivatives of the rates by one column, with those of the accelerations in right[] and of fast rates in part[];
+ * lane -1: these are 0. */
 static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, int lane)
 {
     const Seeds seeds = {.seed = seed, .context = d};
+    const int slow = d->plan->states, fast = d->plan->model->fast_states;
     Ex dz[d->plan->unknowns + 1], root[rates->stores + 1];
-    Ex *out = pool_alloc(dag->pool, (size_t)(d->plan->states + 1) * sizeof *out);
+    Ex *out = pool_alloc(dag->pool, (size_t)(slow + fast + 1) * sizeof *out);
+    for (int i = 0; i < fast && lane >= 0; ++i) {
+        const Element e = element_at(ARRAY_rate, i);
+        if (wheel_columns_moves(d->all->wheels, e, d->moved))
+            out[slow + i] = ex_input(dag, element_of(ARRAY_part, lane, wheel_columns_part(d->all->wheels, e)), NULL);
+    }
     for (int i = 0; i < d->plan->unknowns; ++i)
         dz[i] = lane < 0 ? 0 : ex_input(dag, element_of(ARRAY_right, lane, i), NULL);
     d->accelerations = dz;
@@ -163,46 +191,83 @@ static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, int lane)
     return out;
 }
 
-/* [nodes] those that depend on right[]. */
+/* What changes right-hand sides through wheels. */
+static Ex wheel_seed(const void *context, Dag *dag, Element element)
+{
+    const WheelColumns *w = context;
+    switch (element.array) {
+    case ARRAY_self_grip: return wheel_columns_change(w, dag, element_at(ARRAY_grip, element.index));
+    case ARRAY_self_watch: return wheel_columns_change(w, dag, element_at(ARRAY_watch, element.index));
+    default: return 0;
+    }
+}
+
+/* Add what wheels do to the right-hand sides z [n] of column c, and store the rates of fast states. */
+static void add_wheels(const WheelColumns *w, Dag *dag, const Ex *b, int n, Ex *z, Block *solution)
+{
+    const Seeds seeds = {.seed = wheel_seed, .context = w};
+    const Ex *slope = dag_slopes(dag, NULL, b, n, &seeds);
+    for (int i = 0; i < n; ++i)
+        z[i] = ex_add(dag, z[i], slope[b[i]]);
+    for (int i = w->moving; i < w->parts; ++i)
+        block_store(solution, wheel_columns_change(w, dag, w->part[i]), element_of(ARRAY_part, -1, i));
+}
+
+/* [nodes] those that depend on right[] or part[]. */
 static const bool *follow_right(const Dag *dag)
 {
     bool *follows = pool_alloc(dag->pool, (size_t)dag->nodes);
     for (int e = 0; e < dag->nodes; ++e) {
         const Node *node = &dag->node[e];
-        follows[e] = node->op == OP_INPUT && node->element->array == ARRAY_right;
+        follows[e] =
+            node->op == OP_INPUT && (node->element->array == ARRAY_right || node->element->array == ARRAY_part);
         for (int i = 0; node->level == LEVEL_VARIABLE && i < ex_arity((Op)node->op); ++i)
             follows[e] = follows[e] || follows[node->arg[i]];
     }
     return follows;
 }
 
-/* The solution of column c, in its place. What is the same for all columns is read from factor[], where `residuals`
- * stores it. Returns the number of these. */
-static int solve_column(Dag *dag, const Factors *f, Block *residuals, Block *solution)
+/* Does the loop over columns read it as it is? */
+static bool is_local(const Dag *dag, Ex e)
+{
+    return dag->node[e].op == OP_INPUT && dag->node[e].element->array == ARRAY_local;
+}
+
+/* The solution of column c, in its place, of b [n] where there are wheels. What is the same for all columns is read
+ * from factor[], where `residuals` stores it. Returns the number of these. */
+static int solve_column(Dag *dag, const Factors *f, const Ex *b, const WheelColumns *w, Block *residuals,
+                        Block *solution)
 {
     const int n = f->n;
     Ex z[n + 1], *from = NULL, *to = NULL;
     int count = 0;
+    *solution = (Block){.dag = dag};
     for (int i = 0; i < n; ++i)
         z[i] = ex_input(dag, element_of(ARRAY_right, -1, i), NULL);
+    if (w)
+        add_wheels(w, dag, b, n, z, solution);
     linear_solve(dag, f, z, z);
-    const bool *follows = follow_right(dag), *needed = dag_needed(dag, z, n);
+    for (int i = 0; i < n; ++i)
+        block_store(solution, z[i], element_of(ARRAY_right, -1, i));
+    Ex root[solution->stores + 1];
+    for (int i = 0; i < solution->stores; ++i)
+        root[i] = solution->store[i].value;
+    const bool *follows = follow_right(dag), *needed = dag_needed(dag, root, solution->stores);
     bool *read = pool_alloc(dag->pool, (size_t)dag->nodes);
     for (int e = 0; e < dag->nodes; ++e)
         for (int i = 0; needed[e] && follows[e] && i < ex_arity((Op)dag->node[e].op); ++i)
             read[dag->node[e].arg[i]] = true;
     for (Ex e = 0; e < (Ex)dag->nodes; ++e)
-        if (read[e] && !follows[e] && dag->node[e].level == LEVEL_VARIABLE) {
+        if (read[e] && !follows[e] && dag->node[e].level == LEVEL_VARIABLE && !is_local(dag, e)) {
             *POOL_PUSH(dag->pool, from, count) = e;
             block_store(residuals, e, element_at(ARRAY_factor, count - 1));
         }
     to = pool_alloc(dag->pool, ((size_t)count + 1) * sizeof *to);
     for (int i = 0; i < count; ++i)
         to[i] = ex_input(dag, element_at(ARRAY_factor, i), NULL);
-    const Ex *image = dag_replace(dag, z, n, from, to, count);
-    *solution = (Block){.dag = dag};
-    for (int i = 0; i < n; ++i)
-        block_store(solution, image[z[i]], element_of(ARRAY_right, -1, i));
+    const Ex *image = dag_replace(dag, root, solution->stores, from, to, count);
+    for (int i = 0; i < solution->stores; ++i)
+        solution->store[i].value = image[root[i]];
     return count;
 }
 
@@ -211,7 +276,7 @@ static int solve_column(Dag *dag, const Factors *f, Block *residuals, Block *sol
 static void constrain(Whole *whole, Ex **column)
 {
     Dag *dag = whole->dag;
-    for (int r = 0; r < whole->plan->states; ++r) {
+    for (int r = 0; r < whole->plan->states + whole->model->fast_states; ++r) {
         Ex dependent = 0;
         for (int i = 0; i < 4; ++i)
             dependent =
@@ -255,7 +320,7 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     const Plan *plan = f->plan;
     const Sequence *sequence = f->sequence;
     RateColumns *all = pool_alloc(pool, sizeof *all);
-    if (plan->solve != SOLVE_REDUCED || plan->reduction || f->wheels)
+    if (plan->solve != SOLVE_REDUCED || plan->reduction)
         return NULL;
     *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula, f->model->free_base),
                          .offset = pool_alloc(pool, (size_t)sequence->subsets * sizeof(int))};
@@ -267,22 +332,25 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     }
     Whole *whole = whole_new(pool, plan);
     Dag *dag = whole->dag;
-    const int n = plan->unknowns, rows = plan->states;
+    const int n = plan->unknowns, rows = plan->states + f->model->fast_states;
     Block rates = {.dag = dag};
     Ex b[n + 1], acc[n + 1], **column = pool_alloc(pool, ((size_t)columns + 1) * sizeof *column);
     const Factors *factors = dynamics_factors(whole, b);
     for (int i = 0; i < n; ++i)
         acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
     whole_store_rates(whole, &rates, acc);
+    all->wheels = f->wheels ? wheel_columns_new(pool, f, dag, b, n) : NULL;
+    bool *moved = pool_alloc(pool, all->wheels ? (size_t)all->wheels->parts + 1 : 1);
     dag_section(dag, "derivatives");
     all->residuals = all->block = (Block){.dag = dag, .eager = true};
     for (int c = 0; c < columns; ++c)
         if (!apart[c]) {
-            Differentiation d = {.all = all, .plan = plan, .from = origin_of(plan, c)};
-            const int lane = push(&d, dag, b, all->lanes, &all->residuals) ? all->lanes++ : -1;
+            Differentiation d = {.all = all, .plan = plan, .from = origin_of(plan, c), .moved = moved};
+            const bool rolls = all->wheels && push_wheels(&d, all->wheels, all->lanes);
+            const int lane = push(&d, dag, b, all->lanes, &all->residuals) || rolls ? all->lanes++ : -1;
             column[c] = pull(&d, dag, &rates, lane);
         }
-    all->factors = solve_column(dag, factors, &all->residuals, &all->solution);
+    all->factors = solve_column(dag, factors, b, all->wheels, &all->residuals, &all->solution);
     if (f->model->free_base)
         constrain(whole, column);
     for (int c = 0; c < columns; ++c)

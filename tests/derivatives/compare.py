@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""compare.py GICGEN MODEL [-n ROWS] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]: derivatives of rates and
-outputs by the code of `gicgen --derivatives`, by tangents and by the jacobian, against the very same code computed with
-dual numbers in C++ (dual_real.hpp), by every state, input, parameter and number of a port, at the design and at ROWS (5)
-random states beside it.
+"""compare.py GICGEN MODEL [-n ROWS] [--states CSV] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]
+[--matrices CSV OUT]: derivatives of rates and outputs by the code of `gicgen --derivatives`, by tangents and by the
+jacobian, against the very same code computed with dual numbers in C++ (dual_real.hpp), by every state, input, parameter
+and number of a port, at the design and at ROWS (5) random states beside it, or at those of a file of tests/tools/states.
+
+--matrices CSV OUT: instead, at the states of such a file the matrices of small motions, by the jacobian, as
+tests/tools/linearized prints them, for quad_linear.
 
 --npz IN OUT: instead, at the operating point of a file IN of `gicrun --linearize`: the matrices A to F by the code, in the
 small motions of models/SCENE.md section 8, which are written again here, against those of the file; those of the code
@@ -35,6 +38,8 @@ def option(name, count, default):
 
 rows = int(option("-n", 1, ["5"])[0])
 npz = option("--npz", 2, None)
+states_file = option("--states", 1, [None])[0]
+matrices = option("--matrices", 2, None)
 left_out = option("--but", 1, [])
 wave = ["0.05", "5"] if option("--wave", 0, None) is not None else []
 options = [word[9:] for word in words if word.startswith("--option=")]
@@ -93,11 +98,29 @@ with tempfile.TemporaryDirectory() as work:
         scale = np.maximum(np.abs(b).max(axis=1, keepdims=True), np.abs(b).max(axis=0, keepdims=True))
         return np.abs(a - b) / np.where(scale == 0, 1, scale)
 
-    if npz is None:
+    start = subprocess.run([tangent, "start"], capture_output=True, text=True, check=True).stdout.splitlines()[-1]
+    order = [name for k in ("state", "input", "parameter", "port", "discrete") for name in kind[k]]
+    base_row = dict(zip(order, start.split()))
+    assert len(base_row) == len(order)
+
+    def rows_of(path):
+        """The numbers of each row of a file of states, others as at the start."""
+        with open(path, encoding="utf-8") as file:
+            lines = [text.strip().split(",") for text in file]
+        numbers = []
+        for cells in lines[1:]:
+            row = [float({**base_row, **dict(zip(lines[0], cells))}[name]) for name in order]
+            row[len(row) - len(kind["discrete"]):] = [int(x) for x in row[len(row) - len(kind["discrete"]):]]
+            if "dependent_euler_parameter" in kind["discrete"]:
+                e = np.abs([row[order.index(f"e{i}")] for i in range(4)])
+                row[order.index("dependent_euler_parameter")] = int(e.argmax())
+            numbers.append(row)
+        return numbers
+
+    if npz is None and matrices is None:
         os.mkdir(f"{work}/dual")
         dual = build(f"{work}/dual", True)
-        base = subprocess.run([tangent, "start"], capture_output=True, text=True, check=True).stdout.splitlines()[-1]
-        base = np.array([float(word) for word in base.split()])
+        base = np.array([float(word) for word in start.split()])
         random = np.random.default_rng(7)
         states, inputs, parameters = (len(kind[k]) for k in ("state", "input", "parameter"))
         numbers = []
@@ -118,6 +141,8 @@ with tempfile.TemporaryDirectory() as work:
             numbers.append(row[:len(row)].tolist())
         for row in numbers:
             row[len(row) - len(kind["discrete"]):] = [int(x) for x in row[len(row) - len(kind["discrete"]):]]
+        if states_file:
+            numbers = rows_of(states_file)
         mine, theirs = evaluate(tangent, numbers), evaluate(dual, numbers)
         worst, compared = 0, 0
         for a, b in zip(mine + evaluate(tangent, numbers, "columns"), theirs + theirs):
@@ -136,23 +161,92 @@ with tempfile.TemporaryDirectory() as work:
         print(f"{compared} states, by tangents and by columns, {columns} columns: {worst:.2e}" + (f" at {place}" if worst else ""))
         sys.exit(not (compared and worst <= 1e-13))
 
-    # ---- at the point of a file
-    point = dict(np.load(npz[0]))
-    states, inputs, parameters = (list(point[k]) for k in ("states", "inputs", "parameters"))
-    free = len(point["base"]) == 7
-    base = 6 if free else 0
-    places = len([name for name in states if name.endswith(".rate")])
-    held = dict(zip(point["held"], point["held0"]))
-    z0, f = point["z0"], point["f"]
-
-    def plain(name):
-        return name.split("/")[-1]
-
+    # ---- small motions
     def matrix(e):
         w, x, y, z = e
         return np.array([[w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
                          [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
                          [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z]])
+
+    n, slow = len(kind["state"]), {name: i for i, name in enumerate(kind["state"])}
+    free = "e0" in slow
+    base = 6 if free else 0
+
+    def plain(name):
+        return name.split("/")[-1]
+
+    class Motions:
+        """Small motions `names` at a state: `places` of the base and of coordinates, their rates, fast states."""
+
+        def __init__(self, names, places, p, v, omega, rate):
+            self.names, self.places, self.rate = names, places, rate
+            self.change = np.zeros((n, len(names)))  # the state's by each small motion
+            for j, name in enumerate(names):
+                if not self.is_base(j):
+                    self.change[slow[plain(name)], j] = 1
+            if not free:
+                return
+            self.R, self.omega = matrix(p), omega
+            self.u = self.R.T @ v
+            r, e, v, o = slow["r.x"], slow["e0"], slow["v.x"], slow["omega.x"]
+            self.change[r:r + 3, 0:3] = self.R
+            for k in range(3):
+                theta = np.eye(3)[k]
+                self.change[e:e + 4, 3 + k] = np.concatenate([[-p[1:] @ theta], p[0] * theta + np.cross(p[1:], theta)]) / 2
+                self.change[v:v + 3, 3 + k] = self.R @ np.cross(theta, self.u)
+            self.change[v:v + 3, places:places + 3] = self.R
+            self.change[o:o + 3, places + 3:places + 6] = np.eye(3)
+
+        def is_base(self, i):
+            return i < base or self.places <= i < self.places + base
+
+        def rates(self, drate, z):
+            """The change of the motions' rates along z with that of the state's rate."""
+            out = np.zeros(len(self.names))
+            for i, name in enumerate(self.names):
+                if not self.is_base(i):
+                    out[i] = drate[slow[plain(name)]]
+            if free:
+                places, R, v, omega = self.places, self.R, slow["v.x"], slow["omega.x"]
+                rho, theta, du, domega = z[:3], z[3:6], z[places:places + 3], z[places + 3:places + 6]
+                out[:3] = du + np.cross(theta, self.u) - np.cross(self.omega, rho)
+                out[3:6] = domega - np.cross(self.omega, theta)
+                out[places:places + 3] = (R.T @ drate[v:v + 3] - np.cross(theta, R.T @ self.rate[v:v + 3]) -
+                                          np.cross(domega, self.u) - np.cross(self.omega, du))
+                out[places + 3:places + 6] = drate[omega:omega + 3]
+            return out
+
+    if matrices is not None:
+        coordinates = [name[:-5] for name in slow if name.endswith(".rate")]
+        known = {*("r.x r.y r.z e0 e1 e2 e3 v.x v.y v.z omega.x omega.y omega.z".split() if free else ()), *coordinates,
+                 *(name + ".rate" for name in coordinates), "transmission.age"}
+        names = ["base"] * base + coordinates
+        places = len(names)
+        names += ["base"] * base + [name + ".rate" for name in coordinates] + [name for name in slow if name not in known]
+        numbers, done = rows_of(matrices[0]), 0
+        with open(matrices[1], "w", encoding="utf-8") as file:
+            print("row", *names, sep=",", file=file)
+            for k, found in enumerate(evaluate(tangent, numbers, "columns")):
+                if found is None:
+                    continue
+                at = dict(zip(order, numbers[k]))
+                p, v, omega = (np.array([at.get(name, 0) for name in group.split()]) for group in
+                               ("e0 e1 e2 e3", "v.x v.y v.z", "omega.x omega.y omega.z"))
+                motions = Motions(names, places, p, v, omega, found[0][:n])
+                total, eye = found[1][:n, :n] @ motions.change, np.eye(len(names))
+                A = np.array([motions.rates(total[:, j], eye[j]) for j in range(len(names))]).T
+                for line in A:
+                    print(k + 1, *(f"{x:.17g}" for x in line), sep=",", file=file)
+                done += 1
+        sys.exit(not done)
+
+    # ---- at the point of a file
+    point = dict(np.load(npz[0]))
+    states, inputs, parameters = (list(point[k]) for k in ("states", "inputs", "parameters"))
+    assert free == (len(point["base"]) == 7)
+    places = len([name for name in states if name.endswith(".rate")])
+    held = dict(zip(point["held"], point["held0"]))
+    z0, f = point["z0"], point["f"]
 
     value = {plain(name): z for name, z in list(zip(states, z0))[base:places] + list(zip(states, z0))[places + base:]}
     value.update(held)
@@ -162,43 +256,18 @@ with tempfile.TemporaryDirectory() as work:
         for group, numbers in (("r.x r.y r.z", point["base"][:3]), ("e0 e1 e2 e3", p), ("v.x v.y v.z", R @ u0),
                                ("omega.x omega.y omega.z", omega0)):
             value.update(zip(group.split(), numbers))
+    else:
+        p = omega0 = R = u0 = None
     u, par = dict(zip(inputs, point["u0"])), dict(zip(parameters, point["p0"]))
     row = [value[name] for name in kind["state"]] + [u[name] for name in kind["input"]]
     row += [par[name] for name in kind["parameter"]] + [u[name] for name in kind["port"]]
     row += [int(held.get(name, 0)) for name in kind["discrete"]]
-    found = evaluate(tangent, [row])[0]
+    found = evaluate(tangent, [row], "columns")[0]
     if found is None:
         sys.exit("the code refuses the point")
-    n, slow = len(kind["state"]), {name: i for i, name in enumerate(kind["state"])}
-    rate, D = found[0][:n], found[1]
-    change = np.zeros((n, len(states)))  # the state's by each small motion
-    for j, name in enumerate(states):
-        if not (j < base or places <= j < places + base):
-            change[slow[plain(name)], j] = 1
-    if free:
-        r, e, v, omega = slow["r.x"], slow["e0"], slow["v.x"], slow["omega.x"]
-        change[r:r + 3, 0:3] = R
-        for k in range(3):
-            theta = np.eye(3)[k]
-            change[e:e + 4, 3 + k] = np.concatenate([[-p[1:] @ theta], p[0] * theta + np.cross(p[1:], theta)]) / 2
-            change[v:v + 3, 3 + k] = R @ np.cross(theta, u0)
-        change[v:v + 3, places:places + 3] = R
-        change[omega:omega + 3, places + 3:places + 6] = np.eye(3)
-
-    def motions(drate, z):
-        """The change of the motions' rates along z with that of the state's rate."""
-        out = np.zeros(len(states))
-        for i, name in enumerate(states):
-            if not (i < base or places <= i < places + base):
-                out[i] = drate[slow[plain(name)]]
-        if free:
-            rho, theta, du, domega = z[:3], z[3:6], z[places:places + 3], z[places + 3:places + 6]
-            out[:3] = du + np.cross(theta, u0) - np.cross(omega0, rho)
-            out[3:6] = domega - np.cross(omega0, theta)
-            out[places:places + 3] = (R.T @ drate[v:v + 3] - np.cross(theta, R.T @ rate[v:v + 3]) - np.cross(domega, u0) -
-                                      np.cross(omega0, du))
-            out[places + 3:places + 6] = drate[omega:omega + 3]
-        return out
+    D = found[1]
+    motion = Motions(states, places, p, R @ u0 if free else None, omega0, found[0][:n])
+    change, motions = motion.change, motion.rates
 
     own = {}
     total = D[:, :n] @ change

@@ -84,10 +84,20 @@ static int is_listed(int row, int column)
     return 0;
 }
 
-/* Equal, but that Newton's iteration from elsewhere ends in other roundings. */
-static int is_near(double a, double b)
+/* The largest magnitude in a row. */
+static double largest(const double *row, int columns)
 {
-    return fabs(a - b) <= 1e-9 * (1 + fabs(b));
+    double most = 0;
+    int c;
+    for (c = 0; c < columns; ++c)
+        most = fabs(row[c]) > most ? fabs(row[c]) : most;
+    return most;
+}
+
+/* Equal, but for roundings of the row's largest, and that Newton's iteration from elsewhere ends in others. */
+static int is_near(double a, double b, double most)
+{
+    return fabs(a - b) <= 1e-9 * (1 + most);
 }
 
 /* All columns at once must be the tangents, which must be 0 where they are not listed. 0: they are; else 1 + a row, or
@@ -108,7 +118,7 @@ static int check_jacobian(const Vehicle *at)
     if (status == GIC_OK)
         status = OF(_jacobian)(&self, gic_time(&at->head), at->state, &along, rates);
     for (k = 0; k < states * columns && status == GIC_OK; ++k)
-        status = is_near(all[k], rates[k]) ? 0 : 1 + k / columns;
+        status = is_near(all[k], rates[k], largest(all + k / columns * columns, columns)) ? 0 : 1 + k / columns;
     for (c = 0; c < columns && status == GIC_OK; ++c) {
         memset(&along, 0, sizeof along);
         *OF(_tangent_number)(&along, c) = 1;
@@ -116,7 +126,8 @@ static int check_jacobian(const Vehicle *at)
         status = OF(_tangent_outputs)(&self, &along);
         for (r = 0; r < results && status == GIC_OK; ++r) {
             const double one = r < states ? along.rate[r] : along.output[r - states];
-            if (is_listed(r, c) ? !is_near(all[r * columns + c], one) : one != 0 || all[r * columns + c] != 0)
+            const double most = largest(all + r * columns, columns);
+            if (is_listed(r, c) ? !is_near(all[r * columns + c], one, most) : one != 0 || all[r * columns + c] != 0)
                 status = 1 + r;
         }
     }
