@@ -77,9 +77,17 @@
  *   forces and equations of motion                           871       824      11      4         4
  *   all together                                            3242      4003      51     28         4
  *   outputs, when asked for                                  933      1137       4      4        19
+ *   look at contacts, with head.locate                      2560      3370      40     24         4
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x5b67be43
+#define HMMWV14_H 0x11164119
 
 #include "gic_runtime.h"
 
@@ -272,6 +280,7 @@ typedef struct hmmwv14 {
         recovery */
     int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[HMMWV14_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
+    gic_real touch[2 * HMMWV14_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv14;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

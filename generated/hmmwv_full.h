@@ -75,9 +75,17 @@
  *   forces and equations of motion                           838       763      10      4        24
  *   all together                                            1911      2336      24     14        24
  *   outputs, when asked for                                  648       750       4      4        27
+ *   look at contacts, with head.locate                      1258      1747      14     10        12
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x9eabae7f
+#define HMMWV_FULL_H 0x646170d3
 
 #include "gic_runtime.h"
 
@@ -264,6 +272,7 @@ typedef struct hmmwv_full {
         recovery */
     int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[HMMWV_FULL_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
+    gic_real touch[2 * HMMWV_FULL_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_full;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

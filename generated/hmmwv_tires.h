@@ -79,9 +79,17 @@
  *   a fast step: all wheels                                  780      1258      92     48       148
  *   all together                                            2620      3540     111     58       148
  *   outputs, when asked for                                  799       936       0      0         7
+ *   look at contacts, with head.locate                      2052      3033     106     58       148
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0xccdf8677
+#define HMMWV_TIRES_H 0xe14d4f93
 
 #include "gic_runtime.h"
 
@@ -344,6 +352,7 @@ typedef struct hmmwv_tires {
     gic_real multiplier[HMMWV_TIRES_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TIRES_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TIRES_GRIP * HMMWV_TIRES_ROLLING]; /* what the wheels do, HMMWV_TIRES_GRIP numbers each */
+    gic_real touch[2 * HMMWV_TIRES_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_tires;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -75,13 +75,21 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               165       253      36     14         5
- *   a fast step: all wheels                                  660      1014     144     56        20
- *   all together                                            2500      3296     163     66        20
+ *   wheel 'tire_f_l' (4 times)                               160       247      33     14         5
+ *   a fast step: all wheels                                  640       990     132     56        20
+ *   all together                                            2480      3272     151     66        20
  *   outputs, when asked for                                  799       936       0      0         7
+ *   look at contacts, with head.locate                      1912      2765     146     66        20
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0x4795a3b9
+#define HMMWV_TMEASY_H 0x72c85e5d
 
 #include "gic_runtime.h"
 
@@ -344,6 +352,7 @@ typedef struct hmmwv_tmeasy {
     gic_real multiplier[HMMWV_TMEASY_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
     gic_real link[5 * HMMWV_TMEASY_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_TMEASY_GRIP * HMMWV_TMEASY_ROLLING]; /* what the wheels do, HMMWV_TMEASY_GRIP numbers each */
+    gic_real touch[2 * HMMWV_TMEASY_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_tmeasy;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -80,9 +80,17 @@
  *   a fast step: all of these                                826      1328      98     48       152
  *   all together                                            2706      3658     117     58       152
  *   outputs, when asked for                                  855      1018       0      0         7
+ *   look at contacts, with head.locate                      2130      3151     112     58       152
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x7cd1db9d
+#define HMMWV_VEHICLE_H 0xe9c6af29
 
 #include "gic_runtime.h"
 
@@ -361,6 +369,7 @@ typedef struct hmmwv_vehicle {
     gic_real link[5 * HMMWV_VEHICLE_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[HMMWV_VEHICLE_GRIP * HMMWV_VEHICLE_ROLLING]; /* what the wheels do, HMMWV_VEHICLE_GRIP numbers each */
     gic_real watch[8]; /* of the powertrain, as in its outputs */
+    gic_real touch[2 * HMMWV_VEHICLE_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_vehicle;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -45,9 +45,17 @@
  *   forces and equations of motion                            39        40       1      0         1
  *   all together                                             308       445       5      3         1
  *   outputs, when asked for                                   72        99       0      0         1
+ *   look at contacts, with head.locate                       290       428       4      3         1
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x0c216f51
+#define QUARTER_CAR_H 0x78e2a0af
 
 #include "gic_runtime.h"
 
@@ -160,6 +168,7 @@ typedef struct quarter_car {
         last recovery */
     int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[QUARTER_CAR_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
+    gic_real touch[2 * QUARTER_CAR_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } quarter_car;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

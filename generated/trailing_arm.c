@@ -67,10 +67,18 @@
  *   forces and equations of motion                           761       750      10      4         4
  *   all together                                            1610      1939      16      8        12
  *   outputs, when asked for                                  564       700       4      4        13
+ *   look at contacts, with head.locate                      1022      1368       6      4        12
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0x7d14bb5f
+#if TRAILING_ARM_H != 0x2c69e5d3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -4830,6 +4838,13 @@ static const char *const trailing_arm_condition_text[1] = {
     NULL
 };
 
+static const char *const trailing_arm_contact_name[4] = {
+    "wheel 'tire_f_l'",
+    "wheel 'tire_f_r'",
+    "wheel 'tire_r_l'",
+    "wheel 'tire_r_r'",
+};
+
 /* Design poses of the bodies relative to the base that are followed by Newton's iteration, and their places in a
  * start. */
 static const struct {
@@ -6830,6 +6845,12 @@ static int trailing_arm_any_contacts(void *instance, gic_real time, const gic_re
     return self->head.status = status;
 }
 
+static const gic_contacts trailing_arm_contacts = {
+    trailing_arm_contact_name,
+    offsetof(trailing_arm, touch),
+    trailing_arm_any_contacts,
+};
+
 /* ---- descriptor -------------------------------------------------------------------------------------------------- */
 
 static int trailing_arm_any_setup(void *self)
@@ -6946,7 +6967,7 @@ const gic_model trailing_arm_model = {
     NULL,
     trailing_arm_any_check,
     TRAILING_ARM_CONTACTS,
-    trailing_arm_any_contacts,
+    &trailing_arm_contacts,
     0,
     NULL,
 };

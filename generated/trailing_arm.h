@@ -67,9 +67,17 @@
  *   forces and equations of motion                           761       750      10      4         4
  *   all together                                            1610      1939      16      8        12
  *   outputs, when asked for                                  564       700       4      4        13
+ *   look at contacts, with head.locate                      1022      1368       6      4        12
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0x7d14bb5f
+#define TRAILING_ARM_H 0x2c69e5d3
 
 #include "gic_runtime.h"
 
@@ -258,6 +266,7 @@ typedef struct trailing_arm {
         last recovery */
     int32_t recovered;                             /* 1 + the start that the last recovery left; 0: it failed */
     gic_real multiplier[TRAILING_ARM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
+    gic_real touch[2 * TRAILING_ARM_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } trailing_arm;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

@@ -78,7 +78,7 @@ void gic_restart(void *self, gic_real time)
     gic_head *head = (gic_head *)self;
     head->start_time = time;
     head->steps = 0;
-    head->history = 0;
+    head->history = head->touched = 0;
 }
 
 static void set_inputs(const gic_model *model, void *self, gic_real time)
@@ -234,10 +234,18 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
     gic_head *head = (gic_head *)self;
     const gic_real time = gic_time(self);
     head->subset = head->grown = -1;
+    head->event = 0;
+    head->begun_count = head->rhs_count + head->look_count;
     if (!gic_finite(&step, 1) || !gic_finite(&time, 1) || time + part <= time)
         return head->status = GIC_ERROR_ARGUMENT;
     head->ahead = step;
     return GIC_OK;
+}
+
+/* True if head.most allows steps without events. */
+static int has_room(const gic_head *head, int32_t ratio)
+{
+    return head->most == 0 || head->most >= GIC_LEAST_MOST(ratio);
 }
 
 /* True if the step continues the one before it, so that its history is valid. */
@@ -301,6 +309,16 @@ typedef struct Rest {
     int32_t discrete[MOST_DISCRETE];
 } Rest;
 
+/* Looks at one contact or gear: at least, where head.most leaves no room for more, and at most. */
+enum { LEAST_LOOKS = 8, MOST_LOOKS = 60 };
+
+/* Evaluations that head.most leaves for what is left of a step. */
+static int64_t work_left(const gic_head *head)
+{
+    const int64_t done = head->rhs_count + head->look_count - head->begun_count;
+    return head->most > 0 ? head->most - done : INT64_MAX / 2;
+}
+
 /* Put the instance at a share of the rest and look at its gears there: 1 if they change, 0 if not, or a status. */
 static int changes_at(const gic_model *model, void *self, const Rest *rest, gic_real share)
 {
@@ -313,20 +331,28 @@ static int changes_at(const gic_model *model, void *self, const Rest *rest, gic_
     head->start_time = rest->end - (GIC_R(1.0) - share) * rest->length;
     head->steps = 0;
     set_inputs(model, self, head->start_time);
+    ++head->look_count;
     const int status = settle(model, self, state);
     head->switch_count = switches;
     return status == GIC_OK ? model->shift(self) : status;
 }
 
+/* The least work of a change of gear within a step: the rate at its end, looks, and the rest of the step. */
+static int64_t least_gear_work(const gic_head *head)
+{
+    return 1 + LEAST_LOOKS + 4 * (int64_t)head->ratio;
+}
+
 /* Find the first change of gear in the rest and leave the instance right after it. *share: where it is. */
 static int locate_change(const gic_model *model, void *self, const Rest *rest, gic_real *share)
 {
+    const gic_head *head = (const gic_head *)self;
     const int halvings = sizeof(gic_real) < sizeof(double) ? 20 : 45;
     gic_real low = GIC_R(0.0), high = GIC_R(1.0);
     int found = changes_at(model, self, rest, low);
     if (found == 1)
         high = low;
-    for (int i = 0; i < halvings && found >= 0 && low < high; ++i) {
+    for (int i = 0; i < halvings && found >= 0 && low < high && work_left(head) > 4 * (int64_t)head->ratio + 1; ++i) {
         const gic_real middle = GIC_R(0.5) * (low + high);
         found = changes_at(model, self, rest, middle);
         if (found == 1)
@@ -357,6 +383,16 @@ static int finish_step(const gic_model *model, void *self, const Rest *rest, int
     return status;
 }
 
+/* What gic_head.event says of the discrete state that is not as in before[]. */
+static int32_t changed_gear(const gic_model *model, void *self, const int32_t *before)
+{
+    const int32_t *now = discrete_of(model, self);
+    int32_t i = 0;
+    while (i < model->discrete_count - 1 && now[i] == before[i])
+        ++i;
+    return 1 + model->contact_count + i;
+}
+
 /* Gears at the end of a step, whose state at the start is in row 1 of the scratch array. Each change is located, and
  * the step goes on from there. On a failure the instance is left at some time within the step. */
 static int change_gears(const gic_model *model, void *self)
@@ -373,9 +409,15 @@ static int change_gears(const gic_model *model, void *self)
         if (!model->shift(self))
             return GIC_OK;
         copy(to, end_state, n);
+        head->event = changed_gear(model, self, rest.discrete);
         if (changes == GIC_CHANGES)
             return GIC_ERROR_EVENTS;
         head->history = 0;
+        if (work_left(head) < least_gear_work(head)) { /* then it changes at the end of the step */
+            head->event = 0;
+            ++head->passed_count;
+            return GIC_OK;
+        }
         copy_discrete(model, discrete_of(model, self), rest.discrete);
         int status = evaluate(model, self, rest.end, to, rate_there);
         if (status == GIC_OK)
@@ -389,14 +431,16 @@ static int change_gears(const gic_model *model, void *self)
         }
         if (status != GIC_OK)
             return status;
+        head->event = 0;
         head->start_time = rest.end;
         set_inputs(model, self, rest.end);
     }
     return GIC_OK;
 }
 
-/* ---- contacts: the same for what head.locate asks for. Rows of the scratch array: 0 the rate where a piece begins, 2
- * the state there, 3 and 4 state and rate at the step's end, 3 to 6 work. */
+/* ---- contacts: the same for what head.locate asks for. Rows of the scratch array: 1 the state where the step begins,
+ * 9 and 11 state and rate at its end, others keep what the step has there; when it is made again, 0 the rate where a
+ * piece begins, 2 the state there, 3 to 6 work. */
 
 /* How near to them contacts are; above: those with a load, a bit each. */
 typedef struct Touch {
@@ -407,42 +451,213 @@ typedef struct Touch {
 static int touch_at(const gic_model *model, void *self, gic_real time, const gic_real *state, Touch *touch)
 {
     set_inputs(model, self, time);
-    const int status = model->contacts(self, time, state, touch->press);
+    ++((gic_head *)self)->look_count;
+    const int status = model->contacts->press(self, time, state, touch->press);
     touch->above = 0;
     for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i)
         touch->above |= (uint64_t)(touch->press[i] > GIC_R(0.0)) << i;
     return status;
 }
 
-/* The same at a share of the rest; the instance's state is there afterwards. */
-static int touch_between(const gic_model *model, void *self, const Rest *rest, gic_real share, Touch *touch)
+/* The same at a share of the rest, where the instance's state is, but not settled yet. */
+static int touch_within(const gic_model *model, void *self, const Rest *rest, gic_real share, Touch *touch)
 {
     gic_head *head = (gic_head *)self;
     gic_real *state = array_at(self, model->state_offset);
     const int64_t switches = head->switch_count;
-    between(model->slow_count + model->fast_count, share, rest->length, rest->from, rest->rate, rest->to,
-            rest->rate_there, state);
     const int status = settle(model, self, state);
     head->switch_count = switches;
     return status == GIC_OK ? touch_at(model, self, rest->end - (GIC_R(1.0) - share) * rest->length, state, touch)
                             : status;
 }
 
+/* The same on the cubic through both ends; the instance's state is there afterwards. */
+static int touch_between(const gic_model *model, void *self, const Rest *rest, gic_real share, Touch *touch)
+{
+    between(model->slow_count + model->fast_count, share, rest->length, rest->from, rest->rate, rest->to,
+            rest->rate_there, array_at(self, model->state_offset));
+    return touch_within(model, self, rest, share, touch);
+}
+
 /* Shares of a step that are the same time: what a force that begins or ends loses in it is 1e-12 of a step's error. */
 #define SAME_TIME GIC_R(1e-6)
 
-/* The share of the rest at which contact i changes, which has other signs at its ends a and b. *slope: of its number
- * over the share there. Every third look halves what is left. */
-static int locate_contact(const gic_model *model, void *self, const Rest *rest, int32_t i, const Touch *a,
-                          const Touch *b, gic_real *share, gic_real *slope)
+/* Fast steps, and parts of one, in a piece of the step. */
+static int32_t parts_of(const gic_head *head, gic_real length)
 {
-    const uint64_t bit = (uint64_t)1 << i, after = b->above & bit;
-    gic_real low = GIC_R(0.0), high = GIC_R(1.0), at_low = a->press[i], at_high = b->press[i];
+    return 1 + (int32_t)(GIC_R(0.999) * (gic_real)head->ratio * length / head->step);
+}
+
+/* What the rest of a step takes if `count` contacts change within it: the rate at its end, looks, both parts of it with
+ * a look after each, and one ahead from where they change. */
+static int64_t least_work(const gic_head *head, gic_real length, int count)
+{
+    return 1 + (int64_t)count * LEAST_LOOKS + 4 * ((int64_t)parts_of(head, length) + 1) + 3;
+}
+
+/* Contacts in a set. */
+static int number_of(uint64_t set)
+{
+    int count = 0;
+    for (; set; set &= set - 1)
+        ++count;
+    return count;
+}
+
+/* What gic_head.event says of the first contact in a set that is not empty. */
+static int32_t first_contact(uint64_t set)
+{
+    int32_t i = 0;
+    while (!(set >> i & 1))
+        ++i;
+    return 1 + i;
+}
+
+/* ---- contacts that are the same at both ends of a step, but not within it */
+
+/* Nearer to the ends of a piece (a share of it) nothing turns that is not seen there. */
+#define INNER GIC_R(1e-3)
+
+/* Of a contact as far from its change as `start` and `end` at both ends of the rest, which moves by `slope` at first:
+ * where it comes nearest, as a share of the rest, by the parabola through them; 0: not so near that as much again could
+ * make it change. */
+static gic_real nearest(gic_real start, gic_real slope, gic_real end)
+{
+    const gic_real bend = end - start - slope, share = GIC_R(-0.5) * slope / bend;
+    if (!(bend > GIC_R(1e-3) * GIC_LIMIT_ROUNDING) || !(share > GIC_R(-0.5)) || !(share < GIC_R(1.5)) ||
+        !(start + GIC_R(0.5) * slope * share < GIC_R(4.0) * bend))
+        return GIC_R(0.0);
+    return share < INNER ? INNER : share > GIC_R(1.0) - INNER ? GIC_R(1.0) - INNER : share;
+}
+
+static gic_real side_of(const Touch *touch, int32_t i)
+{
+    return touch->above >> i & 1 ? GIC_R(1.0) : GIC_R(-1.0);
+}
+
+/* The same by what the last two steps have left: may one have changed and changed back? */
+static int may_have_turned(const gic_model *model, void *self, const Touch *b)
+{
+    const gic_real *start = array_at(self, model->contacts->past_offset), *before = start + model->contact_count;
+    for (int32_t i = 0; i < model->contact_count; ++i) {
+        const gic_real side = side_of(b, i), end = side * b->press[i];
+        if (nearest(side * start[i], GIC_R(0.5) * (end - side * before[i]), end) > GIC_R(0.0))
+            return 1;
+    }
+    return 0;
+}
+
+/* Where a contact comes nearest to a change within the rest, or has changed. */
+typedef struct Turn {
+    gic_real share, press; /* 0 and 0: it has not */
+} Turn;
+
+/* From distances at both ends and a guess: parabolas through the three points about the least one. */
+static int find_turn(const gic_model *model, void *self, const Rest *rest, int32_t i, gic_real side, gic_real start,
+                     gic_real guess, gic_real end, Turn *turn)
+{
+    gic_real at[3] = {GIC_R(0.0), guess, GIC_R(1.0)}, distance[3] = {start, GIC_R(0.0), end};
+    turn->share = turn->press = GIC_R(0.0);
+    for (int k = 0; k < LEAST_LOOKS; ++k) {
+        Touch now;
+        const int status = touch_between(model, self, rest, guess, &now);
+        if (status != GIC_OK)
+            return status;
+        if (side_of(&now, i) != side) {
+            turn->share = guess;
+            turn->press = now.press[i];
+            return GIC_OK;
+        }
+        const gic_real found = side * now.press[i];
+        const int worse = k > 0 && found >= distance[1], before = guess < at[1];
+        if (k > 0) { /* the end of the three that is left behind */
+            const int end_of = worse ? (before ? 0 : 2) : (before ? 2 : 0);
+            at[end_of] = worse ? guess : at[1];
+            distance[end_of] = worse ? found : distance[1];
+        }
+        if (!worse) {
+            at[1] = guess;
+            distance[1] = found;
+        }
+        const gic_real left = at[1] - at[0], right = at[2] - at[1];
+        const gic_real fall = left * (distance[2] - distance[1]), rise = right * (distance[0] - distance[1]);
+        guess = at[1] + GIC_R(0.5) * (right * rise - left * fall) / (fall + rise);
+        if (!(absolute(guess - at[1]) > GIC_R(1e-4)) || !(guess > at[0]) || !(guess < at[2]))
+            return GIC_OK;
+    }
+    return GIC_OK;
+}
+
+/* What may happen between the ends of a piece. */
+typedef struct Between {
+    Turn turn[GIC_CONTACTS]; /* of those in `found`: where each is on the other side */
+    uint64_t found;          /* contacts that change and change back */
+    gic_real near;           /* share at which one comes near and does not change; 0: none does */
+    int rated;               /* is the rate at the end known? */
+} Between;
+
+/* Contacts of `which` that are the same at both ends of a piece and not within it. The instance's state is that at the
+ * end, rest->to, before and after. */
+static int find_turns(const gic_model *model, void *self, const Rest *rest, const Touch *a, const Touch *b,
+                      uint64_t which, gic_real *rate_there, Between *found)
+{
+    gic_head *head = (gic_head *)self;
+    const int32_t n = model->slow_count + model->fast_count;
+    const gic_real ahead = GIC_R(0.015625);
+    gic_real *state = array_at(self, model->state_offset);
+    Touch soon;
+    found->found = 0;
+    found->near = GIC_R(0.0);
+    found->rated = 0;
+    for (int32_t k = 0; k < n; ++k)
+        state[k] = rest->from[k] + ahead * rest->length * rest->rate[k];
+    int status = touch_within(model, self, rest, ahead, &soon);
+    for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i) {
+        if (!(which >> i & 1))
+            continue;
+        const gic_real side = side_of(a, i), start = side * a->press[i], end = side * b->press[i];
+        const gic_real share = nearest(start, (side * soon.press[i] - start) / ahead, end);
+        if (!(share > GIC_R(0.0)))
+            continue;
+        if (work_left(head) < LEAST_LOOKS + least_work(head, rest->length, 1))
+            break;
+        if (!found->rated)
+            status = evaluate(model, self, rest->end, rest->to, rate_there);
+        found->rated = 1;
+        if (status == GIC_OK)
+            status = find_turn(model, self, rest, i, side, start, share, end, &found->turn[i]);
+        if (status == GIC_OK && found->turn[i].share > GIC_R(0.0))
+            found->found |= (uint64_t)1 << i;
+        else if (share > GIC_R(0.05) && share < GIC_R(0.95))
+            found->near = share;
+    }
+    copy(state, rest->to, n);
+    return status;
+}
+
+/* ---- where contacts change */
+
+/* The share of the rest at which contact i changes, which is on another side at share `high`, where its number is
+ * at_high, than at its start. *slope: of its number over the share there. Every third look halves what is left. */
+static int locate_contact(const gic_model *model, void *self, const Rest *rest, int32_t i, const Touch *a,
+                          gic_real high, gic_real at_high, int64_t looks, gic_real *share, gic_real *slope)
+{
+    const uint64_t bit = (uint64_t)1 << i, after = ~a->above & bit;
+    gic_real low = GIC_R(0.0), at_low = a->press[i];
     int status = GIC_OK;
-    for (int k = 0; k < 60 && high - low > GIC_R(0.1) * SAME_TIME && status == GIC_OK; ++k) {
+    if ((at_low > GIC_R(0.0)) == (after != 0)) {
+        /* it has just changed, and rounding has put it where it was: between both it may be where it should */
+        Turn turn;
+        const gic_real side = after ? GIC_R(1.0) : GIC_R(-1.0);
+        status = find_turn(model, self, rest, i, side, side * at_low, GIC_R(0.5) * high, side * at_high, &turn);
+        low = turn.share;
+        at_low = turn.press;
+        high = low > GIC_R(0.0) ? high : GIC_R(0.0);
+        looks -= LEAST_LOOKS;
+    }
+    for (int k = 0; k < looks && high - low > GIC_R(0.1) * SAME_TIME && status == GIC_OK; ++k) {
         Touch now;
         const gic_real way = at_low - at_high, part = at_low / way;
-        /* rounding may have put the start on the other side: then there is nothing to interpolate */
         const int useful = k % 3 < 2 && gic_finite(&part, 1) && part > GIC_R(0.01) && part < GIC_R(0.99);
         const gic_real middle = low + (useful ? part : GIC_R(0.5)) * (high - low);
         status = touch_between(model, self, rest, middle, &now);
@@ -459,21 +674,28 @@ static int locate_contact(const gic_model *model, void *self, const Rest *rest, 
     return status;
 }
 
-/* Move the instance to the first change of a contact in the rest, at whose ends are *touch and b: to *share of it,
- * where *touch has what is above, the contacts that change included. */
-static int go_to_contact(const gic_model *model, void *self, const Rest *rest, const Touch *b, gic_real *share,
-                         Touch *touch)
+/* Move the instance to the first change of one of the contacts `changed` in the rest, at whose start is *touch: to
+ * *share of it, where *touch has what is above, the contacts that change included. last: where each is on the other
+ * side for sure. */
+static int go_to_contact(const gic_model *model, void *self, const Rest *rest, uint64_t changed, const Turn *last,
+                         gic_real *share, Touch *touch)
 {
     gic_head *head = (gic_head *)self;
     gic_real at[GIC_CONTACTS], slope[GIC_CONTACTS];
     gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
     const int32_t n = model->slow_count + model->fast_count;
+    const uint64_t before = touch->above;
+    const int count = number_of(changed);
+    int64_t spare = work_left(head) - least_work(head, rest->length, 0) - (int64_t)count * LEAST_LOOKS;
     int32_t soonest = -1;
     int status = GIC_OK;
     for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i) {
         at[i] = GIC_R(2.0);
-        if ((touch->above ^ b->above) >> i & 1) {
-            status = locate_contact(model, self, rest, i, touch, b, &at[i], &slope[i]);
+        if (changed >> i & 1) {
+            const int64_t looks = LEAST_LOOKS + (spare > 0 ? spare : 0) / count, whole = head->look_count;
+            status = locate_contact(model, self, rest, i, touch, last[i].share, last[i].press,
+                                    looks < MOST_LOOKS ? looks : (int64_t)MOST_LOOKS, &at[i], &slope[i]);
+            spare -= head->look_count - whole > LEAST_LOOKS ? head->look_count - whole - LEAST_LOOKS : 0;
             if (soonest < 0 || at[i] < at[soonest])
                 soonest = i;
         }
@@ -486,64 +708,141 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, c
         Rest piece = *rest;
         piece.length = *share * rest->length;
         piece.end = rest->end - (rest->length - piece.length);
-        const gic_real whole = (gic_real)head->ratio * piece.length / head->step;
+        const int32_t parts = parts_of(head, piece.length);
         copy(state, rest->from, n);
-        status = finish_step(model, self, &piece, 1 + (int32_t)(GIC_R(0.999) * whole), scratch, scratch + 3 * n);
+        status = finish_step(model, self, &piece, parts, scratch, scratch + 3 * n);
         if (status == GIC_OK)
             status = touch_at(model, self, piece.end, state, touch);
         if (status != GIC_OK)
             return status;
         const gic_real off = -touch->press[soonest] / slope[soonest], next = *share + off;
         if (tries == 4 || !gic_finite(&off, 1) || absolute(off) < SAME_TIME || !(next > SAME_TIME) ||
-            !(next < GIC_R(1.0)))
+            !(next < GIC_R(1.0)) ||
+            work_left(head) < 4 * ((int64_t)parts_of(head, next * rest->length) +
+                                   parts_of(head, (GIC_R(1.0) - next) * rest->length)) +
+                                  3)
             break;
         *share = next;
     }
     for (int32_t i = 0; i < model->contact_count; ++i)
         if (at[i] <= at[soonest] + SAME_TIME) {
             const uint64_t bit = (uint64_t)1 << i;
-            touch->above = (touch->above & ~bit) | (b->above & bit);
+            touch->above = (touch->above & ~bit) | (~before & bit);
             ++head->contact_count;
         }
     return status;
 }
 
-/* Contacts at the end of a step whose state at the start is in row 1 of the scratch array. Where they have changed the
- * step is made again in parts that end at the changes. */
-static int cross_contacts(const gic_model *model, void *self)
+/* What the next step needs to know of this one. */
+static void note_contacts(const gic_model *model, void *self, const Touch *b)
+{
+    gic_head *head = (gic_head *)self;
+    gic_real *past = array_at(self, model->contacts->past_offset);
+    copy(past + model->contact_count, past, model->contact_count);
+    copy(past, b->press, model->contact_count);
+    head->touched = head->touched < 1 ? 1 : 2;
+    head->touching = b->above;
+}
+
+/* Pieces of a step that end where a contact comes near. */
+enum { MOST_SPLITS = 8 };
+
+/* Make a piece of the step from the instance's state on, which is what is looked at next: from its start, in `rest`, to
+ * its end, b. */
+static int make_piece(const gic_model *model, void *self, gic_real end, Rest *rest, Touch *b)
+{
+    gic_head *head = (gic_head *)self;
+    const int32_t n = model->slow_count + model->fast_count;
+    gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
+    copy(scratch + 2 * n, state, n);
+    rest->from = scratch + 2 * n;
+    rest->rate = scratch;
+    rest->end = end;
+    const int status = finish_step(model, self, rest, parts_of(head, rest->length), scratch, scratch + 3 * n);
+    return status == GIC_OK ? touch_at(model, self, end, state, b) : status;
+}
+
+/* A step that is made again, from where it begins. */
+static int remake_piece(const gic_model *model, void *self, gic_real share, Rest *rest, Touch *b)
+{
+    copy(array_at(self, model->state_offset), rest->from, model->slow_count + model->fast_count);
+    const gic_real start = rest->end - rest->length;
+    rest->length *= share;
+    return make_piece(model, self, start + rest->length, rest, b);
+}
+
+/* Contacts at the end of a step whose state at the start is in row 1 of the scratch array. Where they have changed,
+ * also if they have changed back, the step is made again in pieces that end at the changes. staged: RK4 made the step,
+ * whose stages may have met a contact that the motion only comes near; then a piece ends there. */
+static int cross_contacts(const gic_model *model, void *self, int staged)
 {
     const int32_t n = model->slow_count + model->fast_count;
     gic_head *head = (gic_head *)self;
     gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
-    gic_real *from = scratch + 2 * n, *to = scratch + 3 * n, *rate_there = scratch + 4 * n, share = GIC_R(0.0);
-    Rest rest = {gic_time(self), head->step, from, array_at(self, model->rate_offset), to, rate_there, {0}};
+    gic_real *to = scratch + 9 * n, *rate_there = scratch + 11 * n;
+    const gic_real end = gic_time(self);
+    Rest rest = {end, head->step, scratch + n, array_at(self, model->rate_offset), to, rate_there, {0}};
+    uint64_t crossed = 0;
     Touch a, b;
-    int status = touch_at(model, self, rest.end, state, &b);
-    if (status != GIC_OK || b.above == head->touching)
-        return status;
-    copy(from, scratch + n, n);
-    status = touch_at(model, self, rest.end - rest.length, from, &a);
-    for (int32_t changes = 0; status == GIC_OK && a.above != b.above && share < GIC_R(1.0); ++changes) {
-        if (changes == GIC_CHANGES)
-            return GIC_ERROR_EVENTS;
-        head->history = 0;
-        copy(to, state, n);
-        status = evaluate(model, self, rest.end, to, rate_there);
-        if (status == GIC_OK)
-            status = go_to_contact(model, self, &rest, &b, &share, &a);
-        b = a;
-        if (status == GIC_OK && share < GIC_R(1.0)) {
-            rest.length *= GIC_R(1.0) - share;
-            copy(from, state, n);
-            const gic_real whole = (gic_real)head->ratio * rest.length / head->step;
-            status = finish_step(model, self, &rest, 1 + (int32_t)(GIC_R(0.999) * whole), scratch, to);
-            rest.rate = scratch;
-            if (status == GIC_OK)
-                status = touch_at(model, self, rest.end, state, &b);
-        }
+    int status = touch_at(model, self, end, state, &b), pieces = 0, splits = 0;
+    if (status == GIC_OK && b.above == head->touching && head->touched == 2 && !may_have_turned(model, self, &b)) {
+        note_contacts(model, self, &b);
+        return GIC_OK;
     }
-    head->touching = b.above;
-    set_inputs(model, self, rest.end);
+    if (status == GIC_OK)
+        status = touch_at(model, self, end - rest.length, rest.from, &a);
+    for (int32_t changes = 0; status == GIC_OK;) {
+        Between within;
+        gic_real share = GIC_R(1.0);
+        const uint64_t before = a.above;
+        uint64_t changed = before ^ b.above;
+        copy(to, state, n);
+        status = find_turns(model, self, &rest, &a, &b, ~(changed | crossed), rate_there, &within);
+        for (int32_t i = 0; i < model->contact_count; ++i)
+            if (changed >> i & 1) {
+                within.turn[i].share = GIC_R(1.0);
+                within.turn[i].press = b.press[i];
+            }
+        changed |= within.found;
+        if (status != GIC_OK)
+            break;
+        const int64_t work = least_work(head, rest.length, number_of(changed));
+        if (changed && changes == GIC_CHANGES) {
+            head->event = first_contact(changed);
+            return GIC_ERROR_EVENTS;
+        }
+        if (changed && work_left(head) < work) {
+            head->passed_count += number_of(changed);
+            changed = within.found = 0;
+        }
+        if (staged && within.near > GIC_R(0.0) && splits < MOST_SPLITS && head->most == 0) {
+            ++splits;
+            status = remake_piece(model, self, within.near, &rest, &b);
+        } else if (changed) {
+            ++changes;
+            if (!within.rated)
+                status = evaluate(model, self, rest.end, to, rate_there);
+            if (status == GIC_OK)
+                status = go_to_contact(model, self, &rest, changed, within.turn, &share, &a);
+            crossed |= before ^ a.above;
+            b = a;
+            rest.length *= GIC_R(1.0) - share;
+            if (status == GIC_OK && share < GIC_R(1.0))
+                status = make_piece(model, self, rest.end, &rest, &b);
+        } else if (rest.end < end) {
+            a = b;
+            rest.length = end - rest.end;
+            status = make_piece(model, self, end, &rest, &b);
+        } else
+            break;
+        staged = 1;
+        ++pieces;
+        head->history = 0;
+    }
+    if (pieces > 0)
+        head->touched = 0; /* numbers of two kinds of motion */
+    note_contacts(model, self, &b);
+    set_inputs(model, self, end);
     return status;
 }
 
@@ -588,9 +887,10 @@ static void take_back(const gic_model *model, void *self, const Kept *kept)
     head->history = kept->history;
 }
 
-/* After a step that began at `from`, a row of the scratch array: gears change. If that fails, state and gears are those
+/* After a step that began at `from`, a row of the scratch array, and was one of RK4 if `staged`: contacts and gears
+ * change. If that fails, state and gears are those
  * at the start again. */
-static int arrive(const gic_model *model, void *self, const gic_real *from)
+static int arrive(const gic_model *model, void *self, const gic_real *from, int staged)
 {
     gic_head *head = (gic_head *)self;
     int32_t discrete[MOST_DISCRETE];
@@ -598,7 +898,7 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
     set_inputs(model, self, gic_time(self));
     if (looks_within(model, head)) {
         const gic_real start_time = head->start_time;
-        const int64_t steps = head->steps;
+        const int64_t steps = head->steps, contact_count = head->contact_count, passed_count = head->passed_count;
         const int32_t n = model->slow_count + model->fast_count;
         gic_real *start = array_at(self, model->scratch_offset) + n;
         if (from != start)
@@ -606,7 +906,7 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
         copy_discrete(model, discrete, discrete_of(model, self));
         int status = model->discrete_count <= MOST_DISCRETE ? GIC_OK : GIC_ERROR_ABI;
         if (status == GIC_OK && model->contacts && head->locate)
-            status = cross_contacts(model, self);
+            status = cross_contacts(model, self, staged);
         if (status == GIC_OK && model->shift)
             status = change_gears(model, self);
         head->start_time = start_time;
@@ -614,6 +914,9 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
         if (status != GIC_OK) {
             copy(array_at(self, model->state_offset), start, n);
             copy_discrete(model, discrete_of(model, self), discrete);
+            head->contact_count = contact_count;
+            head->passed_count = passed_count;
+            head->touched = 0;
             return status;
         }
     }
@@ -621,10 +924,10 @@ static int arrive(const gic_model *model, void *self, const gic_real *from)
     return GIC_OK;
 }
 
-/* Finish a step: the instance advances, with `history` rates to keep, or none if its gears change. If that fails it is
- * as before. */
+/* Finish a step, of RK4 if `staged`: the instance advances, with `history` rates to keep, or none if its gears change.
+ * If that fails it is as before. */
 static int move_on(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, int32_t history,
-                   gic_real *next, const gic_real *rate)
+                   gic_real *next, const gic_real *rate, int staged)
 {
     gic_head *head = (gic_head *)self;
     const int32_t n = model->slow_count + model->fast_count;
@@ -644,7 +947,7 @@ static int move_on(const gic_model *model, void *self, gic_real step, int32_t me
         next[i] = start;
     }
     copy(array_at(self, model->rate_offset), rate, n);
-    const int status = arrive(model, self, next);
+    const int status = arrive(model, self, next, staged);
     if (status != GIC_OK)
         take_back(model, self, &kept);
     return status;
@@ -659,12 +962,14 @@ static int march(const gic_model *model, void *self, gic_real step)
     gic_real *input = array_at(self, model->input_offset);
     gic_real *input_before =
         array_at(self, model->scratch_offset) + GIC_SCRATCH(model->slow_count + model->fast_count, 0);
-    if (!model->march || model->abi_version != GIC_ABI_VERSION || model->real_size != sizeof(gic_real) ||
-        !(time + step > time))
+    if (!model->march || !has_room(head, 1) || model->abi_version != GIC_ABI_VERSION ||
+        model->real_size != sizeof(gic_real) || !(time + step > time))
         return 0;
     const int64_t rhs_count = head->rhs_count, newton_count = head->newton_count, late_count = head->late_count,
                   correction_count = head->correction_count, kept_count = head->kept_count, air_count = head->air_count;
     head->grown = -1;
+    head->event = 0;
+    head->begun_count = head->rhs_count + head->look_count;
     head->ahead = step;
     head->hold = head->flip;
     if (head->input_function) {
@@ -680,7 +985,7 @@ static int march(const gic_model *model, void *self, gic_real step)
         copy(older, history + n, n);
     }
     if (model->march(self, time) == GIC_OK) {
-        if (arrive(model, self, from) == GIC_OK)
+        if (arrive(model, self, from, 0) == GIC_OK)
             return 1;
         copy(history, history + n, n);
         copy(history + n, older, n);
@@ -707,7 +1012,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     int status = check_step(model, self, step, step);
     if (status != GIC_OK)
         return status;
-    if (method != GIC_AB3 && method != GIC_RK4)
+    if ((method != GIC_AB3 && method != GIC_RK4) || !has_room(head, 1))
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
@@ -722,7 +1027,11 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
                                     known == 2 ? history : NULL, rate, next, work, &newest);
     if (status != GIC_OK)
         return give_up(model, self, step, status, newest, input_before);
-    status = move_on(model, self, step, method, 1, method == GIC_RK4 ? 0 : known < 2 ? known + 1 : 2, next, rate);
+    status = move_on(model, self, step, method, 1,
+                     method == GIC_RK4 ? 0
+                     : known < 2       ? known + 1
+                                       : 2,
+                     next, rate, known < 2);
     if (status != GIC_OK)
         return give_up(model, self, step, status, rate, input_before);
     if (head->history > 0) {
@@ -949,10 +1258,10 @@ static int plain_steady(const gic_model *model, void *self, gic_real step, int32
     int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
     if (status != GIC_OK)
         return status;
-    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0))
-        return ((gic_head *)self)->status = GIC_ERROR_ARGUMENT;
-
     gic_head *head = (gic_head *)self;
+    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0) || !has_room(head, ratio))
+        return head->status = GIC_ERROR_ARGUMENT;
+
     const int same = goes_on(head, step, GIC_AB3, ratio);
     const int32_t known = same ? head->history : 0;
     gic_real *scratch = array_at(self, model->scratch_offset);
@@ -974,7 +1283,7 @@ static int plain_steady(const gic_model *model, void *self, gic_real step, int32
     status = head->status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
     if (status != GIC_OK)
         return give_up(model, self, step, status, dual.newest, input_before);
-    status = move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0));
+    status = move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0), known < 2);
     if (status != GIC_OK)
         return give_up(model, self, step, status, row(&dual, 0), input_before);
     if (head->history > 0)
@@ -1239,6 +1548,14 @@ int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t r
 {
     return model->controller_count > 0 ? sampled_step(model, self, step, GIC_AB3, ratio, steady)
                                        : plain_steady(model, self, step, ratio, steady);
+}
+
+const char *gic_event_name(const gic_model *model, const void *self)
+{
+    const int32_t event = ((const gic_head *)self)->event - 1, gear = event - model->contact_count;
+    if (event < 0)
+        return NULL;
+    return gear < 0 ? model->contacts->name[event] : gear < model->discrete_count ? model->discrete[gear].name : NULL;
 }
 
 /* ---- orientation ---------------------------------------------------------------------------------------- */

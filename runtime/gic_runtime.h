@@ -127,12 +127,18 @@ typedef struct gic_head {
     int32_t condition;   /* the condition that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; see condition_text
                           */
     int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
+    int32_t event;       /* what GIC_ERROR_EVENTS is about: 1 + the index of a contact, or 1 + contact_count + an index
+                          * in discrete[]; 0: nothing; see gic_event_name */
     int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them */
-    uint64_t touching;   /* contacts under load at the end of the last step, a bit each; only a hint */
-    int32_t parted;      /* was the last step made in parts at samples of controllers? */
-    int32_t unchecked;   /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
-    int64_t rhs_count;   /* right-hand sides evaluated */
-    int64_t fast_count;  /* evaluations of the fast states' rates only, by gic_step_dual */
+    int32_t most;       /* for the caller: the most evaluations of a step, right-hand sides and looks; 0: no bound, else
+                         * GIC_LEAST_MOST or more. What is left of a step in which they don't suffice for the next
+                         * contact or change of gear goes over it, and passed_count counts it */
+    uint64_t touching;  /* contacts under load at the end of the last step, a bit each; only a hint */
+    int32_t touched;    /* the last steps whose gic_contacts.past is known: 0, 1 or 2; only a hint */
+    int32_t parted;     /* was the last step made in parts at samples of controllers? */
+    int32_t unchecked;  /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
+    int64_t rhs_count;  /* right-hand sides evaluated */
+    int64_t fast_count; /* evaluations of the fast states' rates only, by gic_step_dual */
     int64_t newton_count; /* solutions of subsets, and the total of their corrections */
     int64_t correction_count;
     int64_t switch_count; /* changes of the dependent Euler parameter */
@@ -142,6 +148,9 @@ typedef struct gic_head {
     int64_t air_count;     /* tires not evaluated since their wheels had no contact */
     int64_t steady_count;  /* fast rates not evaluated since fast states changed steadily, gic_step_steady */
     int64_t contact_count; /* contacts made or lost that `locate` found within steps */
+    int64_t passed_count;  /* contacts and changes of gear that a step went over, as `most` left no room for them */
+    int64_t look_count;    /* looks: evaluations of gic_contacts.press, and of gears within steps */
+    int64_t begun_count;   /* rhs_count + look_count at the beginning of the step */
     int64_t held_count;    /* values of controllers that changed */
     int64_t sleep_count;   /* steps in which a sleeping vehicle kept its state; counted by hosts */
     gic_real largest_step; /* largest final Newton correction, relative to the subset's size */
@@ -176,6 +185,15 @@ typedef struct gic_controller {
     int32_t rule_count;
     const gic_rule *rule;
 } gic_controller;
+
+/* Contacts: of all wheels, then of ends of stops, the first GIC_CONTACTS. */
+typedef struct gic_contacts {
+    const char *const *name; /* "wheel 'left'", "the high end of stop 'bump'" */
+    size_t past_offset;      /* of an array in the instance, bytes: 2 numbers a contact, press[] at the ends of the last
+                              * two steps, newest first */
+    /* press[] at a state is above 0 where the contact has a load, else not, and continuous. */
+    int (*press)(void *self, gic_real time, const gic_real *state, gic_real *press);
+} gic_contacts;
 
 /* Results of the emitted self-test at one state; all relative, of the size of rounding in correct code. Values beyond
  * those promised in FORMAT.md section 14 come with GIC_ERROR_RESIDUAL. */
@@ -242,10 +260,9 @@ typedef struct gic_model {
      * and equations of motion: GIC_OK or GIC_ERROR_RESIDUAL. Evaluations do so from time to time; code for many
      * vehicles calls it for one vehicle at a time. NULL: an engine of a host. */
     int (*check)(void *self, gic_real time, const gic_real *state, const gic_real *rate);
-    /* Contacts: of all wheels, then of ends of stops, the first GIC_CONTACTS. press[] at a state is above 0 where the
-     * contact has a load, else not, and continuous. 0 and NULL: there are none, or an engine of a host. */
+    /* 0 and NULL: there are none, or an engine of a host. */
     int32_t contact_count;
-    int (*contacts)(void *self, gic_real time, const gic_real *state, gic_real *press);
+    const gic_contacts *contacts;
     /* Controllers: step functions sample them, and gic_sample. */
     int32_t controller_count;
     const gic_controller *controller;
@@ -256,7 +273,7 @@ typedef struct gic_model {
  * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
  * calls. */
 #define GIC_HISTORY(n, fast) (2 * (n) + (fast))
-#define GIC_SCRATCH(n, inputs) (11 * (n) + (inputs))
+#define GIC_SCRATCH(n, inputs) (12 * (n) + (inputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
 
@@ -265,6 +282,9 @@ typedef struct gic_model {
 
 /* The most times at which controllers sample or values take effect in one step; more give GIC_ERROR_EVENTS. */
 #define GIC_SAMPLES 10000
+
+/* The least head.most: what a step takes in which nothing happens, the first ones included. */
+#define GIC_LEAST_MOST(ratio) (4 * (ratio) + 4)
 
 /* The most contacts that head.locate looks at. */
 #define GIC_CONTACTS 64
@@ -385,6 +405,11 @@ static inline int gic_alike(const gic_real *x, const gic_real *y, int32_t count)
  * *grown is its index in state[]. Else `status`. Step functions call it. */
 #define gic_blame GIC_NAME(gic_blame)
 int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int status, int32_t *grown);
+
+/* The contact ("wheel 'left'") or discrete state ("transmission.gear") that GIC_ERROR_EVENTS of the last call is about;
+ * NULL: none. */
+#define gic_event_name GIC_NAME(gic_event_name)
+const char *gic_event_name(const gic_model *model, const void *self);
 
 /* ---- orientation ------------------------------------------------------------------------------------ */
 

@@ -164,6 +164,8 @@ void write_wheel_columns(Generation *g, Text *out);
 void write_tables(void *context, Text *out, int indent);
 /* Of the descriptor: how many controllers, and where they are. */
 void write_controllers(void *context, Text *out, int indent);
+/* The same of contacts. */
+void write_contacts(void *context, Text *out, int indent);
 
 /* specialized.c: insertion points of checks of assumptions, and of the road. */
 extern const Insertions assumption_points, road_points;

@@ -78,6 +78,10 @@ static void write_counts(Generation *g, Text *out)
     wheel_counts(g, out, figures);
     count_line(out, "all together", figures_rhs(figures, 1, 1));
     count_line(out, "outputs, when asked for", figures_outputs(figures));
+    if (g->formulation->contacts) {
+        count_line(out, "look at contacts, with head.locate", figures_look(figures));
+        template_expand(g->pool, out, g->templates, "work.c.in", g->model->name, NULL, &code_points, g);
+    }
 }
 
 static void write_banner(void *context, Text *out, int indent)
@@ -311,12 +315,22 @@ static void write_derived(void *context, Text *out, int indent)
              g->upper);
 }
 
+static void write_contact_member(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->formulation->contacts)
+        line(out, indent,
+             "gic_real touch[2 * %s_CONTACTS]; /* how near contacts were at the ends of the last two steps */",
+             g->upper);
+}
+
 static const Insertion header_point[] = {{"banner", write_banner},
                                          {"guard", write_guard},
                                          {"abi", write_abi},
                                          {"sizes", write_sizes},
                                          {"wheels", write_wheel_members},
                                          {"derived", write_derived},
+                                         {"contacts", write_contact_member},
                                          {"places", write_places},
                                          {"tangent", write_tangent_header},
                                          {NULL, NULL}};
@@ -615,14 +629,6 @@ static void write_contact_function(void *context, Text *out, int indent)
         template_expand(g->pool, out, g->templates, "contacts.c.in", g->model->name, NULL, &code_points, g);
 }
 
-static void write_contacts(void *context, Text *out, int indent)
-{
-    const Generation *g = context;
-    const char *name = g->model->name;
-    line(out, indent, "%s,", g->formulation->contacts ? pool_print(g->pool, "%s_CONTACTS", g->upper) : "0");
-    line(out, indent, "%s,", g->formulation->contacts ? pool_print(g->pool, "%s_any_contacts", name) : "NULL");
-}
-
 static void write_identity(void *context, Text *out, int indent)
 {
     const Generation *g = context;
@@ -689,7 +695,7 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {NULL, NULL}};
 
 const Insertions code_points = {(const char *const[]){"model.c.in", "independent.c.in", "reactions.c.in", "bounds.c.in",
-                                                      "base_free.c.in", "base_fixed.c.in", "contacts.c.in",
+                                                      "base_free.c.in", "base_fixed.c.in", "contacts.c.in", "work.c.in",
                                                       "self_test.c.in", "self_test_constraints.c.in", "about.c.in",
                                                       NULL},
                                 code_point, NULL};

@@ -125,6 +125,26 @@ void write_controllers(void *context, Text *out, int indent)
     line(out, indent, "%s,", count ? pool_print(g->pool, "%s_controller", g->model->name) : "NULL");
 }
 
+static void write_contact_table(Generation *g, Text *out)
+{
+    const Block *contacts = g->formulation->contacts;
+    ContactSite site;
+    if (!contacts)
+        return;
+    open_table(g, out, "char *const ", "contact_name", contacts->stores);
+    for (int i = 0; i < contacts->stores && model_contact(g->model, i, &site); ++i)
+        line(out, 4, "%s,", quoted(g->pool, contact_text(g->pool, &site)));
+    close_table(out, contacts->stores, "");
+}
+
+void write_contacts(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const Block *contacts = g->formulation->contacts;
+    line(out, indent, "%s,", contacts ? pool_print(g->pool, "%s_CONTACTS", g->upper) : "0");
+    line(out, indent, "%s,", contacts ? pool_print(g->pool, "&%s_contacts", g->model->name) : "NULL");
+}
+
 void write_tables(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -150,4 +170,5 @@ void write_tables(void *context, Text *out, int indent)
     write_assumption_texts(g, out);
     close_table(out, conditions(g), "NULL");
     write_controller_tables(g, out);
+    write_contact_table(g, out);
 }

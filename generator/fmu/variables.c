@@ -238,36 +238,18 @@ static void add_states(Making *m)
     }
 }
 
-static Variable *add_contact(Making *m, const char *name, const char *what)
-{
-    const int index = event_indicators(m->all), contact = index - (m->model->powertrain != NULL);
-    if (!m->f->contacts || contact >= m->f->contacts->stores)
-        return NULL;
-    Variable *v = add(m, KIND_INDICATOR, index, pool_print(m->pool, "state.contact.%s", name), "1",
-                      pool_print(m->pool, "event indicator: its sign says whether %s has a load", what));
-    v->initial = "calculated";
-    return v;
-}
-
-/* In the order of Formulation.contacts. */
 static void add_contacts(Making *m)
 {
-    for (int i = 0; i < m->model->wheels; ++i) {
-        const char *name = m->model->wheel[i].name;
-        Variable *v = add_contact(m, name, pool_print(m->pool, "wheel '%s'", name));
-        if (v)
+    ContactSite site;
+    for (int i = 0; m->f->contacts && i < m->f->contacts->stores && model_contact(m->model, i, &site); ++i) {
+        const char *end = site.high ? "high" : "low";
+        const char *name = site.wheel ? site.wheel->name : pool_print(m->pool, "%s.%s", site.stop->name, end);
+        Variable *v = add(
+            m, KIND_INDICATOR, event_indicators(m->all), pool_print(m->pool, "state.contact.%s", name), "1",
+            pool_print(m->pool, "event indicator: its sign says whether %s has a load", contact_text(m->pool, &site)));
+        v->initial = "calculated";
+        if (site.wheel)
             v->terminal = name;
-    }
-    for (int i = 0; i < m->model->forces; ++i) {
-        const Force *force = &m->model->force[i];
-        if (!force_is_stop(force))
-            continue;
-        if (force->high)
-            add_contact(m, pool_print(m->pool, "%s.high", force->name),
-                        pool_print(m->pool, "the high end of stop '%s'", force->name));
-        if (force->low)
-            add_contact(m, pool_print(m->pool, "%s.low", force->name),
-                        pool_print(m->pool, "the low end of stop '%s'", force->name));
     }
 }
 

@@ -59,6 +59,33 @@ int rule_output(const Model *model, const ControlRule *rule)
     return -1;
 }
 
+bool model_contact(const Model *model, int index, ContactSite *site)
+{
+    *site = (ContactSite){0};
+    if (index < model->wheels) {
+        site->wheel = &model->wheel[index];
+        return true;
+    }
+    index -= model->wheels;
+    for (int i = 0; i < model->forces; ++i) {
+        const Force *force = &model->force[i];
+        const int ends = force_is_stop(force) ? (force->high != NULL) + (force->low != NULL) : 0;
+        if (index < ends) {
+            site->stop = force;
+            site->high = index == 0 && force->high;
+            return true;
+        }
+        index -= ends;
+    }
+    return false;
+}
+
+const char *contact_text(Pool *pool, const ContactSite *site)
+{
+    return site->wheel ? pool_print(pool, "wheel '%s'", site->wheel->name)
+                       : pool_print(pool, "the %s end of stop '%s'", site->high ? "high" : "low", site->stop->name);
+}
+
 int model_discretes(const Model *model)
 {
     return model->free_base + (model->powertrain ? POWERTRAIN_DISCRETE : 0);

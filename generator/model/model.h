@@ -457,6 +457,18 @@ bool model_counts_turns(const Model *model);
 
 /* Number of discrete states: one of a free base, and those of a powertrain. */
 int model_discretes(const Model *model);
+
+/* Where a force begins or ends: a wheel, or an end of a stop. */
+typedef struct ContactSite {
+    const Wheel *wheel; /* NULL: an end of `stop` */
+    const Force *stop;
+    bool high;
+} ContactSite;
+
+/* Contact `index` in the order of Formulation.contacts; false: there is none. */
+bool model_contact(const Model *model, int index, ContactSite *site);
+/* "wheel 'left'", "the high end of stop 'bump'" */
+const char *contact_text(Pool *pool, const ContactSite *site);
 /* True if the wheel has a `drive` or the powertrain drives it. */
 bool wheel_is_driven(const Model *model, int wheel);
 

@@ -297,6 +297,8 @@ static void totals(void *context, Text *out, int indent)
     if (r->formulation->wheels)
         total_row(out, r->formulation->wheels->count > 0 ? "fast step: all wheels" : "fast step", f->fast, 1);
     total_row(out, "outputs, usual", asked, 1);
+    if (r->formulation->contacts)
+        total_row(out, "look at contacts", figures_look(f), 1);
     table_close(out);
 }
 

@@ -53,7 +53,8 @@ const Figures *figures_new(Pool *pool, const Formulation *f)
                          .reacting = pool_alloc(pool, (size_t)(classes + 1) * sizeof(int)),
                          .dynamics = block_count(f->dynamics),
                          .loads = block_count(f->dynamics),
-                         .outputs = block_count(f->outputs)};
+                         .outputs = block_count(f->outputs),
+                         .contacts = f->contacts ? block_count(f->contacts) : (Count){0}};
     count_add(&figures->loads, block_count_above_loads(f->dynamics), -1);
     for (int c = 0; c < classes; ++c) {
         const Formula *formula = f->plan->formula[c];
@@ -112,6 +113,15 @@ Count figures_outputs(const Figures *figures)
     count_add(&sum, figures->wrenches, 1);
     for (int c = 0; c < figures->sequence->classes; ++c)
         count_add(&sum, figures->react[c], figures->reacting[c]);
+    return sum;
+}
+
+Count figures_look(const Figures *figures)
+{
+    Count sum = figures_recovery(figures, 1, 1);
+    count_add(&sum, figures->link, 1);
+    count_add(&sum, figures->fast, 1);
+    count_add(&sum, figures->contacts, 1);
     return sum;
 }
 

@@ -393,6 +393,7 @@ typedef struct Figures {
     Count wrenches; /* right-hand sides of these multipliers */
     Count *react;   /* [classes] multipliers of one subset */
     int *reacting;  /* [classes] number of members */
+    Count contacts; /* of how near contacts are */
 } Figures;
 
 const Figures *figures_new(Pool *pool, const Formulation *f);
@@ -406,6 +407,8 @@ Count figures_recovery(const Figures *figures, int chords, int passes);
 Count figures_rhs(const Figures *figures, int chords, int passes);
 /* Operations of all outputs, in addition to a right-hand side. */
 Count figures_outputs(const Figures *figures);
+/* Of a look at contacts, where the model has any: recovery included. */
+Count figures_look(const Figures *figures);
 
 /* A road that is a plane of constant friction. */
 typedef struct Plane {

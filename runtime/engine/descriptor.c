@@ -108,6 +108,17 @@ static gic_rule rule_of(const gic_model *code, const Model *model, const Control
                       .quantum = rule->quantum};
 }
 
+const gic_contacts *descriptor_contacts(Pool *pool, const Model *model, gic_model *code, DescriptorPress *press)
+{
+    const char **name = pool_alloc(pool, (size_t)code->contact_count * sizeof *name);
+    gic_contacts *contacts = pool_alloc(pool, sizeof *contacts);
+    ContactSite site;
+    for (int i = 0; i < code->contact_count && model_contact(model, i, &site); ++i)
+        name[i] = contact_text(pool, &site);
+    *contacts = (gic_contacts){name, descriptor_place(code, 2 * (size_t)code->contact_count), press};
+    return contacts;
+}
+
 void descriptor_controllers(Pool *pool, const Model *model, gic_model *code)
 {
     gic_controller *controller = pool_alloc(pool, ((size_t)model->controllers + 1) * sizeof *controller);

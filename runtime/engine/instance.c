@@ -102,6 +102,8 @@ const char *instance_status(Pool *pool, const gic_model *model, const gic_head *
         return pool_print(pool, "%s: '%s' of %s '%s'", gic_status_text(status), model->state[self->grown].name,
                           self->subset < 0 ? "body" : "subset",
                           self->subset < 0 ? model->body_name[0] : model->subset_name[self->subset]);
+    if (status == GIC_ERROR_EVENTS && gic_event_name(model, self))
+        return pool_print(pool, "%s: %s", gic_status_text(status), gic_event_name(model, self));
     if (self->subset < 0 || self->subset >= model->subset_count)
         return gic_status_text(status);
     return pool_print(pool, "%s: subset '%s'", gic_status_text(status), model->subset_name[self->subset]);

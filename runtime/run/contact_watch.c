@@ -31,13 +31,17 @@ struct ContactWatch {
     double there[GIC_CONTACTS], slope_there[GIC_CONTACTS]; /* at its end */
     double bend[GIC_CONTACTS];                             /* change of the slope over time in the step before */
     double most[2][GIC_CONTACTS];                          /* the largest number so far: without a load, with one */
+    int changed;                                           /* the last contact that was met; -1: none */
     double rounding;                                       /* of numbers, by the size of the state */
     Signs seen[EVALUATIONS];
 };
 
 ContactWatch *contact_watch_new(void)
 {
-    return calloc(1, sizeof(ContactWatch));
+    ContactWatch *watch = calloc(1, sizeof *watch);
+    if (watch)
+        watch->changed = -1;
+    return watch;
 }
 
 void contact_watch_free(ContactWatch *watch)
@@ -54,7 +58,7 @@ static int numbers_at(const gic_model *model, gic_head *self, double time, const
 {
     if (self->input_function)
         self->input_function(self->user, self->lane, time, array_of(self, model->input_offset));
-    return model->contacts(self, time, state, press);
+    return model->contacts->press(self, time, state, press);
 }
 
 /* The sign of a contact's number, 0 where rounding decides. */
@@ -166,7 +170,7 @@ int contact_watch_look(ContactWatch *watch, const gic_model *model, gic_head *se
 {
     double press[GIC_CONTACTS];
     const bool far = is_far(watch, time);
-    const int status = far ? GIC_OK : model->contacts(self, time, state, press);
+    const int status = far ? GIC_OK : model->contacts->press(self, time, state, press);
     Signs now = {time, 0, 0};
     for (int i = 0; i < model->contact_count && status == GIC_OK && !far; ++i) {
         const int sign = sign_of(watch, i, press[i]);
@@ -261,9 +265,16 @@ int contact_watch_end(ContactWatch *watch, const gic_model *model, gic_head *sel
     *finding = CONTACTS_KEPT;
     for (int i = 0; i < watch->count; ++i) {
         const ContactFinding now = judge(watch, i, &seen, far ? NULL : half, length);
+        if (now > *finding)
+            watch->changed = i;
         *finding = now > *finding ? now : *finding;
     }
     return GIC_OK;
+}
+
+int contact_watch_changed(const ContactWatch *watch)
+{
+    return watch->changed;
 }
 
 void contact_watch_keep(ContactWatch *watch, double length)

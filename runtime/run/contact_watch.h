@@ -42,6 +42,8 @@ typedef struct ContactStep {
 /* The step has ended at `self`. Returns a status. */
 int contact_watch_end(ContactWatch *watch, const gic_model *model, gic_head *self, const ContactStep *step,
                       ContactFinding *finding);
+/* The contact of the last finding but CONTACTS_KEPT; -1: none. */
+int contact_watch_changed(const ContactWatch *watch);
 /* The step is accepted: the next one begins where it has ended. */
 void contact_watch_keep(ContactWatch *watch, double length);
 

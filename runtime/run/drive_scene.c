@@ -383,8 +383,8 @@ void drive_scene(Text *out, const Model *model, const Scene *scene)
     put_hands(out, model);
     text_print(out, "enum { PROFILES = %d, DRIVER = %d, PARAMETERS = %d, BODIES = %d };\n", scene->profiles,
                scene->driver != NULL, model->tunables, model->bodies);
-    text_print(out, "enum { METHOD = %d, RATIO = %d, LOOK_STEPS = %d, LOCATE = %d };\n", (int)scene->method,
-               (int)scene->ratio, hands_steps(scene->step), scene->locate);
+    text_print(out, "enum { METHOD = %d, RATIO = %d, LOOK_STEPS = %d, LOCATE = %d, MOST = %d };\n", (int)scene->method,
+               (int)scene->ratio, hands_steps(scene->step), scene->locate, scene->most_work);
     text_print(out, "static const double STEP = ");
     number(out, scene->step);
     text_print(out, ", STEADY = ");

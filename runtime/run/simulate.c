@@ -53,6 +53,7 @@ typedef struct Run {
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
     double constraint;      /* largest residual so far */
     double integrating;     /* CPU seconds in steps */
+    int64_t most_work;      /* the most evaluations of a constant step */
     double recorded;        /* time of the last row */
     double looked;          /* clock at the last look */
     int64_t slumber;        /* of scene_outputs */
@@ -301,6 +302,7 @@ static void summary_of_skips(const gic_head *head)
         {head->air_count, "tires skipped", "evaluations of wheels in the air"},
         {head->steady_count, "fast rates skipped", "evaluations while fast states changed steadily"},
         {head->contact_count, "contacts located", "made or lost within steps"},
+        {head->passed_count, "events gone over", "contacts and gears for which `most_work` left no room"},
         {head->held_count, "values held", "changes of what controllers hold"},
         {head->sleep_count, "steps asleep", "steps while the vehicle was at rest"},
     };
@@ -368,6 +370,9 @@ static void summary(const Run *run, double total)
     fprintf(stderr, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
             (long long)head->correction_count, (long long)head->newton_count,
             solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
+    if (!run->variable && (scene->locate || scene->most_work))
+        fprintf(stderr, "  work of a step       at most %lld right-hand sides and looks at contacts and gears\n",
+                (long long)run->most_work);
     summary_of_skips(head);
     summary_of_inputs(run);
     fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
@@ -431,6 +436,7 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
         return status;
     self->road = scene->road;
     self->locate = scene->locate;
+    self->most = scene->most_work;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     if (scene->driver)
@@ -569,6 +575,12 @@ int scene_step(const Engine *engine, const gic_model *model, const Scene *scene,
     return status;
 }
 
+/* Right-hand sides and looks at contacts and gears so far. */
+static int64_t work_of(const gic_head *self)
+{
+    return self->rhs_count + self->look_count;
+}
+
 /* Steps up to the output time `end`. Returns the status of the last one. */
 static int advance(Run *run, double end)
 {
@@ -581,10 +593,12 @@ static int advance(Run *run, double end)
         for (int i = 0;
              i < BATCH && status == GIC_OK && !run->ended && (run->variable ? gic_time(run->self) < end : left > 0);
              ++i) {
+            const int64_t work = work_of(run->self);
             status = run->events
                          ? scene_events_step(run->events, run->model, run->variable, run->self, end, &run->ended)
                          : scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
             run->steps += status == GIC_OK;
+            run->most_work = work_of(run->self) - work > run->most_work ? work_of(run->self) - work : run->most_work;
             if (run->watch && status == GIC_OK)
                 step_watch_step(run->watch, run->model, run->self, run->copy);
             --left;

@@ -275,7 +275,10 @@ static int count_crossing(Variable *variable, double time)
     }
     variable->fresh = true;
     variable->hunted = -INFINITY;
-    return ++variable->crossings > GIC_CHANGES * (1 + variable->model->contact_count) ? GIC_ERROR_EVENTS : GIC_OK;
+    if (++variable->crossings <= GIC_CHANGES * (1 + variable->model->contact_count))
+        return GIC_OK;
+    variable->self->event = 1 + contact_watch_changed(variable->contacts);
+    return GIC_ERROR_EVENTS;
 }
 
 /* A step that meets the beginning or end of no contact, or goes across one. On a failure `self` is anywhere in it. */
@@ -340,6 +343,7 @@ static int step(Variable *variable, gic_head *self, double end)
     self->status = status;
     self->subset = failed.subset;
     self->grown = failed.grown;
+    self->event = failed.event;
     self->condition = failed.condition;
     variable_restart(variable);
     return status;

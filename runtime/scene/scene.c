@@ -477,6 +477,21 @@ double scene_quiet_until(const Scene *scene, double time)
     return until;
 }
 
+/* After the ratio is known. */
+static void read_most_work(Scene *scene, const Item *most, bool replaced)
+{
+    if (!most || (replaced && scene->method >= METHOD_ADAMS))
+        return;
+    const int least = GIC_LEAST_MOST(scene->method == GIC_AB3 ? scene->ratio : 1);
+    if (scene->method >= METHOD_ADAMS)
+        diag_fail(most->at, "leave it out, or take constant steps", "variable steps take as much work as they need");
+    const double number = doc_number(most, "most_work"), largest = 1e6;
+    if (!(number >= least && number <= largest && number == floor(number)))
+        diag_fail(most->at, "steps in which nothing happens take up to 4 `ratio` + 4 evaluations",
+                  "most_work must be a whole number from %d to %g", least, largest);
+    scene->most_work = (int)number;
+}
+
 /* ---- what may be left out: SCENE.md section 9 ------------------------------------------------------------- */
 
 static void read_skips(Reader *reader, const Item *root, bool replaced)
@@ -493,6 +508,7 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
     scene->locate = located && scene->method < METHOD_ADAMS;
     if (locate && !located && scene->method >= METHOD_ADAMS)
         diag_fail(locate->at, "leave it out, or take constant steps", "variable steps always end at contacts");
+    read_most_work(scene, doc_find(root, "most_work"), replaced);
     if (sleep && scene->method >= METHOD_ADAMS && !replaced)
         diag_fail(sleep->at, "write `integrator: ab3` and a step", "only constant steps can be slept through");
     if (sleep && scene->method < METHOD_ADAMS)
@@ -511,8 +527,8 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "massless", "base", "driven", "output_step", "initial", "road", "inputs",
-               "input_file", "driver", "course", "parameters", "outputs", "plot", "until", "when");
+               "steady", "sleep", "locate", "most_work", "massless", "base", "driven", "output_step", "initial", "road",
+               "inputs", "input_file", "driver", "course", "parameters", "outputs", "plot", "until", "when");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)

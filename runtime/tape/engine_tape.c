@@ -329,7 +329,7 @@ const Engine *engine_tape(Pool *pool, const Model *model, const EngineOptions *o
     tape->code.poses = poses;
     if (tape->contacts) {
         tape->code.contact_count = tape->formulation->contacts->stores;
-        tape->code.contacts = contacts;
+        tape->code.contacts = descriptor_contacts(pool, model, &tape->code, contacts);
     }
     tape->code.self_test = tape_self_test;
     if (tape->wheel) {

@@ -44,6 +44,9 @@ static fmu_result said(fmu_instance *instance, fmu_result result, const FMU_TYPE
     if ((status == GIC_ERROR_GEOMETRY || status == GIC_ERROR_ASSUMPTION) && head->condition >= 0 &&
         head->condition < model->condition_count)
         about = "condition", name = model->condition_text[head->condition];
+    else if (status == GIC_ERROR_EVENTS && gic_event_name(model, head))
+        return fmu_say(instance, result, "%s at t = %.9g s: %s: %s", what, (double)gic_time(of), text,
+                       gic_event_name(model, head));
     else if (head->grown >= 0 && head->grown < model->slow_count + model->fast_count)
         about = "state", name = model->state[head->grown].name;
     else if (head->subset >= 0 && head->subset < model->subset_count)
@@ -516,7 +519,7 @@ static fmu_result touch(fmu_instance *instance, double *value)
         return result;
     data->shown = data->self;
     data->seen = 0;
-    status = model->contacts(&data->shown, fmu_time(instance), data->shown.state, press);
+    status = model->contacts->press(&data->shown, fmu_time(instance), data->shown.state, press);
     if (status != GIC_OK)
         return said(instance, FMU_DISCARD, &data->shown, "no contacts", status);
     for (i = 0; i < model->contact_count; ++i)

@@ -133,7 +133,7 @@ for engine in tape tcc gic; do
     sed -i 's/down: .*/down: [1000, -1, -1, -1]/; s/up: .*/up: [-1, 1000, 1000, 1000]/' now.veh
     run --engine $engine now.veh now.scene -o results
     check "a hundred changes in a step are refused, $engine" exits 1
-    check "with a message, $engine" says 'gears or contacts change, or controllers sample, more often within a step than a step can follow'
+    check "with a message, $engine" says 'gears or contacts change, or controllers sample, more often within a step than a step can follow: transmission.gear'
     check "and a remedy, $engine" says 'try a shorter step, or a longer `duration`'
     sed -i 's/duration: .*/duration: 0.00033/' now.veh
     run --engine $engine now.veh now.scene -o results

@@ -57,6 +57,9 @@ static int point_contacts(void *self, double time, const double *state, double *
     return GIC_OK;
 }
 
+static const char *const point_name[GIC_CONTACTS] = {"first", [GIC_CONTACTS - 1] = "last"};
+static const gic_contacts point_touches = {point_name, 0, point_contacts};
+
 static const gic_model point_model = {.abi_version = GIC_ABI_VERSION,
                                       .real_size = sizeof(gic_real),
                                       .size = sizeof(Point),
@@ -68,7 +71,7 @@ static const gic_model point_model = {.abi_version = GIC_ABI_VERSION,
                                       .rhs = point_rhs,
                                       .settle = point_settle,
                                       .contact_count = GIC_CONTACTS,
-                                      .contacts = point_contacts};
+                                      .contacts = &point_touches};
 
 /* 2 s with few or no output times; the sum must be that of all contacts, and each have been made and lost. */
 static void passes(Point *point, int32_t method, double tolerance, double limit)
@@ -138,6 +141,7 @@ static void test_chatter(void **state)
         }
         variable_close(variable);
         assert_int_equal(status, GIC_ERROR_EVENTS);
+        assert_string_equal(gic_event_name(&point_model, &point), "last");
     }
 }
 

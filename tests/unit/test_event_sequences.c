@@ -23,7 +23,7 @@ static long sequences = 2000;
 /* x'' = pull - w^2 depth beyond `low` and `high`. */
 typedef struct Mass {
     gic_head head;
-    double state[2], rate[2], history[GIC_HISTORY(2, 0)], scratch[GIC_SCRATCH(2, 0)];
+    double state[2], rate[2], history[GIC_HISTORY(2, 0)], scratch[GIC_SCRATCH(2, 0)], touch[4];
     double low, high, omega[2], pull; /* m, 1/s at either end, m/s^2 */
 } Mass;
 
@@ -53,6 +53,8 @@ static int mass_contacts(void *self, double time, const double *state, double *p
     return GIC_OK;
 }
 
+static const gic_contacts mass_touches = {(const char *const[]){"low", "high"}, offsetof(Mass, touch), mass_contacts};
+
 static const gic_model mass_model = {.abi_version = GIC_ABI_VERSION,
                                      .real_size = sizeof(gic_real),
                                      .size = sizeof(Mass),
@@ -64,7 +66,7 @@ static const gic_model mass_model = {.abi_version = GIC_ABI_VERSION,
                                      .rhs = mass_rhs,
                                      .settle = mass_settle,
                                      .contact_count = 2,
-                                     .contacts = mass_contacts};
+                                     .contacts = &mass_touches};
 
 /* ---- from event to event ---------------------------------------------------------------------------------------- */
 

@@ -82,6 +82,8 @@ static int probe_shift(void *self)
     return 1;
 }
 
+static const gic_signal probe_discrete[] = {{"gear", "1"}};
+
 static const gic_model probe_model = {
     .abi_version = GIC_ABI_VERSION,
     .real_size = sizeof(gic_real),
@@ -89,6 +91,7 @@ static const gic_model probe_model = {
     .slow_count = SLOW,
     .fast_count = FAST,
     .discrete_count = 1,
+    .discrete = probe_discrete,
     .input_count = 1,
     .link_count = LINKS,
     .state_offset = offsetof(Probe, state),
@@ -230,6 +233,7 @@ static void test_bound(void **unused)
             const Probe good = probe;
             assert_int_equal(probe_step(&probe, 0.01, ratio), GIC_ERROR_EVENTS);
             assert_int_equal(probe.head.status, GIC_ERROR_EVENTS);
+            assert_string_equal(gic_event_name(&probe_model, &probe), "gear");
             assert_memory_equal(probe.state, good.state, sizeof good.state);
             assert_memory_equal(probe.input, good.input, sizeof good.input);
             assert_int_equal(probe.gear, good.gear);
