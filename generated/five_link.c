@@ -76,11 +76,11 @@
  *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
  *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
  *   a change of gear                                   4 ratio + 9 more at least
- * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 9).
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0xcbe6ff7f
+#if FIVE_LINK_H != 0x58a18f5b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
