@@ -95,12 +95,12 @@ smooth_jump() {
     printf 'step: %s\n' "$1"
     echo "$2" | sed 's/, /\n/g'
 }
-plain_jump() { scene tires_jump "$1" "$(echo "$2" | sed 's/, /\n/g')"; }
+# with_lines SCENE STEP "LINE, LINE"
+with_lines() { scene "$1" "$2" "$(echo "$3" | sed 's/, /\n/g')"; }
 rough() {
-    scene tires_rough "$1" "$(echo "$2" | sed 's/, /\n/g')" | sed "s/^duration:.*/duration: 3.2/; s/^  length: .*/  length: 60\n  spacing: $spacing/"
+    with_lines tires_rough "$@" |
+        sed "s/^duration:.*/duration: 3.2/; s/^  length: .*/  length: 60\n  spacing: $spacing/"
 }
-paper() { scene paper_run "$1" "$(echo "$2" | sed 's/, /\n/g')"; }
-bad_road() { scene rough_road "$1" "$(echo "$2" | sed 's/, /\n/g')"; }
 
 for part; do
     case $part in
@@ -114,7 +114,7 @@ for part; do
     roads)
         echo '| road | with | step | half | a quarter | contacts of the last |'
         echo '|---|---|---|---|---|---|'
-        one_scene() { plain_jump "$@"; }
+        one_scene() { with_lines tires_jump "$@"; }
         all_errors '`tires_jump`, 2 ms' models/hmmwv_tires.veh 0.002 64
         one_scene() { smooth_jump "$@"; }
         all_errors 'a smooth ramp, 2 ms' models/hmmwv_tires.veh 0.002 64
@@ -124,18 +124,20 @@ for part; do
         done
         ;;
     kinks)
-        sed 's/"compression_\(.\)(length) \* min(0, speed) + rebound_.(length) \* max(0, speed)"/"0.5 * (compression_\1(length) + rebound_\1(length)) * speed"/' \
+        law='"compression_\(.\)(length) \* min(0, speed) + rebound_.(length) \* max(0, speed)"'
+        sed "s/$law/\"0.5 * (compression_\\1(length) + rebound_\\1(length)) * speed\"/" \
             models/hmmwv_full.veh >"$work/even.veh"
+        cp -R models/hmmwv.veh models/parts "$work"
         ways='
 locate: true
 locate: true, integrator: rk4'
         echo '| model | with | step | half | a quarter | contacts of the last |'
         echo '|---|---|---|---|---|---|'
-        for road in paper bad_road; do
-            one_scene() { $road "$@"; }
-            all_errors "\`hmmwv_full\`, $road, 4 ms" models/hmmwv_full.veh 0.004 32
-            all_errors "the same without \`min\` and \`max\`, $road, 4 ms" "$work/even.veh" 0.004 32
-            all_errors "\`hmmwv\`, $road, 4 ms" models/hmmwv.veh 0.004 32
+        for road in paper_run rough_road; do
+            one_scene() { with_lines $road "$@"; }
+            all_errors "\`hmmwv_full\`, \`$road\`, 4 ms" models/hmmwv_full.veh 0.004 32
+            all_errors "the same without \`min\` and \`max\`, \`$road\`, 4 ms" "$work/even.veh" 0.004 32
+            all_errors "\`hmmwv\`, \`$road\`, 4 ms" models/hmmwv.veh 0.004 32
         done
         ;;
     *) echo "event_tables.sh: no part '$part': work, roads or kinks" >&2; exit 1 ;;

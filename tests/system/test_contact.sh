@@ -150,23 +150,29 @@ done
 # A roof that the hopper just reaches, for less than a step, against the closed solution: up, along the roof, down.
 sed 's/^forces:/forces:\
   roof: {type: stop, coordinate: z, high: 0.05, stiffness: 16000}/' hop.veh >roof.veh
-cat >skim.awk <<'END'
-BEGIN {FS = ","; w = 20; g = 10; v0 = sqrt(v * v + 2 * g * (0.05 - z0)); reach = (v0 - v) / g; stay = 2 * atan2(v * w, g) / w}
+cat >skim.awk <<'AWK'
+BEGIN {
+    FS = ","; w = 20; g = 10
+    v0 = sqrt(v * v + 2 * g * (0.05 - z0)); reach = (v0 - v) / g; stay = 2 * atan2(v * w, g) / w
+}
 NR > 1 && $1 < reach + stay + v0 / g {
     t = $1 - reach
-    z = t <= 0 ? v * t - g * t * t / 2 : t < stay ? g / w^2 * (cos(w * t) - 1) + v / w * sin(w * t) : -v * (t - stay) - g * (t - stay)^2 / 2
+    z = t <= 0 ? v * t - g * t * t / 2 : g / w^2 * (cos(w * t) - 1) + v / w * sin(w * t)
+    if (t > stay)
+        z = -v * (t - stay) - g * (t - stay)^2 / 2
     d = ($2 - 0.05 - z)^2
     if (d > most)
         most = d
     ++rows
 }
 END {printf "%.3g\n", sqrt(most) >"said"; exit !(rows > 5 && sqrt(most) < limit)}
-END
+AWK
 for speed in 0.005 0.004 0.0025; do
     for low in 0.02 0.025 0.03; do
         for way in rk4 ab3; do
             rate=$(awk -v v=$speed -v z=$low 'BEGIN {printf "%.17g", sqrt(v * v + 20 * (0.05 - z))}')
-            printf 'gicscene: 1\nduration: 0.15\nstep: 0.0025\nlocate: true\nintegrator: %s\noutputs: [z.value]\n' $way >now.scene
+            printf 'gicscene: 1\nduration: 0.15\nstep: 0.0025\nlocate: true\nintegrator: %s\n' $way >now.scene
+            echo 'outputs: [z.value]' >>now.scene
             printf 'initial: {coordinates: {z: %s}, rates: {z: %s}}\n' $low "$rate" >>now.scene
             "$gicrun" -q --engine tcc roof.veh now.scene -o results 2>err
             check "a roof reached at $speed m/s, $way" awk -v v=$speed -v z0=$low -v limit=1e-10 -f skim.awk results
