@@ -126,9 +126,17 @@
  *   a fast step: all wheels                                  666      1005     149     56        20
  *   all together                                            4732      6023     188     79        32
  *   outputs, when asked for                                 1294      1646       2      3        13
+ *   look at contacts, with head.locate                      3878      5371     182     76        26
+ *
+ * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
+ *   AB3                                                1 + 1
+ *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
+ *   a change of gear                                   4 ratio + 9 more at least
+ * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FORMULA_STUDENT_H
-#define FORMULA_STUDENT_H 0x568d7a4b
+#define FORMULA_STUDENT_H 0xb5af2eff
 
 #include "gic_runtime.h"
 
@@ -388,6 +396,7 @@ typedef struct formula_student {
     gic_real link[5 * FORMULA_STUDENT_LINKS]; /* how the multibody system moves the wheels, at slow steps */
     gic_real grip[FORMULA_STUDENT_GRIP * FORMULA_STUDENT_ROLLING]; /* what the wheels do, FORMULA_STUDENT_GRIP numbers
         each */
+    gic_real touch[2 * FORMULA_STUDENT_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } formula_student;
 
 /* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */

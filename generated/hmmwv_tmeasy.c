@@ -75,11 +75,11 @@
  *   forces and equations of motion                           568       507       5      0         0
  *   motion of the wheels                                     199       202       0      0         0
  *   drives and brakes                                          0         2       0      0         0
- *   wheel 'tire_f_l' (4 times)                               160       247      33     14         5
- *   a fast step: all wheels                                  640       990     132     56        20
- *   all together                                            2480      3272     151     66        20
+ *   wheel 'tire_f_l' (4 times)                               165       253      36     14         5
+ *   a fast step: all wheels                                  660      1014     144     56        20
+ *   all together                                            2500      3296     163     66        20
  *   outputs, when asked for                                  799       936       0      0         7
- *   look at contacts, with head.locate                      1912      2765     146     66        20
+ *   look at contacts, with head.locate                      1932      2789     158     66        20
  *
  * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
  *   AB3                                                1 + 1
@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xac702abf
+#if HMMWV_TMEASY_H != 0x2f90b489
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1984,69 +1984,73 @@ static int hmmwv_tmeasy_wheel_tire_f_l(hmmwv_tmeasy *self, const gic_real *GIC_R
         const gic_real t13 = t11 + t12;
         const gic_real t14 = t5 / t9 + t11 / t13;
         const gic_real t15 = contact[HMMWV_TMEASY_CONTACT_KAPPA] / t14;
-        const gic_real t16 = R(5e-13) + t15 * t15;
-        const gic_real t17 = t8 / t9 + t12 / t13;
-        const gic_real t18 = contact[HMMWV_TMEASY_CONTACT_TANGENT] / t17;
-        const gic_real t19 = R(5e-13) + t18 * t18;
-        const gic_real t20 = t16 + t19;
-        const gic_real t21 = GIC_SQRT(t20);
-        const gic_real t22 = GIC_SQRT(t19 / t20);
-        const gic_real t23 = t22 * (t12 / t17);
-        const gic_real t24 = GIC_SQRT(t16 / t20);
-        const gic_real t25 = t24 * (t11 / t14);
-        const gic_real t26 = GIC_SQRT(t23 * t23 + t25 * t25);
-        const gic_real t27 = t21 - t26;
-        const gic_real t28 = t22 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(1.2870000000000001) / t17);
-        const gic_real t29 = t24 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(0.8333375) / t14);
-        const gic_real t30 = GIC_SQRT(t28 * t28 + t29 * t29);
-        const gic_real t31 = t30 - t21;
-        const gic_real t32 = t6 * t22;
-        const gic_real t33 = t3 * t24;
-        const gic_real t34 = GIC_SQRT(t32 * t32 + t33 * t33);
-        const gic_real t35 = t1 * (t2 * (R(6099.554999999999) - t2 * R(253.19999999999982))) * t22;
-        const gic_real t36 = t1 * (t2 * (R(4282.8685000000005) - t2 * R(328.29850000000033))) * t24;
-        const gic_real t37 = GIC_SQRT(t35 * t35 + t36 * t36);
-        const gic_real t38 = t34 - t37;
-        const gic_real t39 = t34 / t26;
-        const gic_real t40 = t22 * (t7 * t17);
-        const gic_real t41 = t24 * (t4 * t14);
-        const gic_real t42 = GIC_MAX(GIC_SQRT(t40 * t40 + t41 * t41) * t26, t34 + t34);
-        const gic_real t43 = t39 * t39 / t42;
-        const gic_real t44 = t30 - t26;
-        const gic_real t45 = t38 / (t43 * t44);
-        const gic_real t46 = t26 + t45;
-        const gic_real t47 = t27 / t44;
-        const gic_real t48 = t34 - t38 * ((R(3.0) - (t47 + t47)) * (t47 * t47));
-        const gic_real t49 = t37 + t31 * t31 * (t43 * t45 / (t30 - t46));
-        const gic_real t50 = (t21 - t46 > GIC_R(0) ? t49 : t34 - t43 * (t27 * t27));
-        const gic_real t51 = t21 / t26;
-        const gic_real t52 = t42 * t51 / (R(1.0) + t51 * (t42 / t34 - R(2.0) + t51));
-        const gic_real t53 = (t27 > GIC_R(0) ? (t31 > GIC_R(0) ? (t46 - t30 > GIC_R(0) ? t48 : t50) : t37) : t52);
-        const gic_real t54 = contact[HMMWV_TMEASY_CONTACT_LOAD] / (t2 * R(8562.827)) * t53 / t21;
-        const gic_real t55 = t18 * t54;
-        const gic_real t56 = GIC_FABS(contact[HMMWV_TMEASY_CONTACT_TANGENT]);
-        const gic_real t57 = t10 * R(0.0005399999999999849) + R(0.36484);
-        const gic_real t58 = t56 - t57;
-        const gic_real t59 = R(1.0296) - t56;
-        const gic_real t60 = t59 / (R(1.0296) - t57);
-        const gic_real t61 = t10 * R(0.01200000000000001) + R(0.178);
-        const gic_real t62 = t57 * R(0.9712509712509712);
-        const gic_real t63 = R(1.0) - t62;
-        const gic_real t64 = -(t60 * t60 * (t58 / t57) * (t61 * t63));
-        const gic_real t65 = t56 / t57;
-        const gic_real t66 = t62 * (R(1.0) - t65 * t65 * (R(3.0) - (t65 + t65)));
-        const gic_real t67 = (t58 > GIC_R(0) ? (t59 > GIC_R(0) ? t64 : R(0.0)) : t61 * (t66 + (R(1.0) - t65) * t63));
-        const gic_real t68 = t15 * t54;
-        const gic_real t69 = -t55;
-        const gic_real t70 = contact[HMMWV_TMEASY_CONTACT_LOAD] * R(-0.007048499999999999) *
+        const gic_real t16 = contact[HMMWV_TMEASY_CONTACT_LOAD] / (t2 * R(8562.827));
+        const gic_real t17 = R(5e-13) + t15 * t15;
+        const gic_real t18 = t8 / t9 + t12 / t13;
+        const gic_real t19 = contact[HMMWV_TMEASY_CONTACT_TANGENT] / t18;
+        const gic_real t20 = R(5e-13) + t19 * t19;
+        const gic_real t21 = t17 + t20;
+        const gic_real t22 = R(1e-12) / t21;
+        const gic_real t23 = GIC_SQRT(t21);
+        const gic_real t24 = GIC_SQRT(t20 / t21);
+        const gic_real t25 = t24 * (t12 / t18);
+        const gic_real t26 = GIC_SQRT(t17 / t21);
+        const gic_real t27 = t26 * (t11 / t14);
+        const gic_real t28 = GIC_SQRT(t25 * t25 + t27 * t27);
+        const gic_real t29 = t23 - t28;
+        const gic_real t30 = t24 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(1.2870000000000001) / t18);
+        const gic_real t31 = t26 * (contact[HMMWV_TMEASY_CONTACT_FRICTION] * R(0.8333375) / t14);
+        const gic_real t32 = GIC_SQRT(t30 * t30 + t31 * t31);
+        const gic_real t33 = t32 - t23;
+        const gic_real t34 = t6 * t24;
+        const gic_real t35 = t3 * t26;
+        const gic_real t36 = GIC_SQRT(t34 * t34 + t35 * t35);
+        const gic_real t37 = t1 * (t2 * (R(6099.554999999999) - t2 * R(253.19999999999982))) * t24;
+        const gic_real t38 = t1 * (t2 * (R(4282.8685000000005) - t2 * R(328.29850000000033))) * t26;
+        const gic_real t39 = GIC_SQRT(t37 * t37 + t38 * t38);
+        const gic_real t40 = t36 - t39;
+        const gic_real t41 = t36 / t28;
+        const gic_real t42 = t24 * (t7 * t18);
+        const gic_real t43 = t26 * (t4 * t14);
+        const gic_real t44 = GIC_MAX(GIC_SQRT(t42 * t42 + t43 * t43) * t28, t36 + t36);
+        const gic_real t45 = t41 * t41 / t44;
+        const gic_real t46 = t32 - t28;
+        const gic_real t47 = t40 / (t45 * t46);
+        const gic_real t48 = t28 + t47;
+        const gic_real t49 = t29 / t46;
+        const gic_real t50 = t36 - t40 * ((R(3.0) - (t49 + t49)) * (t49 * t49));
+        const gic_real t51 = t39 + t33 * t33 * (t45 * t47 / (t32 - t48));
+        const gic_real t52 = (t23 - t48 > GIC_R(0) ? t51 : t36 - t45 * (t29 * t29));
+        const gic_real t53 = t23 / t28;
+        const gic_real t54 = t44 * t53 / (R(1.0) + t53 * (t44 / t36 - R(2.0) + t53));
+        const gic_real t55 = (t29 > GIC_R(0) ? (t33 > GIC_R(0) ? (t48 - t32 > GIC_R(0) ? t50 : t52) : t39) : t54);
+        const gic_real t56 = t55 / t23 * (R(1.0) - t22);
+        const gic_real t57 = t22 * (t14 * GIC_MAX(t4, (t3 + t3) / t11)) + t56;
+        const gic_real t58 = t56 + t22 * (t18 * GIC_MAX(t7, (t6 + t6) / t12));
+        const gic_real t59 = t19 * (t16 * t58);
+        const gic_real t60 = GIC_FABS(contact[HMMWV_TMEASY_CONTACT_TANGENT]);
+        const gic_real t61 = t10 * R(0.0005399999999999849) + R(0.36484);
+        const gic_real t62 = t60 - t61;
+        const gic_real t63 = R(1.0296) - t60;
+        const gic_real t64 = t63 / (R(1.0296) - t61);
+        const gic_real t65 = t10 * R(0.01200000000000001) + R(0.178);
+        const gic_real t66 = t61 * R(0.9712509712509712);
+        const gic_real t67 = R(1.0) - t66;
+        const gic_real t68 = -(t64 * t64 * (t62 / t61) * (t65 * t67));
+        const gic_real t69 = t60 / t61;
+        const gic_real t70 = t66 * (R(1.0) - t69 * t69 * (R(3.0) - (t69 + t69)));
+        const gic_real t71 = (t62 > GIC_R(0) ? (t63 > GIC_R(0) ? t68 : R(0.0)) : t65 * (t70 + (R(1.0) - t69) * t67));
+        const gic_real t72 = t15 * (t16 * t57);
+        const gic_real t73 = -t59;
+        const gic_real t74 = contact[HMMWV_TMEASY_CONTACT_LOAD] * R(-0.007048499999999999) *
             GIC_TANH(fast[HMMWV_TMEASY_FAST_SPIN]);
-        const gic_real t71 = t55 * (GIC_SQRT(GIC_MAX(contact[HMMWV_TMEASY_CONTACT_DEFLECTION], R(1e-16)) * R(3.7592)) *
-            t67);
-        force[HMMWV_TMEASY_TIRE_FX] = t68;
-        force[HMMWV_TMEASY_TIRE_FY] = t69;
+        const gic_real t75 = t59 * (GIC_SQRT(GIC_MAX(contact[HMMWV_TMEASY_CONTACT_DEFLECTION], R(1e-16)) * R(3.7592)) *
+            t71);
+        force[HMMWV_TMEASY_TIRE_FX] = t72;
+        force[HMMWV_TMEASY_TIRE_FY] = t73;
         force[HMMWV_TMEASY_TIRE_MX] = R(0.0);
-        force[HMMWV_TMEASY_TIRE_MY] = t70;
-        force[HMMWV_TMEASY_TIRE_MZ] = t71;
+        force[HMMWV_TMEASY_TIRE_MY] = t74;
+        force[HMMWV_TMEASY_TIRE_MZ] = t75;
     } else
         ++self->head.air_count;
     /* balance of the wheel, and what it does to its carrier */
