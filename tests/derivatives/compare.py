@@ -192,7 +192,8 @@ with tempfile.TemporaryDirectory() as work:
             self.change[r:r + 3, 0:3] = self.R
             for k in range(3):
                 theta = np.eye(3)[k]
-                self.change[e:e + 4, 3 + k] = np.concatenate([[-p[1:] @ theta], p[0] * theta + np.cross(p[1:], theta)]) / 2
+                turn = np.concatenate([[-p[1:] @ theta], p[0] * theta + np.cross(p[1:], theta)])
+                self.change[e:e + 4, 3 + k] = turn / 2
                 self.change[v:v + 3, 3 + k] = self.R @ np.cross(theta, self.u)
             self.change[v:v + 3, places:places + 3] = self.R
             self.change[o:o + 3, places + 3:places + 6] = np.eye(3)
@@ -222,7 +223,8 @@ with tempfile.TemporaryDirectory() as work:
                  *(name + ".rate" for name in coordinates), "transmission.age"}
         names = ["base"] * base + coordinates
         places = len(names)
-        names += ["base"] * base + [name + ".rate" for name in coordinates] + [name for name in slow if name not in known]
+        names += ["base"] * base + [name + ".rate" for name in coordinates]
+        names += [name for name in slow if name not in known]
         numbers, done = rows_of(matrices[0]), 0
         with open(matrices[1], "w", encoding="utf-8") as file:
             print("row", *names, sep=",", file=file)
