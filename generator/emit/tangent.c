@@ -259,10 +259,10 @@ static void write_calls(void *context, Text *out, int indent)
         write_links(g, out, indent, s);
         line(out, indent,
              "%s_tangent_solve_%s(along->still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
-             "along->motion + "
-             "%s, along->inertia + %s);",
+             "self->motion + %s, self->inertia + %s, along->motion + %s, along->inertia + %s);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
-             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s));
+             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s), body_motion_text(g, subset->body[0]),
+             subset_inertia_text(g, s));
     }
 }
 

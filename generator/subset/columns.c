@@ -188,26 +188,6 @@ static Givens moved_bodies(const Formula *f, int coordinate)
     return g;
 }
 
-/* Numbers that `solve` stored stand for what they are in what is differentiated. */
-static const Ex *read_stored(const Formula *formula, const Ex *root, int roots)
-{
-    Dag *dag = formula->dag;
-    const Block *solve = &formula->solve;
-    Ex from[solve->stores + 1], to[solve->stores + 1];
-    int stored = 0;
-    for (int i = 0; i < solve->stores && formula->closed;
-         ++i) { /* others are found at poses that differ by roundings */
-        const Store *store = &solve->store[i];
-        const Node *node = &dag->node[store->value];
-        const bool kept = store->target.array == ARRAY_motion || store->target.array == ARRAY_inertia;
-        if (!kept || node->level < LEVEL_VARIABLE || node->op == OP_INPUT)
-            continue;
-        from[stored] = store->value;
-        to[stored++] = ex_input(dag, store->target, NULL);
-    }
-    return dag_replace(dag, root, roots, from, to, stored);
-}
-
 static MotionColumns *columns_of(const Sequence *sequence, const Formula *formula, bool free_base, Column *column)
 {
     static const Array kind[3] = {ARRAY_x, ARRAY_rate, ARRAY_turn};
@@ -239,7 +219,7 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
         for (int i = 0; i < rows; ++i)
             m->slope[motions + rows * c + i] = slope[root[numbers + i]];
     }
-    const Ex *image = read_stored(formula, m->slope, all);
+    const Ex *image = subset_read_stored(formula, m->slope, all);
     for (int i = 0; i < all; ++i) {
         const Ex e = m->slope[i] = image[m->slope[i]];
         m->place[i] = -1;

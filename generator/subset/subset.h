@@ -226,9 +226,11 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
 
 /* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
- * found, and of the factors if reactions are asked for. steady: the base does not turn; tuned: derived numbers change.
- */
+ * found, and of the factors if reactions are asked for; it reads what `solve` stored. steady: the base does not turn;
+ * tuned: derived numbers change; still: no coordinate does, nor these. */
 const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still);
+/* [nodes] images of roots in which numbers that `solve` of a closed form has stored are read. */
+const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots);
 /* The derivatives of nodes of `solve`, at the same poses. */
 const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots);
 

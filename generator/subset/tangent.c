@@ -99,12 +99,39 @@ const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *ro
     return dag_slopes(formula->dag, &formula->solve, root, roots, &own);
 }
 
+const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots)
+{
+    Dag *dag = formula->dag;
+    const Block *solve = &formula->solve;
+    Ex from[solve->stores + 1], to[solve->stores + 1];
+    int stored = 0;
+    for (int i = 0; i < solve->stores && formula->closed;
+         ++i) { /* others are found at poses that differ by roundings */
+        const Store *store = &solve->store[i];
+        const Node *node = &dag->node[store->value];
+        const bool kept = store->target.array == ARRAY_motion || store->target.array == ARRAY_inertia;
+        if (!kept || node->level < LEVEL_VARIABLE || node->op == OP_INPUT)
+            continue;
+        from[stored] = store->value;
+        to[stored++] = ex_input(dag, store->target, NULL);
+    }
+    return dag_replace(dag, root, roots, from, to, stored);
+}
+
 const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still)
 {
+    Dag *dag = formula->dag;
     const int factors = formula->react.stores ? formula->layout.start_factors : -1;
     Moving moving = {.steady = steady, .tuned = tuned, .still = still, .factors = factors};
     Seeds seeds = {.moves = moves, .context = &moving};
     if (formula->implicit)
         give_poses(formula, &seeds);
-    return block_tangent(&formula->solve, &seeds, false, is_wanted);
+    Block *block = block_tangent(&formula->solve, &seeds, false, is_wanted);
+    Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
+    for (int i = 0; i < block->stores; ++i)
+        root[i] = block->store[i].value;
+    const Ex *image = subset_read_stored(formula, root, block->stores);
+    for (int i = 0; i < block->stores; ++i)
+        block->store[i].value = image[root[i]];
+    return block;
 }
