@@ -68,9 +68,9 @@ written() {
     "$gicgen" --dump-model "$1" >"$work/dump" && "$states" "$work/dump" --count "$2" --seed 5 --nice >"$work/states" &&
         compare "$1" --states "$work/states"
 }
-for name in hmmwv_vehicle hmmwv_tmeasy; do
-    check "$name: differences in quad precision" quad "$models/$name.veh" 1,2,3,5,16
-    check "$name: states such as people write" written "$models/$name.veh" 16
+for vehicle in hmmwv_vehicle hmmwv_tmeasy; do # a check has a name of its own
+    check "$vehicle: differences in quad precision" quad "$models/$vehicle.veh" 1,2,3,5,16
+    check "$vehicle: states such as people write" written "$models/$vehicle.veh" 16
 done
 check 'states of a model: such as people write' written "$root/tests/data/laws/states.veh" 8
 
