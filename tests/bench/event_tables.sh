@@ -46,12 +46,12 @@ bounds() {
     done
 }
 
-# errors WHAT MODEL STEP PARTS LINE...: of a step, its half and its quarter, AB3 and RK4; `one_scene STEP LINE...`
-# prints the scene
+# errors WHAT MODEL STEP PARTS LINE...: of a step, its half and its quarter, AB3 and RK4; `one_scene STEP
+# "LINE, LINE"` prints the scene
 errors() {
     what=$1 model=$2 step=$3 parts=$4
     shift 4
-    one_scene "$(part_of "$step" "$parts")" 'integrator: rk4' 'locate: true' >"$work/fine.scene"
+    one_scene "$(part_of "$step" "$parts")" 'integrator: rk4, locate: true' >"$work/fine.scene"
     "$build/gicrun" -q "$model" "$work/fine.scene" -o "$work/fine.csv"
     for way; do
         printf '| %s | %s |' "$what" "$way"
@@ -95,6 +95,7 @@ smooth_jump() {
     printf 'step: %s\n' "$1"
     echo "$2" | sed 's/, /\n/g'
 }
+
 # with_lines SCENE STEP "LINE, LINE"
 with_lines() { scene "$1" "$2" "$(echo "$3" | sed 's/, /\n/g')"; }
 rough() {
