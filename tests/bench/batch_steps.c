@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * batch_cost.py makes a shared object of it and calls it: steps of a batch in C, in the same process and memory.
+ * python_batch.sh makes a shared object of it and calls it: steps of a batch in C, in the same process and memory.
  * Returns a status. */
 #include "host/gic.h"
 
