@@ -333,6 +333,19 @@ static const Model *watched(Pool *pool, const Model *model)
     return copy;
 }
 
+const char *equilibrium_faded(Pool *pool, const Equilibrium *found, const double *output, int index)
+{
+    const Wheel *wheel = &found->model->wheel[index];
+    const double deflection = output[equilibrium_wheel(found, index) + 1], share = deflection / wheel->fade;
+    if (wheel->tire < 0 || !(deflection > 0 && share < 1))
+        return NULL;
+    return pool_print(
+        pool,
+        "wheel '%s' deflects by %.3g mm, less than its fade of %.3g mm: the stiffnesses by slip are %.2g of "
+        "the tire's; choose a smaller `fade`",
+        wheel->name, 1e3 * deflection, 1e3 * wheel->fade, share * share * (3 - 2 * share));
+}
+
 int equilibrium_wheel(const Equilibrium *found, int wheel)
 {
     return found->model->output_components - 4 * (found->model->wheels - wheel);

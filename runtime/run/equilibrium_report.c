@@ -169,7 +169,7 @@ static double weight(const Model *model)
     return model->free_base && vertical && !tuned_number(model, &model->gravity[2]) ? -mass * model->gravity[2] : 0;
 }
 
-static void print_wheels(const Equilibrium *found, const double *output)
+static void print_wheels(Pool *pool, const Equilibrium *found, const double *output)
 {
     const Model *model = found->model;
     double sum = 0;
@@ -185,6 +185,11 @@ static void print_wheels(const Equilibrium *found, const double *output)
     if (weight(model) > 0)
         printf(", weight %.9g N", weight(model));
     printf("\n");
+    for (int i = 0; i < model->wheels; ++i) {
+        const char *faded = equilibrium_faded(pool, found, output, i);
+        if (faded)
+            printf("%s%s\n", i ? "" : "\n", faded);
+    }
 }
 
 /* Fast states of tires and brakes that are not 0. */
@@ -352,7 +357,7 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
         print_base(found, state);
     print_coordinates(found, state, input);
     print_forces(found, output);
-    print_wheels(found, output);
+    print_wheels(pool, found, output);
     print_fast_states(found, state);
     print_initial(pool, found, state);
     /* last, so that a file is there only where nothing failed */

@@ -86,6 +86,8 @@ bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
 int equilibrium_force(const Equilibrium *found, int force);
 int equilibrium_wheel(const Equilibrium *found, int wheel);
+/* What is to be said of a wheel that touches, but deflects less than its `fade` at these outputs; NULL: nothing. */
+const char *equilibrium_faded(Pool *pool, const Equilibrium *found, const double *output, int wheel);
 /* The scene with the places of the equilibrium; a `speed` is along the base there. */
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found);
 /* Give the equilibrium's instance the velocities of the scene's initial state, and its spins. False: the scene has

@@ -133,6 +133,9 @@ static void loads(Sheet *sheet, const double *pose, const Carried *c)
                       pool_print(sheet->pool, "Load of %s", wheel->name), "N", of[0]);
             sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", wheel->name),
                       pool_print(sheet->pool, "Deflection of %s", wheel->name), "m", of[1]);
+            const char *faded = equilibrium_faded(sheet->pool, found, output, wheel_index(sheet, wheel));
+            if (faded)
+                sheet_note(sheet, faded);
         }
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", axle->name),
                   pool_print(sheet->pool, "Load of axle %s", axle->name), "N", sum);

@@ -243,6 +243,13 @@ END
 run --equilibrium "$work/touch.veh" -o "$work/rest"
 check 'a wheel that just touches' exits 0
 check 'it rests there' near "$(column "$work/rest" height)" 0 1e-12
+# 490.5 N on 210000 N/m: 2.34 mm, of 10 mm of fade the share 0.234: S = 0.138
+sed '/^gravity/d' "$work/touch.veh" >"$work/faded.veh"
+run --equilibrium "$work/faded.veh"
+check 'a tire that deflects less than its fade' grep -qF "wheel 'wheel' deflects by 2.34 mm, less than its fade of 10 mm: the stiffnesses by slip are 0.14 of" "$work/out"
+sed -i 's/spin_inertia: 1.5/&, fade: 0.001/' "$work/faded.veh"
+run --equilibrium "$work/faded.veh"
+check 'more than its fade' sh -c '! grep -q fade "$1"' sh "$work/out"
 
 # where there is none
 # refused TEXT REMEDY [SCENE]: status 1, nothing printed or written
