@@ -28,6 +28,8 @@ typedef struct Source {
                            */
     Place named_at;       /* where another file names it; no source: the user does */
     struct Named *named;  /* the files that this file names: source.c */
+    const struct Source *known; /* an earlier reading, whose bytes and those of the files that it names are taken; NULL:
+                                 * files are read */
 } Source;
 
 /* Each of the following goes to who catches it, where someone does: catch.h.
@@ -53,6 +55,8 @@ const char *diag_nearest(const char *word, const char *const *words, int count);
 Source *source_read(Pool *pool, const char *path, size_t most, const Source *by);
 /* The same from a text in memory, zero-terminated after `size` bytes, in place of the file. */
 Source *source_text(Pool *pool, const char *path, const char *text, size_t size);
+/* The same from the bytes of an earlier reading; files that it names too. */
+Source *source_again(Pool *pool, const Source *known);
 /* Exit with a message if the file to be written is this input or a file that it names. */
 void source_keep(const Source *source, const char *output);
 /* A hash of the contents of this file and of all files that it names. */

@@ -11,12 +11,33 @@ struct Named {
     const Source **source;
 };
 
-Source *source_read(Pool *pool, const char *path, size_t most, const Source *by)
+/* The earlier reading of a file that `by` names; NULL: there is none. */
+static const Source *find_known(const Source *by, const char *path)
+{
+    const struct Named *named = by && by->known ? by->known->named : NULL;
+    for (int i = 0; named && i < named->count; ++i)
+        if (!strcmp(named->source[i]->path, path))
+            return named->source[i];
+    return NULL;
+}
+
+Source *source_again(Pool *pool, const Source *known)
 {
     Source *source = pool_alloc(pool, sizeof *source);
-    source->path = path;
-    source->bytes = file_read(pool, path, most, &source->size);
+    *source = (Source){.path = known->path, .bytes = known->bytes, .size = known->size, .known = known};
     source->named = pool_alloc(pool, sizeof *source->named);
+    return source;
+}
+
+Source *source_read(Pool *pool, const char *path, size_t most, const Source *by)
+{
+    const Source *known = find_known(by, path);
+    Source *source = known ? source_again(pool, known) : pool_alloc(pool, sizeof *source);
+    if (!known) {
+        source->path = path;
+        source->bytes = file_read(pool, path, most, &source->size);
+        source->named = pool_alloc(pool, sizeof *source->named);
+    }
     if (by && by->named)
         *POOL_PUSH(pool, by->named->source, by->named->count) = source;
     return source;

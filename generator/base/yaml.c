@@ -322,6 +322,11 @@ const Item *doc_read_text(Pool *pool, const char *path, const char *text, size_t
     return read_tree(pool, source_text(pool, path, text, size));
 }
 
+const Item *doc_read_again(Pool *pool, const Source *known)
+{
+    return read_tree(pool, source_again(pool, known));
+}
+
 const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key)
 {
     Source *source = source_read(pool, path, TEXT_MOST, by->at.source);

@@ -26,6 +26,8 @@ typedef struct Item {
 const Item *doc_read(Pool *pool, const char *path);
 /* The same for a text that stands in memory; path: of the file that it is in place of. */
 const Item *doc_read_text(Pool *pool, const char *path, const char *text, size_t size);
+/* The same for the bytes of an earlier reading. */
+const Item *doc_read_again(Pool *pool, const Source *known);
 /* The same for a file that the item `by` of another file names. If it contains no word of the NULL-terminated list
  * `key`, it is not a file of that kind: the message then shows nothing of its contents. */
 const Item *doc_read_named(Pool *pool, const char *path, const Item *by, const char *const *key);

@@ -44,6 +44,7 @@ typedef struct Open {
     const char *path;
     const char *text; /* in place of the file, [size]; NULL: the file has it */
     size_t size;
+    const Source *known;  /* an earlier reading of it; NULL: there is none */
     struct stat identity; /* the same file may have many paths */
     int depth;
 } Open;
@@ -234,9 +235,10 @@ static const Item *part_read(Pool *pool, const Item *item, const Open *from)
 static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
 {
     static const char *const key[] = {"gicgen", "bodies:", "joints:", "coordinates:", "forces:", "outputs:", NULL};
-    const Item *file = by           ? doc_read_named(pool, open->path, by, key)
-                       : open->text ? doc_read_text(pool, open->path, open->text, open->size)
-                                    : doc_read(pool, open->path);
+    const Item *file = by            ? doc_read_named(pool, open->path, by, key)
+                       : open->known ? doc_read_again(pool, open->known)
+                       : open->text  ? doc_read_text(pool, open->path, open->text, open->size)
+                                     : doc_read(pool, open->path);
     open->taken->bytes += file->at.source->size;
     if (open->taken->bytes > TEXT_MOST)
         diag_fail((Place){file->at.source, 0, 0}, "include less",
@@ -258,6 +260,12 @@ static const Item *file_read_whole(Pool *pool, const Open *open, const Item *by)
 const Item *text_included(Pool *pool, const char *path, const char *text, size_t size)
 {
     const Open open = {.path = path, .text = text, .size = size, .taken = &(Taken){0}};
+    return file_read_whole(pool, &open, NULL);
+}
+
+const Item *known_included(Pool *pool, const Source *known)
+{
+    const Open open = {.path = known->path, .known = known, .taken = &(Taken){0}};
     return file_read_whole(pool, &open, NULL);
 }
 

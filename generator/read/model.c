@@ -155,3 +155,8 @@ const Model *model_read_text(Pool *pool, const char *path, const char *text, siz
 {
     return read_model(pool, text_included(pool, path, text, size));
 }
+
+const Model *model_read_again(Pool *pool, const Model *earlier)
+{
+    return read_model(pool, known_included(pool, earlier->source));
+}

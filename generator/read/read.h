@@ -18,6 +18,8 @@ void keys_print(Text *out);
 const Model *model_read(Pool *pool, const char *path);
 /* The same from a text in memory, zero-terminated after `size` bytes; path: of the file that it is in place of. */
 const Model *model_read_text(Pool *pool, const char *path, const char *text, size_t size);
+/* A model of its own from the bytes that an earlier one was read from; files that it names must still be there. */
+const Model *model_read_again(Pool *pool, const Model *earlier);
 /* A copy of the model with hidden outputs of each wheel: of type wheel, and with a tire also tire and contact, unless
  * it has them. */
 const Model *model_watch_wheels(Pool *pool, const Model *model);

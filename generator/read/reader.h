@@ -191,6 +191,8 @@ const Item *file_mirrored(Pool *pool, const Item *file);
 const Item *file_included(Pool *pool, const char *path);
 /* The same where a text in memory is in place of the file. */
 const Item *text_included(Pool *pool, const char *path, const char *text, size_t size);
+/* The same from the bytes of an earlier reading of it and of the files that it includes. */
+const Item *known_included(Pool *pool, const Source *known);
 /* The path of the file `name`, which `item` names, relative to the folder of `file`; ends in diag_fail if it can't be
  * read. use: its purpose in messages, "include". */
 const char *path_check(Pool *pool, const Item *item, const char *file, const char *name, const char *use,

@@ -55,10 +55,10 @@ static const Model *read_scene(const Work *work, const Scene **scene)
 {
     Pool *pool = work->result->pool;
     const OpenModel *open = work->open;
-    *scene = work->path
-                 ? scene_read(pool, pool_print(pool, "%s", work->path), open->model, open->integrator, open->tolerance)
-                 : NULL;
-    return scene_rig(pool, open->model, scene);
+    const Model *model = model_for(open, pool);
+    *scene = work->path ? scene_read(pool, pool_print(pool, "%s", work->path), model, open->integrator, open->tolerance)
+                        : NULL;
+    return scene_rig(pool, model, scene);
 }
 
 /* ---- the four kinds of work ----------------------------------------------------------------------------------- */

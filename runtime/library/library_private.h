@@ -62,6 +62,8 @@ typedef struct OpenModel {
     atomic_int users;  /* the handle, instances and batches */
 } OpenModel;
 
+/* The model for a call that analyses it or reads a scene in `pool`, inside of call_work(). */
+const Model *model_for(const OpenModel *open, Pool *pool);
 /* The model's code for any scene, compiled by the first call. */
 int model_engine(const gicl_library *library, OpenModel *model, gicl_messages *said);
 void model_keep(OpenModel *model);

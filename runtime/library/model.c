@@ -155,13 +155,43 @@ void model_let(void *let)
     pool_free(model->pool);
 }
 
+/* ---- models of calls ------------------------------------------------------------------------------------------ */
+
+typedef struct Again {
+    Pool *pool;
+    const Model *earlier, *model;
+} Again;
+
+static void read_again(void *context)
+{
+    Again *again = context;
+    again->model = model_read_again(again->pool, again->earlier);
+}
+
+/* Validation and limits try other parameters on the formulas of tunable geometry, and analyses add to them: so each
+ * call has a model of its own, from the bytes that the open one was read from. Its warnings were said then. */
+const Model *model_for(const OpenModel *open, Pool *pool)
+{
+    Again again = {pool, open->model, open->model};
+    Messages said = {NULL, NULL};
+    if (!open->model->tuning)
+        return open->model;
+    const bool good = caught(&said, read_again, &again);
+    for (const Message *message = good ? NULL : said.first; message; message = message->next)
+        caught_tell(message);
+    messages_clear(&said);
+    if (!good)
+        caught_fail();
+    return again.model;
+}
+
 /* ---- code --------------------------------------------------------------------------------------------------- */
 
 static void open_engine(void *context)
 {
     OpenModel *model = context;
     Pool *pool = pool_new();
-    model->engine = engine_open(pool, model->engine_name, model->model, &model->options);
+    model->engine = engine_open(pool, model->engine_name, model_for(model, pool), &model->options);
     model->engine_pool = pool;
 }
 
@@ -192,8 +222,9 @@ static void generate_code(void *context)
     OpenModel *open = context;
     Pool *pool = open->pool;
     Text c = {.pool = pool}, h = {.pool = pool};
-    const Sequence *sequence = sequence_find(pool, open->model);
-    const Model *model = model_assemble(pool, open->model, sequence);
+    const Model *own = model_for(open, pool);
+    const Sequence *sequence = sequence_find(pool, own);
+    const Model *model = model_assemble(pool, own, sequence);
     const Formulation *formulation = formulate(pool, model, sequence, open->options.solve, open->options.recovery);
     formulation_validate(pool, formulation, NULL);
     generate(pool, formulation, &style_readable, NULL, pool_print(pool, "%s.h", model->name), &c, &h);

@@ -23,14 +23,14 @@ typedef struct Making {
     Vehicles *made;
 } Making;
 
-static const Scene *read_scene(Pool *pool, const OpenModel *model, const char *path)
+static const Scene *read_scene(Pool *pool, const OpenModel *open, const char *path)
 {
     if (!path)
         return NULL;
-    const Scene *scene =
-        scene_read(pool, pool_print(pool, "%s", path), model->model, model->integrator, model->tolerance);
+    const Model *model = model_for(open, pool);
+    const Scene *scene = scene_read(pool, pool_print(pool, "%s", path), model, open->integrator, open->tolerance);
     scene_no_rig(scene);
-    return equilibrium_start(pool, model->model, scene, model->options.solve);
+    return equilibrium_start(pool, model, scene, open->options.solve);
 }
 
 /* Code for all of them at once. */
@@ -39,7 +39,8 @@ static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batc
     const OpenModel *model = making->model;
     const Batch batch = {making->count, making->lanes};
     const char *why;
-    const Engine *engine = engine_batch(pool, model->model, &model->options, &batch, "-O3 -march=native", many, &why);
+    const Engine *engine =
+        engine_batch(pool, model_for(model, pool), &model->options, &batch, "-O3 -march=native", many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "no code for many vehicles at once: %s", why);

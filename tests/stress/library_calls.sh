@@ -8,8 +8,7 @@ calls=$1
 cd "$(dirname "$0")/../.." || exit 1
 # with SCENE...: models with the scenes of their names
 with() { for name in "$@"; do echo "models/$name.veh=models/scenes/$name.scene"; done; }
-# models with tunable geometry are left out: calls share numbers of theirs, and read them after they are freed
-some="$(with quarter_car pendulum)"
+some="$(with quarter_car pendulum) tests/data/tuning/car.veh"
 some="$some models/controllers/skyhook.veh=models/controllers/skyhook.scene"
 seeds=3
 count=1500

@@ -71,7 +71,7 @@ check $? "the library refuses broken models and leaves nothing of them"
 for threads in 1 3; do
     (cd "$root" && GICGEN_CACHE="$work/calls" "$debug/check/library_calls" 1 2 600 $threads \
         models/quarter_car.veh=models/scenes/quarter_car.scene models/pendulum.veh=models/scenes/pendulum.scene \
-        models/controllers/skyhook.veh=models/controllers/skyhook.scene) >"$work/out" 2>"$work/said"
+        models/controllers/skyhook.veh=models/controllers/skyhook.scene tests/data/tuning/car.veh) >"$work/out" 2>"$work/said"
     check $? "calls in random order, threads: $threads"
 done
 
