@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0x9a8dae7b
+#if FORMULA_STUDENT_H != 0x5513e94f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -136,7 +136,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FORMULA_STUDENT_H
-#define FORMULA_STUDENT_H 0x9a8dae7b
+#define FORMULA_STUDENT_H 0x5513e94f
 
 #include "gic_runtime.h"
 
@@ -387,6 +387,8 @@ typedef struct formula_student {
         last outputs */
     gic_real history[GIC_HISTORY(FORMULA_STUDENT_STATE_ROOM, FORMULA_STUDENT_STATES - FORMULA_STUDENT_SLOW)];
     gic_real scratch[GIC_SCRATCH(FORMULA_STUDENT_STATE_ROOM, FORMULA_STUDENT_INPUT_ROOM)];
+    gic_real whole[GIC_WHOLE(FORMULA_STUDENT_STATE_ROOM, FORMULA_STUDENT_INPUT_ROOM, FORMULA_STUDENT_OUTPUT_ROOM)]; /* a
+        step's start, to return to */
     gic_real x[FORMULA_STUDENT_COORDINATE_ROOM], xd[FORMULA_STUDENT_COORDINATE_ROOM]; /* dual coordinates and their
         rates */
     gic_real recovered_at[2 * FORMULA_STUDENT_COORDINATE_ROOM + 4]; /* x, xd, angular velocity of the base, ahead of the

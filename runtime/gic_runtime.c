@@ -1429,10 +1429,22 @@ typedef struct Whole {
     int32_t discrete[MOST_DISCRETE];
 } Whole;
 
-/* Row 10 of the scratch array, which nothing else uses, keeps the state meanwhile. */
-static gic_real *whole_row(const gic_model *model, void *self)
+/* Behind what steps use of the scratch array: state, rate, inputs and outputs meanwhile. */
+static void whole_exchange(const gic_model *model, void *self, int back)
 {
-    return array_at(self, model->scratch_offset) + 10 * (model->slow_count + model->fast_count);
+    const int32_t n = model->slow_count + model->fast_count;
+    const struct {
+        size_t offset;
+        int32_t count;
+    } array[] = {{model->state_offset, n},
+                 {model->rate_offset, n},
+                 {model->input_offset, model->input_count},
+                 {model->output_offset, model->output_count}};
+    gic_real *kept = array_at(self, model->scratch_offset) + GIC_SCRATCH(n, model->input_count);
+    for (size_t i = 0; i < sizeof array / sizeof *array; kept += array[i++].count) {
+        gic_real *own = array_at(self, array[i].offset);
+        copy(back ? own : kept, back ? kept : own, array[i].count);
+    }
 }
 
 static Whole whole_begin(const gic_model *model, void *self)
@@ -1440,7 +1452,7 @@ static Whole whole_begin(const gic_model *model, void *self)
     const gic_head *head = (const gic_head *)self;
     Whole whole = {
         {head->start_time, head->step, head->steps, head->method, head->ratio, head->history}, head->touching, {0}};
-    copy(whole_row(model, self), array_at(self, model->state_offset), model->slow_count + model->fast_count);
+    whole_exchange(model, self, 0);
     copy_discrete(model, whole.discrete, discrete_of(model, self));
     return whole;
 }
@@ -1448,7 +1460,7 @@ static Whole whole_begin(const gic_model *model, void *self)
 static void whole_back(const gic_model *model, void *self, const Whole *whole)
 {
     gic_head *head = (gic_head *)self;
-    copy(array_at(self, model->state_offset), whole_row(model, self), model->slow_count + model->fast_count);
+    whole_exchange(model, self, 1);
     copy_discrete(model, discrete_of(model, self), whole->discrete);
     head->start_time = whole->kept.start_time;
     head->step = whole->kept.step;
@@ -1457,7 +1469,6 @@ static void whole_back(const gic_model *model, void *self, const Whole *whole)
     head->ratio = whole->kept.ratio;
     head->history = whole->kept.history;
     head->touching = whole->touching;
-    set_inputs(model, self, gic_time(self));
 }
 
 int gic_sample(const gic_model *model, void *self, gic_real *next)

@@ -271,9 +271,10 @@ typedef struct gic_model {
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
  * GIC_HISTORY(n, fast_count), two past rates, newest first (of dual rate those of the slow states at slow steps, of the
  * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
- * calls. */
+ * calls, and with controllers GIC_WHOLE(n, input_count, output_count) more. */
 #define GIC_HISTORY(n, fast) (2 * (n) + (fast))
 #define GIC_SCRATCH(n, inputs) (12 * (n) + (inputs))
+#define GIC_WHOLE(n, inputs, outputs) (2 * (n) + (inputs) + (outputs))
 
 /* ---- integrators: fixed step, any generated model ------------------------------------------------- */
 

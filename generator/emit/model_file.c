@@ -315,6 +315,17 @@ static void write_derived(void *context, Text *out, int indent)
              g->upper);
 }
 
+/* Right behind scratch, of which the runtime takes it for a part. */
+static void write_whole_member(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->model->controllers)
+        line(out, indent,
+             "gic_real whole[GIC_WHOLE(%s_STATE_ROOM, %s_INPUT_ROOM, %s_OUTPUT_ROOM)]; /* a step's start, to return to "
+             "*/",
+             g->upper, g->upper, g->upper);
+}
+
 static void write_contact_member(void *context, Text *out, int indent)
 {
     const Generation *g = context;
@@ -328,6 +339,7 @@ static const Insertion header_point[] = {{"banner", write_banner},
                                          {"guard", write_guard},
                                          {"abi", write_abi},
                                          {"sizes", write_sizes},
+                                         {"whole", write_whole_member},
                                          {"wheels", write_wheel_members},
                                          {"derived", write_derived},
                                          {"contacts", write_contact_member},

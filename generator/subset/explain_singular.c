@@ -180,6 +180,25 @@ static const char *suggest(const Work *w, const Subset *member, bool joints_stay
     return relax_suggest(w->pool, model, body, edge, joints_stay, at);
 }
 
+/* The same where all joints of the model are independent, so that coordinates elsewhere leave this subset no solution:
+ * one of them is no motion that the joints allow. NULL: they are not, or none is found. */
+static const char *suggest_coordinates(const Work *w, const Subset *member, Place *at)
+{
+    const Model *model = w->model;
+    bool body[model->bodies + 1], edge[model->joints + model->coordinates + 1];
+    Place place = {0};
+    if (member->deps == member->coordinates)
+        return NULL;
+    for (int i = 0; i < model->bodies; ++i)
+        body[i] = i != BODY_BASE;
+    for (int i = 0; i < model->joints + model->coordinates; ++i)
+        edge[i] = true;
+    const char *suggested = relax_suggest(w->pool, model, body, edge, true, &place);
+    if (suggested)
+        *at = place;
+    return suggested;
+}
+
 /* The coordinate whose error moves the bodies most: by how much, relative to the subset's size. */
 static int weakest_coordinate(const Work *w, int sample, double *moves)
 {
@@ -271,6 +290,13 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
                   "equations are "
                   "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
+    const char *others = suggest_coordinates(w, member, &at);
+    if (others)
+        diag_fail(
+            at, others,
+            "with the coordinates that are chosen, %s fix the same motion twice in every configuration, while the "
+            "pose of %s is not determined",
+            equations.s, bodies.s);
     /* a link of one equation is more likely to be misplaced than to be of the wrong type */
     const char *place_it =
         fewest == 1 && !tie->is_coordinate ? "move its points or axes so that it acts on a free motion; or " : "";

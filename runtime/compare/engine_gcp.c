@@ -595,7 +595,7 @@ static void set_states(Pool *pool, Interpreted *context, int own)
     code->state_offset = descriptor_place(code, states);
     code->rate_offset = descriptor_place(code, states);
     code->history_offset = descriptor_place(code, GIC_HISTORY(states, (size_t)code->fast_count));
-    code->scratch_offset = descriptor_place(code, GIC_SCRATCH(states, (size_t)code->input_count));
+    code->scratch_offset = descriptor_place(code, descriptor_scratch(code, states));
 }
 
 /* Nothing is derived from the design: q goes on from a configuration that gic finds. */

@@ -180,6 +180,13 @@ static void set_names(Pool *pool, const Model *model, const Sequence *sequence, 
     code->body_name = body;
 }
 
+size_t descriptor_scratch(const gic_model *code, size_t states)
+{
+    const size_t inputs = (size_t)code->input_count;
+    return GIC_SCRATCH(states, inputs) +
+           (code->controller_count > 0 ? GIC_WHOLE(states, inputs, (size_t)code->output_count) : 0);
+}
+
 /* Arrays one after another. */
 static void place_arrays(gic_model *code)
 {
@@ -189,7 +196,7 @@ static void place_arrays(gic_model *code)
     } array[] = {{&code->state_offset, states},
                  {&code->rate_offset, states},
                  {&code->history_offset, GIC_HISTORY(states, (size_t)code->fast_count)},
-                 {&code->scratch_offset, GIC_SCRATCH(states, (size_t)code->input_count)},
+                 {&code->scratch_offset, descriptor_scratch(code, states)},
                  {&code->discrete_offset, 1 + POWERTRAIN_DISCRETE},
                  {&code->input_offset, (size_t)code->input_count},
                  {&code->parameter_offset, (size_t)code->parameter_count},

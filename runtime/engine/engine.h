@@ -97,6 +97,8 @@ typedef struct Instance {
  * `count` more numbers in its instances, at the returned offset, bytes. */
 gic_model descriptor_new(Pool *pool, const Model *model, const Sequence *sequence);
 size_t descriptor_place(gic_model *code, size_t count);
+/* Numbers of the scratch array of a model with so many states. */
+size_t descriptor_scratch(const gic_model *code, size_t states);
 /* Contacts of a descriptor whose contact_count is set, with room in its instances; numbers as gic_contacts.press. */
 typedef int DescriptorPress(void *self, double time, const double *state, double *press);
 const gic_contacts *descriptor_contacts(Pool *pool, const Model *model, gic_model *code, DescriptorPress *press);

@@ -8,7 +8,7 @@ entry=$1
 entry_batch=$2
 cd "$(dirname "$0")/../.." || exit 1
 engines=tcc
-models=$(echo models/*.veh tests/data/tuning/car.veh tests/data/tuning/hand.veh tests/data/laws/cart.veh tests/data/powertrain/rig.veh)
+models=$(echo models/*.veh models/controllers/skyhook.veh tests/data/tuning/car.veh tests/data/tuning/hand.veh tests/data/laws/cart.veh tests/data/powertrain/rig.veh)
 many=models/quarter_car.veh
 # of the engines that compile or run for long, few models
 some="gcp1 lanes"
