@@ -83,6 +83,8 @@ struct TestCar {
     double settled;      /* the speed that was kept last; 0: none */
     double reached;      /* the speed at the end of the last attempt to */
     const char *running; /* gear and engine speed then, as keys of `initial` */
+    const char *remedy;  /* where it could not */
+    double aside[3];     /* left straight ahead: m/s^2 to the left, rad leant to the left, at a speed, m/s */
 };
 
 TestCar *car_open(Pool *pool, const Model *model, const Request *request);
@@ -95,9 +97,12 @@ void car_need_brake(const TestCar *car);
 /* The text of a scene that begins straight ahead at a speed, m/s. drives: the driver keeps the speed, where the car has
  * pedals; false: pedals are free. more: other keys, NULL: none. */
 const char *car_scene(TestCar *car, double duration, double speed, bool drives, const char *more);
+/* True: the vehicle runs straight ahead with the steering as it is set up, from a speed > 0 with free pedals. False: it
+ * turns, *why and car->remedy. */
+bool car_runs_straight(TestCar *car, double speed, const char **why);
 /* Drive straight ahead until the speed is kept, so that scenes at about this speed begin in the right gear. False: it
- * is not, *why. Without pedals, or at a speed of 0, nothing is done. car_settle(): the same, which ends in
- * car_refuse(). */
+ * is not, or the vehicle does not run straight, *why and car->remedy. Without pedals it rolls straight ahead, at a
+ * speed of 0 nothing is done. car_settle(): the same, which ends in car_refuse(). */
 bool car_keeps(TestCar *car, double speed, const char **why);
 void car_settle(TestCar *car, double speed);
 /* Steering coordinate of a road-wheel angle. */

@@ -138,6 +138,106 @@ const char *car_scene(TestCar *car, double duration, double speed, bool drives, 
     return text.s;
 }
 
+/* ---- straight ahead ------------------------------------------------------------------------------------- */
+
+/* Beyond these the vehicle does not run straight: m/s^2 across, m of the circle's radius. The mean of so long, s, after
+ * so long with free pedals. */
+static const double most_across = 0.5, least_radius = 200, looked = 1, coasting = 4;
+
+static double last_mean(const Trial *trial, Channel channel)
+{
+    const double end = trial->row[trial->rows - 1][TRIAL_TIME];
+    return trial_mean(trial, channel, end - looked, end);
+}
+
+static bool is_half(void *context, const Trial *trial)
+{
+    return trial->row[trial->rows - 1][TRIAL_SPEED] < 0.5 * *(const double *)context;
+}
+
+/* Straight ahead with free pedals, down to half the speed. */
+static const Trial *roll(TestCar *car, double speed, const char *more)
+{
+    return trial_run(car, "rolling", car_scene(car, coasting, speed, false, more), is_half, &speed);
+}
+
+/* The value of the steering with which it runs straight at a speed, by secants from the trial at hand. False: none was
+ * found within its range. */
+static bool find_centre(TestCar *car, const Trial *trial, double speed, double *value)
+{
+    enum { TRIES = 8 };
+    static const double near = 3e-4; /* of what it turns */
+    const Coordinate *c = &car->model->coordinate[car->axle->steer];
+    double by_ay = car_angle_by_acceleration(car, speed), at[2], ay[2];
+    if (isnan(by_ay))
+        by_ay = car->sheet.wheelbase / (speed * speed);
+    at[0] = car->straight;
+    ay[0] = last_mean(trial, TRIAL_AY);
+    at[1] = at[0] - ay[0] * by_ay / car->angle;
+    const double enough = near * fabs(ay[0]);
+    for (int k = 0; k < TRIES && at[1] > c->range[0] && at[1] < c->range[1]; ++k) {
+        const char *more = pool_print(car->pool, "inputs: {%s: %.17g}\n", car->model->input[car->steering].name, at[1]);
+        trial = roll(car, speed, more);
+        ay[1] = last_mean(trial, TRIAL_AY);
+        *value = at[1];
+        if (trial->end || trial->tipped || ay[1] == ay[0])
+            return false;
+        if (fabs(ay[1]) < enough)
+            return true;
+        const double next = at[1] - ay[1] * (at[1] - at[0]) / (ay[1] - ay[0]);
+        at[0] = at[1];
+        ay[0] = ay[1];
+        at[1] = next;
+    }
+    return false;
+}
+
+/* What makes a vehicle run straight that does not. */
+static const char *straightening(TestCar *car, const Trial *trial, double speed)
+{
+    double value;
+    if (!car->axle)
+        return "make left and right the same: what `gicrun --sheet` says of the wheels";
+    const Coordinate *c = &car->model->coordinate[car->axle->steer];
+    if (!find_centre(car, trial, speed, &value))
+        return pool_print(
+            car->pool,
+            "centre the steering by `initial` of coordinate '%s', make left and right the same, or choose "
+            "a lower speed",
+            c->name);
+    const double grain = 1e-4 * (c->range[1] - c->range[0]);
+    return pool_print(car->pool, "centre the steering: `initial: %.6g` in coordinate '%s'",
+                      grain * round(value / grain) + 0.0, c->name);
+}
+
+/* True: what was driven straight ahead is near enough to it. */
+static bool is_straight(TestCar *car, const Trial *trial, double speed, const char **why)
+{
+    const double ay = last_mean(trial, TRIAL_AY), r = last_mean(trial, TRIAL_YAW_RATE);
+    const double v = last_mean(trial, TRIAL_SPEED), radius = v > 0.3 * speed ? fabs(v / r) : INFINITY;
+    car->aside[0] = ay;
+    car->aside[1] = -last_mean(trial, TRIAL_ROLL);
+    car->aside[2] = speed;
+    if (fabs(ay) <= most_across && !(radius < least_radius))
+        return true;
+    const char *steered = "";
+    if (car->axle)
+        steered = pool_print(car->pool, " with %s at %.6g %s, as it is set up", car->model->input[car->steering].name,
+                             car->straight, car->model->input[car->steering].unit);
+    *why = pool_print(car->pool,
+                      "the vehicle does not run straight ahead%s: at %.4g m/s it turns to the %s by %.3g m/s^2, in a "
+                      "circle of %.3g m radius",
+                      steered, speed, r > 0 ? "left" : "right", fabs(ay), radius);
+    car->remedy = straightening(car, trial, speed);
+    return false;
+}
+
+bool car_runs_straight(TestCar *car, double speed, const char **why)
+{
+    const Trial *trial = roll(car, speed, NULL);
+    return trial->end /* which the manoeuvre tells */ || is_straight(car, trial, speed, why);
+}
+
 /* ---- the right gear ------------------------------------------------------------------------------------- */
 
 /* Lasts as long as it takes, s; near enough, m/s and m/s^2; for so long, rows. */
@@ -162,11 +262,21 @@ bool car_keeps(TestCar *car, double speed, const char **why)
 {
     const Powertrain *powertrain = car->model->powertrain;
     Settled settled = {.speed = speed};
-    if (car->accelerator < 0 || car->brake < 0 || !(speed > 0) || car->settled == speed)
+    car->remedy = NULL;
+    if (!(speed > 0) || car->settled == speed)
         return true;
+    if (car->accelerator < 0 || car->brake < 0) {
+        if (!car_runs_straight(car, speed, why))
+            return false;
+        car->settled = speed;
+        return true;
+    }
     const Trial *trial = trial_run(car, "settling", car_scene(car, settling, speed, true, NULL), is_settled, &settled);
     car->reached = trial->row[trial->rows - 1][TRIAL_SPEED];
+    if (!is_straight(car, trial, speed, why))
+        return false;
     if (settled.rows < LONG_ENOUGH) {
+        car->remedy = pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * fmax(1, car->reached));
         *why = trial->end ? trial->end
                           : pool_print(car->pool,
                                        "the vehicle does not keep %.4g m/s straight ahead: after %g s it has %.4g m/s",
@@ -187,8 +297,7 @@ void car_settle(TestCar *car, double speed)
 {
     const char *why;
     if (!car_keeps(car, speed, &why))
-        car_refuse(car, pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * fmax(1, car->reached)),
-                   why);
+        car_refuse(car, car->remedy, why);
 }
 
 /* ---- steering ------------------------------------------------------------------------------------------- */
@@ -201,7 +310,7 @@ double car_steering(const TestCar *car, double angle)
 double car_angle_by_acceleration(const TestCar *car, double speed)
 {
     double *z = pool_alloc(car->pool, (size_t)car->sheet.found->linear->count * sizeof *z);
-    if (sheet_respond(&car->sheet, car->axle->steer, speed, z) != GIC_OK)
+    if (sheet_respond(&car->sheet, car->axle->steer, speed, z, NULL) != GIC_OK)
         return NAN;
     const double by_unit = speed * sheet_yaw_rate(&car->sheet, z);
     return by_unit * car->angle > 0 ? car->angle / by_unit : NAN;

@@ -141,7 +141,7 @@ void manoeuvre_lane_change(Manoeuvre *m)
         best = drive(m, &c, low = begin[i], &why);
     if (!best)
         car_refuse(
-            car, "a narrower vehicle, `width`, or more steering",
+            car, car->remedy ? car->remedy : "a narrower vehicle, `width`, or more steering",
             pool_print(m->pool, "the double lane change can't be driven at %g to %g m/s: %s", begin[2], begin[3], why));
     const char *limit = NULL;
     while (high - low > close) {

@@ -100,9 +100,10 @@ static _Noreturn void refuse_key(const ManoeuvreKind *kind, const char *word)
     exit(2);
 }
 
-/* key=value of the command line. */
-static void read_key(const ManoeuvreKind *kind, const char *word, double *value)
+/* key=value of the command line; given: the keys before it. */
+static void read_key(const ManoeuvreKind *kind, const char *word, double *value, bool *given)
 {
+    static const char decimal[] = "0123456789+-.eE"; /* strtod() takes others, too: 0x10, inf */
     const char *sign = strchr(word, '=');
     for (int k = 0; sign && k < MANOEUVRE_KEYS && kind->key[k].name; ++k) {
         const ManoeuvreKey *key = &kind->key[k];
@@ -110,14 +111,51 @@ static void read_key(const ManoeuvreKind *kind, const char *word, double *value)
             continue;
         char *end;
         value[k] = strtod(sign + 1, &end);
-        if (*end || end == sign + 1 || !(value[k] >= key->least && value[k] <= key->most)) {
-            fprintf(stderr, "gicrun: error: '%s' is no number from %.6g to %.6g %s\n  remedy: %s=%.6g is usual\n", word,
+        if (*end || end == sign + 1 || sign[1 + strspn(sign + 1, decimal)] ||
+            !(value[k] >= key->least && value[k] <= key->most)) {
+            fprintf(stderr,
+                    "gicrun: error: '%s' is no decimal number from %.6g to %.6g %s\n  remedy: %s=%.6g is usual\n", word,
                     key->least, key->most, key->unit, key->name, key->value);
             exit(2);
         }
+        if (given[k]) {
+            fprintf(stderr, "gicrun: error: '%s' is given twice, the second time by '%s'\n  remedy: leave one out\n",
+                    key->name, word);
+            exit(2);
+        }
+        given[k] = true;
         return;
     }
     refuse_key(kind, word);
+}
+
+static int key_of(const ManoeuvreKind *kind, const char *name)
+{
+    int k = 0;
+    while (strcmp(kind->key[k].name, name) != 0)
+        ++k;
+    return k;
+}
+
+/* Keys that have to be below others. */
+static void check_order(const ManoeuvreKind *kind, const double *value)
+{
+    static const struct {
+        const char *manoeuvre, *low, *high;
+    } of[] = {{"steady-speed", "low", "high"}, {"steady-radius", "low", "high"}, {"coast-down", "to", "speed"}};
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        if (strcmp(kind->name, of[i].manoeuvre) != 0)
+            continue;
+        const int low = key_of(kind, of[i].low), high = key_of(kind, of[i].high);
+        if (value[low] < value[high])
+            continue;
+        fprintf(stderr,
+                "gicrun: error: %s=%.6g is not below %s=%.6g %s\n  remedy: choose %s below %s; %s=%.6g and %s=%.6g are "
+                "usual\n",
+                of[i].low, value[low], of[i].high, value[high], kind->key[low].unit, of[i].low, of[i].high, of[i].low,
+                kind->key[low].value, of[i].high, kind->key[high].value);
+        exit(2);
+    }
 }
 
 /* ---- results -------------------------------------------------------------------------------------------- */
@@ -153,6 +191,14 @@ static void write_trace(const Manoeuvre *m, const char *path)
     interrupt_release();
 }
 
+/* Straight ahead, told from there on: lateral acceleration, m/s^2, and roll, rad. */
+static const double slight[] = {0.01, 1e-3};
+
+static const char *side(double left)
+{
+    return left > 0 ? "left" : "right";
+}
+
 static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind, const double *value,
                        const Request *request)
 {
@@ -161,6 +207,14 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
     m.result = pool_alloc(pool, sizeof *m.result);
     *m.result = (Sheet){.pool = pool, .model = model};
     kind->run(&m);
+    const double *aside = m.car->aside;
+    if (fabs(aside[0]) > slight[0] || fabs(aside[1]) > slight[1])
+        sheet_note(m.result, pool_print(pool,
+                                        "straight ahead at %.3g m/s, with the steering as it is set up, the vehicle "
+                                        "turns to the %s by %.2g m/s^2 and leans to the %s by %.2g deg: left and right "
+                                        "differ",
+                                        aside[2], side(aside[0]), fabs(aside[0]), side(aside[1]),
+                                        57.29577951308232 * fabs(aside[1])));
     engine_rest(m.car->engine);
     return m;
 }
@@ -169,10 +223,12 @@ void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
 {
     const ManoeuvreKind *kind = kind_of(request->manoeuvre);
     double value[MANOEUVRE_KEYS] = {0};
+    bool given[MANOEUVRE_KEYS] = {false};
     for (int k = 0; k < MANOEUVRE_KEYS; ++k)
         value[k] = kind->key[k].value;
     for (int k = 0; k < request->keys; ++k)
-        read_key(kind, request->key[k], value);
+        read_key(kind, request->key[k], value, given);
+    check_order(kind, value);
     Manoeuvre m = drive(pool, model, kind, value, request);
     if (request->compare) {
         const Manoeuvre other = drive(pool, model_read(pool, request->compare), kind, value, request);
@@ -187,6 +243,6 @@ void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
         sheet_csv(m.result, request->results);
     else
         sheet_print(m.result, pool_print(pool, ": %s, models/MANOEUVRES.md defines these", kind->title));
-    sheet_notes(m.result, "", request);
+    sheet_notes(m.result, request);
     engine_close(m.car->engine);
 }

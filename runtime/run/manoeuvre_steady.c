@@ -81,8 +81,8 @@ static void add_results(Manoeuvre *m, const Trial *trial, const Points *points, 
     const int peak = trial_peak(trial, TRIAL_AY, begin, INFINITY, limit->sign);
     const double *at = trial->row[peak];
     if (isnan(understeer)) {
-        sheet_note(s,
-                   pool_print(m->pool, "gradients %s: lateral acceleration stays below %g m/s^2", side, m->value[1]));
+        sheet_note(s, pool_print(m->pool, "gradients %s: there are not two lateral accelerations from %g to %g m/s^2",
+                                 side, m->value[1], m->value[2]));
     } else {
         sheet_add(s, section, pool_print(m->pool, "%s.understeer", side), "Understeer gradient", "rad s^2/m",
                   understeer);

@@ -73,7 +73,7 @@ static void add_response(Manoeuvre *m, const Trial *trial, double sign, double f
     if (!isnan(there))
         sheet_add(s, NULL, pool_print(m->pool, "%s.response_time", name),
                   pool_print(m->pool, "%s, response time", title), "s", there - from);
-    if (!peaks)
+    if (!peaks || last == 0)
         return;
     sheet_add(s, NULL, pool_print(m->pool, "%s.peak_time", name), pool_print(m->pool, "%s, peak response time", title),
               "s", peak[TRIAL_TIME] - from);
@@ -95,8 +95,7 @@ static void add_results(Manoeuvre *m, const Trial *trial, double sign, double an
     add_response(m, trial, sign, from, TRIAL_YAW_RATE, "Yaw rate");
     add_response(m, trial, sign, from, TRIAL_AY, "Lateral acceleration");
     add_response(m, trial, sign, from, TRIAL_ROLL, "Roll angle");
-    sheet_add(s, NULL, pool_print(m->pool, "%s.sideslip.steady", trial->name), "Side slip, steady", "rad",
-              sign * steady_of(trial, TRIAL_SIDESLIP));
+    add_response(m, trial, sign, from, TRIAL_SIDESLIP, "Side slip");
     if (peak[TRIAL_TIME] < begin + duration - steady)
         sheet_add(s, NULL, pool_print(m->pool, "%s.tb", trial->name), "TB factor", "s rad",
                   (peak[TRIAL_TIME] - from) * fabs(steady_of(trial, TRIAL_SIDESLIP)));

@@ -34,14 +34,16 @@ typedef struct Sheet {
     int rows, notes;
     SheetRow *row;
     const char *other; /* the name of the vehicle to compare with; NULL: none */
-    const char **note; /* what could not be found, and why */
+    const char **note; /* what could not be found, and why; what is to be known of numbers */
 } Sheet;
 
-/* Add a number, in the unit in which it is shown; and what could not be found. */
+/* Add a number, in the unit in which it is shown; and a note. */
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value);
 /* A way in m, which nobody reads in mm. */
 void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value);
 void sheet_note(Sheet *sheet, const char *note);
+/* The same: what is not there, and why. */
+void sheet_miss(Sheet *sheet, const char *what);
 
 /* sheet_rest.c: masses, loads and attitude at rest; the axles there. */
 void sheet_rest(Sheet *sheet);
@@ -55,8 +57,9 @@ void sheet_cornering(Sheet *sheet);
 /* The same file: the axle that one driven coordinate steers, and the angle of its wheels, their mean, by a unit of it
  * at rest; NULL: there is none, *why. */
 const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why);
-/* The same file: the steady change z [linear->count] of a unit of the steering coordinate. Returns a status. */
-int sheet_respond(const Sheet *sheet, int steer, double speed, double *z);
+/* The same file: the steady change z [linear->count] of a unit of the steering coordinate; *falls: the acceleration of
+ * the centre of mass downwards, m/s^2, in the motion about which it is taken, NULL: not asked for. Returns a status. */
+int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double *falls);
 /* Numbers of z: rate of the yaw angle. */
 double sheet_yaw_rate(const Sheet *sheet, const double *z);
 /* The same file: set an instance at rest in motion straight ahead, on rolling wheels. Returns a status. */
@@ -68,7 +71,7 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
 void sheet_compare(Sheet *sheet, const Sheet *other);
 void sheet_print(const Sheet *sheet, const char *title);
 /* Its notes, after the numbers for people, or on standard error where these go to a file. */
-void sheet_notes(const Sheet *sheet, const char *before, const Request *request);
+void sheet_notes(const Sheet *sheet, const Request *request);
 void sheet_csv(const Sheet *sheet, const char *path);
 /* True if a number is another one for the other vehicle, or not there: by more than rounding. */
 bool sheet_differs(const SheetRow *row);

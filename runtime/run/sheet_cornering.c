@@ -11,7 +11,10 @@
 
 static const double speeds[] = {10, 20, 30}; /* m/s */
 
-enum { X = 0, Y = 1, ROLL = 3, YAW = 5 };
+enum { X = 0, Y = 1, Z = 2, ROLL = 3, PITCH = 4, YAW = 5 };
+
+/* From here on notes tell: a mean angle of the steered wheels straight ahead, rad; a vertical acceleration, m/s^2. */
+static const double oblique = 2e-3, lifting = 0.2;
 
 /* Motions that are left out: places along which nothing changes, and the speed. */
 static bool is_left_out(const Linear *linear, int i)
@@ -41,7 +44,7 @@ static bool matters(int n, const double *A, const double *b, int i)
     return changes && changed;
 }
 
-int sheet_respond(const Sheet *sheet, int steer, double speed, double *z)
+int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double *falls)
 {
     const Linear *linear = sheet->found->linear;
     const gic_model *code = sheet->found->engine->code;
@@ -59,6 +62,9 @@ int sheet_respond(const Sheet *sheet, int steer, double speed, double *z)
         status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer], b, 0, NULL, &jump);
     if (status != GIC_OK)
         return status;
+    if (falls) /* of the centre of mass, as the base carries it: a moment alone does not count */
+        *falls = f[linear->places + PITCH] * (sheet->com[0] - sheet->model->body[BODY_BASE].position[0]) -
+                 f[linear->places + Z];
     for (int i = 0; i < all; ++i)
         if (!is_left_out(linear, i) && matters(all, A, b, i))
             kept[n++] = i;
@@ -97,12 +103,13 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
 }
 
 /* Road-wheel angle a unit of the steering at rest: the mean of the axle's wheels. *idle: a wheel that it does not turn,
- * NULL: none. */
-static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel **idle)
+ * NULL: none. *standing: the mean angle itself. */
+static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel **idle, double *standing)
 {
     static const double slight = 1e-6; /* of the largest angle */
     double angle[KC_WHEELS], most = 0;
     KcLook *look = kc_look_new(sheet->kc, axle);
+    *standing = 0;
     double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1], sum = 0;
     if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || !kc_along(axle, look, false, still, 1, along))
         return 0;
@@ -113,6 +120,7 @@ static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel 
         angle[i] = kc_steer_rate(&pose, &rate);
         most = fmax(most, fabs(angle[i]));
         sum += angle[i] / axle->wheels;
+        *standing += kc_steer(&pose) / axle->wheels;
     }
     for (int i = 0; i < axle->wheels; ++i)
         if (fabs(angle[i]) <= slight * most)
@@ -124,7 +132,8 @@ const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why)
 {
     const KcAxle *axle = steered(sheet, why);
     const KcWheel *idle = NULL;
-    *angle = axle ? wheel_angle(sheet, axle, &idle) : 0;
+    double standing;
+    *angle = axle ? wheel_angle(sheet, axle, &idle, &standing) : 0;
     if (idle)
         *why =
             pool_print(sheet->pool,
@@ -143,6 +152,24 @@ double sheet_yaw_rate(const Sheet *sheet, const double *z)
     return z[sheet->found->linear->places + YAW];
 }
 
+/* Tell where the wheels do not stand straight at rest, so that motion straight ahead is none that lasts. */
+static void look_straight(Sheet *sheet, const KcAxle *axle)
+{
+    const KcWheel *idle = NULL;
+    const Coordinate *c = &sheet->model->coordinate[axle->steer];
+    double standing;
+    const double by_unit = wheel_angle(sheet, axle, &idle, &standing), at = sheet->w[axle->steer];
+    const double grain = 1e-3 * (c->range[1] - c->range[0]);
+    if (fabs(standing) > oblique)
+        sheet_note(sheet,
+                   pool_print(sheet->pool,
+                              "cornering: the wheels of axle %s do not stand straight but turned by %.3g deg on the "
+                              "mean, with %s at %.4g %s: numbers are those of a motion that does not last; centre the "
+                              "steering, `initial: %.4g` or near it",
+                              axle->name, 57.29577951308232 * standing, c->name, at, sheet->model->input[c->input].unit,
+                              grain * round((at - standing / by_unit) / grain) + 0.0));
+}
+
 void sheet_cornering(Sheet *sheet)
 {
     const char *why;
@@ -151,16 +178,18 @@ void sheet_cornering(Sheet *sheet)
     const KcAxle *axle = sheet_steered(sheet, &angle, &why);
     double *z = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *z);
     if (!axle) {
-        sheet_note(sheet, pool_print(sheet->pool, "cornering: %s", why));
+        sheet_miss(sheet, pool_print(sheet->pool, "cornering: %s", why));
         return;
     }
+    look_straight(sheet, axle);
     for (size_t k = 0; k < sizeof speeds / sizeof *speeds; ++k) {
         const double v = speeds[k];
         const char *section = pool_print(sheet->pool, "Cornering at %g m/s", v);
         const char *name = pool_print(sheet->pool, "at_%g", v);
-        const int status = sheet_respond(sheet, axle->steer, v, z);
+        double falls;
+        const int status = sheet_respond(sheet, axle->steer, v, z, &falls);
         if (status != GIC_OK) {
-            sheet_note(sheet, pool_print(sheet->pool, "cornering at %g m/s: no steady response", v));
+            sheet_miss(sheet, pool_print(sheet->pool, "cornering at %g m/s: no steady response", v));
             continue;
         }
         const double yaw = sheet_yaw_rate(sheet, z), lateral = v * yaw;
@@ -175,5 +204,10 @@ void sheet_cornering(Sheet *sheet)
                   z[ROLL] / lateral);
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.sideslip_gradient", name), "Side-slip gradient", "rad s^2/m",
                   slip / lateral);
+        if (fabs(falls) > lifting)
+            sheet_note(sheet, pool_print(sheet->pool,
+                                         "cornering at %g m/s: there the vehicle is not in equilibrium but pushed %s "
+                                         "with %.3g m/s^2, as by air forces; loads and heights are those at rest",
+                                         v, falls > 0 ? "down" : "up", fabs(falls)));
     }
 }

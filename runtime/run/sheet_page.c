@@ -133,7 +133,7 @@ static void write_notes(void *context, Text *out, int indent)
     const Sheet *sheet = context;
     (void)indent;
     for (int i = 0; i < sheet->notes; ++i) {
-        text_print(out, "<p>Not there: ");
+        text_print(out, "<p>");
         text_html(out, sheet->note[i]);
         text_print(out, ".</p>\n");
     }

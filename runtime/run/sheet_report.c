@@ -45,6 +45,11 @@ void sheet_note(Sheet *sheet, const char *note)
     *POOL_PUSH(sheet->pool, sheet->note, sheet->notes) = note;
 }
 
+void sheet_miss(Sheet *sheet, const char *what)
+{
+    sheet_note(sheet, pool_print(sheet->pool, "not there: %s", what));
+}
+
 /* In motion where wheels have tires, whose grip at rest is another one. */
 static const double of_modes = 20; /* m/s */
 
@@ -62,7 +67,7 @@ static void find_modes(Sheet *sheet)
     if (status == GIC_OK)
         sheet->modes = modes_try(sheet->pool, found->linear, A);
     if (!sheet->modes)
-        sheet_note(sheet, "small motions: no eigenvalues were found");
+        sheet_miss(sheet, "small motions: no eigenvalues were found");
 }
 
 /* Eigenvalues, as numbers with names. */
@@ -148,13 +153,13 @@ Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve
     return sheet;
 }
 
-void sheet_notes(const Sheet *sheet, const char *before, const Request *request)
+void sheet_notes(const Sheet *sheet, const Request *request)
 {
     for (int i = 0; i < sheet->notes; ++i)
         if (!request->results)
-            printf("%s%s%s\n", i ? "" : "\n", before, sheet->note[i]);
+            printf("%s%s\n", i ? "" : "\n", sheet->note[i]);
         else if (!request->quiet)
-            fprintf(stderr, "gicrun: note: %s%s\n", before, sheet->note[i]);
+            fprintf(stderr, "gicrun: note: %s\n", sheet->note[i]);
 }
 
 /* On a level road, as the model is set up. */
@@ -172,7 +177,7 @@ static void add_top_speed(Sheet *sheet, const Model *model, const Request *reque
         engine_close(car->engine);
     }
     if (why)
-        sheet_note(sheet, pool_print(sheet->pool, "top speed: %s", why));
+        sheet_miss(sheet, pool_print(sheet->pool, "top speed: %s", why));
     else
         sheet_add(sheet, "Straight ahead", "top_speed", "Top speed, whole accelerator", "m/s", speed);
 }
@@ -186,7 +191,7 @@ static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, const 
     if (fabs(fabs(model->body[BODY_BASE].euler[0]) - 1) <= equilibrium_limit)
         add_top_speed(&sheet, model, request);
     else
-        sheet_note(&sheet, "top speed: the axes of the base are not those of the drawing");
+        sheet_miss(&sheet, "top speed: the axes of the base are not those of the drawing");
     return sheet;
 }
 
@@ -218,5 +223,5 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
         sheet_csv(&sheet, request->results);
     else
         sheet_print(&sheet, ", models/SHEET.md defines these");
-    sheet_notes(&sheet, "not there: ", request);
+    sheet_notes(&sheet, request);
 }

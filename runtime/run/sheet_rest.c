@@ -170,12 +170,12 @@ static void add_axle(Sheet *sheet, const KcAxle *axle)
     KcRow row;
     const char *section = pool_print(sheet->pool, "Axle: %s", axle->name);
     if (axle->refusal) {
-        sheet_note(sheet, pool_print(sheet->pool, "axle %s: %s", axle->name, axle->refusal));
+        sheet_miss(sheet, pool_print(sheet->pool, "axle %s: %s", axle->name, axle->refusal));
         return;
     }
     const int status = kc_position(sheet->kc, axle, sheet->w, &row);
     if (status != GIC_OK) {
-        sheet_note(sheet, pool_print(sheet->pool, "axle %s: %s", axle->name, kc_status(sheet->kc, status)));
+        sheet_miss(sheet, pool_print(sheet->pool, "axle %s: %s", axle->name, kc_status(sheet->kc, status)));
         return;
     }
     for (size_t k = 0; k < sizeof of_axle / sizeof *of_axle; ++k)

@@ -38,6 +38,16 @@ sed -e '/tie:/d' -e 's/steer:/steer_l:/' "$linear" >"$work/apart.veh"
 run --sheet "$work/apart.veh"
 check 'wheels that are steered separately' prints 'not there: cornering: the wheels of axle front are steered separately, f_[lr] not by steer_[lr]'
 
+# numbers of motions that do not last are told: wheels at 0.02 rad; air that pushes down what the springs carry, 1202 kg
+sed 's/driven: true/driven: true, initial: 0.02/' "$linear" >"$work/off.veh"
+run --sheet "$work/off.veh"
+check 'steering that does not stand straight' prints 'do not stand straight but turned by 1.15 deg on the mean, with steer at 0.02 rad.*`initial: 0`'
+run --sheet "$linear"
+check 'steering that does' sh -c "! grep -q 'stand straight\|equilibrium' '$work/out'"
+sed 's/^forces:/&\n  air: {type: aero, body: chassis, point: [0.001996672, 0, 0.5], area: 2, density: 1.25, drag: 0, force: [0, 0, -1]}/' "$linear" >"$work/air.veh"
+run --sheet "$work/air.veh"
+check 'air that pushes down' prints 'cornering at 20 m/s: there .* pushed down with 0.416 m/s^2' # 1.25 20^2 / 1202
+
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/sheet.html"
 check 'the page' exits 0
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/again.html"
@@ -67,4 +77,4 @@ run --compare "$models/hmmwv.veh" --modes "$models/hmmwv.veh"
 check '--compare without --sheet' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 24 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 27 ]

@@ -168,7 +168,7 @@ for side, sign in (("left", 1), ("right", -1)):
     last = time >= time[-1] - 1 - 1e-9
     full = delta[last].mean()
     start = np.interp(0.5, (delta / full)[: np.argmax(delta / full > 0.6) + 1], time[: np.argmax(delta / full > 0.6) + 1])
-    for name in ("yaw_rate", "ay", "roll"):
+    for name in names:
         y = trace[name] / trace[name][last].mean()
         i = np.argmax((time > 4) & (y >= 0.9))
         there = time[i - 1] + (0.9 - y[i - 1]) / (y[i] - y[i - 1]) * (time[i] - time[i - 1])
@@ -177,6 +177,7 @@ for side, sign in (("left", 1), ("right", -1)):
         check(f"{side}: {name}, peak time", value[f"{side}.{name}.peak_time"], time[np.argmax(y)] - start, 1e-3)
         check(f"{side}: {name}, steady", value[f"{side}.{name}.steady"], sign * trace[name][last].mean(), 1e-9)
     check(f"{side}: yaw gain", value[f"{side}.yaw_gain"], gain[0], 0.01)
+    check(f"{side}: TB", value[f"{side}.tb"], value[f"{side}.yaw_rate.peak_time"] * abs(value[f"{side}.sideslip.steady"]), 1e-9)
 for name in trials["left"]:
     mirrored = -1 if name in ("steering", "steer_angle", "y", "yaw", "sideslip", "yaw_rate", "ay", "roll") else 1
     other = name.replace("_l.", "_x.").replace("_r.", "_l.").replace("_x.", "_r.")  # of a wheel
