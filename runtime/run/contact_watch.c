@@ -2,8 +2,11 @@
  * The number of a contact is above 0 where there is a load. A step in which no evaluation has seen another sign than
  * at its start is one of a smooth problem. (None is asked so soon that every number would have to move four times as
  * far as it seems to.) Between evaluations the number may still reach 0 and come back; where its
- * slope says so it is compared with both tangents, which meet beyond all of a curve that bends one way. That it bends
- * no other way its value in the middle of the step must show. */
+ * slope says so it is compared with both tangents, which meet beyond all of a curve that bends one way. Whether it
+ * bends another way is asked on the cubic through states and rates at the step's ends: where value and slope in the
+ * middle are not what those at both ends say, halves are looked at alike, and so on. So a damped stop is seen that
+ * lets go far outside, takes hold again for 0.1 ms just before its end, and is left for a flight that needs but one
+ * step. */
 #include "run/contact_watch.h"
 
 #include <float.h>
@@ -11,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EVALUATIONS = 32 };
+enum { EVALUATIONS = 32, LOOKS = 1024, FINER = 10 };
 
 static const double difference = 1e-6; /* s, at most, for slopes */
 
@@ -33,6 +36,7 @@ struct ContactWatch {
     double most[2][GIC_CONTACTS];                          /* the largest number so far: without a load, with one */
     int changed;                                           /* the last contact that was met; -1: none */
     double rounding;                                       /* of numbers, by the size of the state */
+    double low, high;                                      /* s from the start: the change that was met is between */
     Signs seen[EVALUATIONS];
 };
 
@@ -88,6 +92,12 @@ static void inputs_back(const gic_model *model, gic_head *self)
 {
     if (self->input_function)
         self->input_function(self->user, self->lane, gic_time(self), array_of(self, model->input_offset));
+}
+
+/* Contacts that are shorter (s) are none. */
+static double shortest(double time)
+{
+    return 1e-10 + 64 * DBL_EPSILON * fabs(time);
 }
 
 static void note_sizes(ContactWatch *watch)
@@ -196,11 +206,16 @@ static Signs seen_until(const ContactWatch *watch, double end)
     return all;
 }
 
-/* Could contact i reach 0 between both ends of the step and come back? */
-static bool may_turn(const ContactWatch *watch, int i, double length)
+/* Numbers and slopes of all contacts, `at` s after the start of a step. */
+typedef struct Look {
+    double at, press[GIC_CONTACTS], slope[GIC_CONTACTS];
+} Look;
+
+/* Could contact i reach 0 between two looks and come back? */
+static bool may_turn(const ContactWatch *watch, int i, const Look *from, const Look *to)
 {
-    const double side = watch->side[i], d0 = side * watch->here[i], d1 = side * watch->there[i];
-    const double s0 = side * watch->slope[i], s1 = side * watch->slope_there[i];
+    const double side = watch->side[i], d0 = side * from->press[i], d1 = side * to->press[i];
+    const double s0 = side * from->slope[i], s1 = side * to->slope[i], length = to->at - from->at;
     if (!(s0 < 0 && s1 > 0))
         return false;
     const double meet = (d1 - d0 - s1 * length) / (s0 - s1);
@@ -209,34 +224,131 @@ static bool may_turn(const ContactWatch *watch, int i, double length)
     return least < 0 && sign_of(watch, i, side * least);
 }
 
-/* Is the number of contact i, `half` in the middle of the step, other than values and slopes at its ends say? */
-static bool is_bent(const ContactWatch *watch, int i, double length, double half)
-{
-    const double here = watch->here[i], there = watch->there[i], part = 1.0 / 8;
-    const double due = (here + there) / 2 + length / 8 * (watch->slope[i] - watch->slope_there[i]);
-    return fabs(half - due) > part * fmax(fabs(here), fabs(there)) && sign_of(watch, i, half - due);
-}
+/* A search along the cubic through states and rates at the ends of a step. */
+typedef struct Search {
+    ContactWatch *watch;
+    const gic_model *model;
+    gic_head *self; /* at the end of the step */
+    const ContactStep *step;
+    int looks; /* that are left */
+} Search;
 
-/* Numbers in the middle of the step, on the cubic through states and rates at its ends. */
-static int numbers_between(const gic_model *model, gic_head *self, const ContactStep *step, double *press)
+static int numbers_between(const Search *search, double at, double *press)
 {
-    const int n = model->slow_count + model->fast_count;
-    const double *to = array_of(self, model->state_offset);
-    double half[n];
+    const ContactStep *step = search->step;
+    const int n = search->model->slow_count + search->model->fast_count;
+    const double *to = array_of(search->self, search->model->state_offset);
+    const double length = step->length, s = at / length, r = (length - at) / length;
+    double state[n];
     for (int i = 0; i < n; ++i)
-        half[i] = (step->from[i] + to[i]) / 2 + step->length / 8 * (step->rate[i] - step->rate_there[i]);
-    return numbers_at(model, self, gic_time(self) - step->length / 2, half, press);
+        state[i] = step->from[i] + s * s * (3 - 2 * s) * (to[i] - step->from[i]) +
+                   length * s * r * (r * step->rate[i] - s * step->rate_there[i]);
+    return numbers_at(search->model, search->self, gic_time(search->self) - (length - at), state, press);
 }
 
-static ContactFinding judge(ContactWatch *watch, int i, const Signs *seen, const double *half, double length)
+/* The slopes of a look whose numbers are known, in the middle of `width` s. */
+static int slopes_between(const Search *search, double width, Look *look)
+{
+    const double time = gic_time(search->self);
+    const double span = fmin(difference, width / 1024) + 64 * DBL_EPSILON * fabs(time);
+    const double moved = look->at + span - look->at;
+    const int status = numbers_between(search, look->at + moved, look->slope);
+    for (int i = 0; i < search->model->contact_count && status == GIC_OK; ++i)
+        look->slope[i] = (look->slope[i] - look->press[i]) / moved;
+    return status;
+}
+
+/* The change of contact i is between two looks: come nearer to it. */
+static int narrow(const Search *search, int i, double low, double high)
+{
+    ContactWatch *watch = search->watch;
+    int status = GIC_OK;
+    for (int k = 0; k < FINER && status == GIC_OK; ++k) {
+        double press[GIC_CONTACTS], middle = 0.5 * (low + high);
+        status = numbers_between(search, middle, press);
+        if (status == GIC_OK && sign_of(watch, i, press[i]) == watch->side[i])
+            low = middle;
+        else
+            high = middle;
+    }
+    watch->low = low;
+    watch->high = high;
+    watch->changed = i;
+    return status;
+}
+
+/* By how much contact i has another number in the middle of two looks than they say. */
+static double value_off(int i, const Look *from, const Look *middle, const Look *to)
+{
+    const double length = to->at - from->at;
+    return fabs(middle->press[i] - (from->press[i] + to->press[i]) / 2 - length / 8 * (from->slope[i] - to->slope[i]));
+}
+
+/* The same of its slope, times what that makes of a number. */
+static double slope_off(int i, const Look *from, const Look *middle, const Look *to)
+{
+    const double length = to->at - from->at, mean = (to->press[i] - from->press[i]) / length;
+    return length / 8 * fabs(middle->slope[i] - 1.5 * mean + (from->slope[i] + to->slope[i]) / 4);
+}
+
+static double nearest(int i, const Look *from, const Look *middle, const Look *to)
+{
+    return fmin(fabs(middle->press[i]), fmin(fabs(from->press[i]), fabs(to->press[i])));
+}
+
+/* Are all numbers in the middle so far from 0, and so much what both looks say, that no slope need be asked for? */
+static bool is_plain(const ContactWatch *watch, const Look *from, const Look *middle, const Look *to)
+{
+    const double part = 1.0 / 1024;
+    bool plain = true;
+    for (int i = 0; i < watch->count && plain; ++i)
+        plain = !watch->side[i] || value_off(i, from, middle, to) <= part * nearest(i, from, middle, to);
+    return plain;
+}
+
+/* Might contact i do between two looks what they and the one in their middle do not tell? Not where it is far from 0 by
+ * what they know, or they know it well by its own size (from 0 on it is never far). */
+static bool is_unclear(const ContactWatch *watch, int i, const Look *from, const Look *middle, const Look *to)
+{
+    const double off = fmax(value_off(i, from, middle, to), slope_off(i, from, middle, to));
+    const double far = 1.0 / 8, well = 1.0 / 8192, size = fmax(fabs(from->press[i]), fabs(to->press[i]));
+    return (off > fmax(far * nearest(i, from, middle, to), well * size) && sign_of(watch, i, off)) ||
+           may_turn(watch, i, from, middle) || may_turn(watch, i, middle, to);
+}
+
+/* Is any contact on the other side somewhere between two looks, at which none is? The first such place is narrowed. */
+static int search_between(Search *search, const Look *from, const Look *to, bool *met)
+{
+    const ContactWatch *watch = search->watch;
+    const double width = to->at - from->at;
+    Look middle = {.at = from->at + 0.5 * width};
+    int status = numbers_between(search, middle.at, middle.press);
+    search->looks -= 2;
+    for (int i = 0; i < watch->count && status == GIC_OK; ++i)
+        if (watch->side[i] * sign_of(watch, i, middle.press[i]) < 0) {
+            *met = true;
+            return narrow(search, i, from->at, middle.at);
+        }
+    if (status != GIC_OK || is_plain(watch, from, &middle, to))
+        return status;
+    status = slopes_between(search, width, &middle);
+    bool unclear = false;
+    for (int i = 0; i < watch->count && !unclear; ++i)
+        unclear = watch->side[i] && is_unclear(watch, i, from, &middle, to);
+    if (status != GIC_OK || !unclear || search->looks <= 0 || width <= shortest(gic_time(search->self)))
+        return status;
+    status = search_between(search, from, &middle, met);
+    return status == GIC_OK && !*met ? search_between(search, &middle, to, met) : status;
+}
+
+/* `from` and `to`: NULL where no contact can have been near a change. */
+static ContactFinding judge(ContactWatch *watch, int i, const Signs *seen, const Look *from, const Look *to)
 {
     const int sign = sign_of(watch, i, watch->there[i]), side = watch->side[i];
-    const int middle = half ? sign_of(watch, i, half[i]) : 0;
-    const bool above = seen->above >> i & 1 || sign > 0 || middle > 0;
-    const bool below = seen->below >> i & 1 || sign < 0 || middle < 0;
+    const bool above = seen->above >> i & 1 || sign > 0, below = seen->below >> i & 1 || sign < 0;
     if ((above && side < 0) || (below && side > 0) || (above && below))
         return CONTACTS_CHANGE;
-    if (side && half && (may_turn(watch, i, length) || is_bent(watch, i, length, half[i])))
+    if (side && from && may_turn(watch, i, from, to))
         return CONTACTS_TURN;
     if (side && !sign)
         return CONTACTS_REACHED;
@@ -251,25 +363,39 @@ int contact_watch_end(ContactWatch *watch, const gic_model *model, gic_head *sel
 {
     const double time = gic_time(self), length = step->length;
     const double span = fmin(difference, length / 16) + 64 * DBL_EPSILON * fabs(time);
-    double half[GIC_CONTACTS];
     int status = numbers_at(model, self, time, array_of(self, model->state_offset), watch->there);
     if (status == GIC_OK)
         status = slopes_at(model, self, step->rate_there, watch->there, -span, watch->slope_there);
     const bool far = status == GIC_OK && is_far(watch, time) && is_far_there(watch, length);
-    if (status == GIC_OK && !far)
-        status = numbers_between(model, self, step, half);
-    inputs_back(model, self);
-    if (status != GIC_OK)
-        return status;
+    Look from = {.at = 0}, to = {.at = length};
+    memcpy(from.press, watch->here, sizeof from.press);
+    memcpy(from.slope, watch->slope, sizeof from.slope);
+    memcpy(to.press, watch->there, sizeof to.press);
+    memcpy(to.slope, watch->slope_there, sizeof to.slope);
     const Signs seen = seen_until(watch, time);
     *finding = CONTACTS_KEPT;
-    for (int i = 0; i < watch->count; ++i) {
-        const ContactFinding now = judge(watch, i, &seen, far ? NULL : half, length);
+    watch->low = 0;
+    watch->high = length;
+    for (int i = 0; i < watch->count && status == GIC_OK; ++i) {
+        const ContactFinding now = judge(watch, i, &seen, far ? NULL : &from, &to);
         if (now > *finding)
             watch->changed = i;
         *finding = now > *finding ? now : *finding;
     }
-    return GIC_OK;
+    if (status == GIC_OK && !far && *finding < CONTACTS_TURN) {
+        Search search = {watch, model, self, step, LOOKS};
+        bool met = false;
+        status = search_between(&search, &from, &to, &met);
+        *finding = met ? CONTACTS_CHANGE : *finding;
+    }
+    inputs_back(model, self);
+    return status;
+}
+
+void contact_watch_place(const ContactWatch *watch, double *low, double *high)
+{
+    *low = watch->low;
+    *high = watch->high;
 }
 
 int contact_watch_changed(const ContactWatch *watch)

@@ -44,6 +44,8 @@ int contact_watch_end(ContactWatch *watch, const gic_model *model, gic_head *sel
                       ContactFinding *finding);
 /* The contact of the last finding but CONTACTS_KEPT; -1: none. */
 int contact_watch_changed(const ContactWatch *watch);
+/* Where in the step what it has met is at the earliest and the latest, s after its start. */
+void contact_watch_place(const ContactWatch *watch, double *low, double *high);
 /* The step is accepted: the next one begins where it has ended. */
 void contact_watch_keep(ContactWatch *watch, double length);
 

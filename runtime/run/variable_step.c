@@ -316,10 +316,12 @@ static int careful_step(Variable *variable, gic_head *self, double end)
         carry_counts(&counted, self);
         self->contact_count = counted.contact_count; /* of its start */
         variable->fresh = true;
-        variable->hunted = now;
+        double low, high;
+        contact_watch_place(variable->contacts, &low, &high);
+        variable->hunted = start + high;
         const double known = longest_towards(variable, start);
-        most = fmax(finding == CONTACTS_CHANGE && !towards && known < 0.9 * length ? known : 0.5 * length,
-                    2 * crossing(start));
+        most = finding == CONTACTS_CHANGE && !towards && known < 0.9 * high ? known : 0.5 * high;
+        most = fmax(low > 0 ? low : most, 2 * crossing(start));
         towards = true;
     }
     return status;
