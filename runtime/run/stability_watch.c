@@ -28,6 +28,7 @@ enum {
     SHORTEST = 25, /* steps of a window */
     SAMPLES = 8,   /* samples of a window, at least */
     SPREAD = 8,    /* steps between samples, at most */
+    FEW = 5,       /* windows of which both states are judged: a short run has no others */
 };
 
 static const double off = 0.1;           /* relative to the way: far above z^2 / 12 of resolved motions */
@@ -310,7 +311,7 @@ static bool grows(StepWatch *watch, Moment *moment)
         moment->shorten = 1;
         if (moment->mean)
             judge_state(watch, moment, moment->mean);
-        if (moment->last && (moment->near || !moment->mean) && moment->growth == 0)
+        if (moment->last && (moment->near || !moment->mean || watch->moments <= FEW) && moment->growth == 0)
             judge_state(watch, moment, moment->last);
     }
     return moment->growth > 0;
@@ -322,6 +323,21 @@ static bool both_grow(StepWatch *watch, int i)
     Moment *moment = watch->moment;
     return i >= 0 && i + 1 < watch->moments && moment[i + 1].window == moment[i].window + 1 &&
            grows(watch, &moment[i]) && grows(watch, &moment[i + 1]);
+}
+
+/* The first of two moments at which a motion grows, with windows between them at whose moments one would grow with
+ * slightly longer steps; -1: none. For runs of few windows, whose states are of a wild motion. */
+static int find_apart(StepWatch *watch)
+{
+    const Moment *moment = watch->moment;
+    int first = -1;
+    for (int i = 0; i < watch->moments; ++i) {
+        const bool goes_on = first >= 0 && moment[i].window == moment[i - 1].window + 1;
+        if (grows(watch, &watch->moment[i]) && goes_on)
+            return first;
+        first = moment[i].growth > 0 ? i : goes_on && moment[i].near ? first : -1;
+    }
+    return -1;
 }
 
 /* A moment and the next one at which a motion grows, -1: none. Looks cost some milliseconds each, and rough roads make
@@ -341,6 +357,8 @@ static int find_pair(StepWatch *watch)
 const char *step_watch_judge(StepWatch *watch, const char **remedy)
 {
     int first = find_pair(watch);
+    if (first < 0 && watch->moments <= FEW)
+        first = find_apart(watch);
     if (first < 0)
         return NULL;
     Pool *pool = watch->pool;
