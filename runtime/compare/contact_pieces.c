@@ -127,6 +127,13 @@ static void begin(ContactPieces *pieces, const gic_model *code, const gic_head *
     }
 }
 
+/* Do parts come apart, or together? Where a damper has let go before, a stop or a tire may take hold again on the last
+ * bit of the way: a piece must not lead from one to the other, so that some piece ends on that bit. */
+static bool parts(const ContactPieces *pieces, const Touch *from, const Touch *to)
+{
+    return fmin(from->depth, to->depth) < -pieces->least && fmax(from->depth, to->depth) > pieces->least;
+}
+
 /* Does the cubic through depths and rates at the ends of a piece of `length` s, which are on one side of 0, reach the
  * other one? */
 static bool turns(const ContactPieces *pieces, const Touch *from, const Touch *to, double length)
@@ -217,6 +224,7 @@ static bool meets(ContactPieces *pieces, const gic_model *code, gic_head *self, 
         const int side = pieces->side[i], there = side_of(pieces, &pieces->to[i]);
         const bool above = pieces->above[i] || there > 0, below = pieces->below[i] || there < 0;
         if ((above && below) || (above && side < 0) || (below && side > 0) ||
+            parts(pieces, &pieces->from[i], &pieces->to[i]) ||
             turns(pieces, &pieces->from[i], &pieces->to[i], length) || (!far && side && might_turn(pieces, i)))
             return true;
     }

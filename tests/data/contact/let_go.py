@@ -4,6 +4,7 @@
 # suffices for all of this. Against an integration from event to event whose steps are a fiftieth of the time in which
 # the mass would leave the stop, so that it can't miss the hold. Its number of contacts must be met, too.
 import csv
+import itertools
 import math
 import re
 import subprocess
@@ -83,11 +84,11 @@ def exact(z, v, duration, rows, damping, fade):
     return found, contacts
 
 
-def run(integrator, tolerance, z, v, duration, rows):
+def run(engine, integrator, tolerance, z, v, duration, rows):
     with open("now.scene", "w") as file:
         file.write(f"gicscene: 1\nduration: {duration!r}\nintegrator: {integrator}\ntolerance: {tolerance!r}\n"
                    f"output_step: {duration / rows!r}\ninitial: {{coordinates: {{z: {z!r}}}, rates: {{z: {v!r}}}}}\n")
-    done = subprocess.run([gicrun, "--engine", "tape", "let_go.veh", "now.scene", "-o", "now.csv"], capture_output=True,
+    done = subprocess.run([gicrun, "--engine", engine, "let_go.veh", "now.scene", "-o", "now.csv"], capture_output=True,
                           text=True)
     said = re.search(r"contacts located +(\d+)", done.stdout + done.stderr)
     if done.returncode:
@@ -115,10 +116,10 @@ for throw in throws:
         file.write(MODEL.format(damping=damping, fade=fade))
     due, contacts = exact(z, v, duration, rows, damping, fade)
     fastest = max(abs(v), math.sqrt(v * v + 2 * G * z))
-    for integrator, share in ("rkck", 30), ("adams", 150):
+    for engine, (integrator, share) in itertools.product(("tape", "gic"), (("rkck", 30), ("adams", 150))):
         for tolerance in tolerances:
-            name = f"{integrator} {tolerance}: damping {damping}, fade {fade}, from {z} at {v}"
-            got, met = run(integrator, tolerance, z, v, duration, rows)
+            name = f"{engine} {integrator} {tolerance}: damping {damping}, fade {fade}, from {z} at {v}"
+            got, met = run(engine, integrator, tolerance, z, v, duration, rows)
             off = max((abs(a - b) for p, q in zip(got, due) for a, b in zip(p, q)), default=math.inf)
             limit = share * tolerance * (1 + fastest) + 1e-9
             judge(name, len(got) == len(due) and off <= limit, f"{off:.3g}, not below {limit:.3g}")
