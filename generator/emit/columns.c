@@ -183,8 +183,8 @@ static void write_work(void *context, Text *out, int indent)
     Generation *g = context;
     const RateColumns *columns = columns_of(g);
     line(out, indent, "gic_real acc[%s_UNKNOWN_ROOM], act[6 + %s_DEPENDENCE_ROOM] = {R(0.0)};", g->upper, g->upper);
-    line(out, indent, "gic_real column[%d], factor[%d], right[%s_UNKNOWN_ROOM][%s_COLUMN_LANES];", room(columns->size),
-         room(columns->factors), g->upper, g->upper);
+    line(out, indent, "gic_real column[%d]%s, factor[%d], right[%s_UNKNOWN_ROOM][%s_COLUMN_LANES];",
+         room(columns->size), columns->size ? "" : " = {R(0.0)}", room(columns->factors), g->upper, g->upper);
     if (columns->wheels)
         line(out, indent, "gic_real local[%d], part[%d][%s_COLUMN_LANES];", room(columns->wheels->locals),
              room(columns->wheels->parts), g->upper);

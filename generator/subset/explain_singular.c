@@ -180,14 +180,19 @@ static const char *suggest(const Work *w, const Subset *member, bool joints_stay
     return relax_suggest(w->pool, model, body, edge, joints_stay, at);
 }
 
-/* The same where all joints of the model are independent, so that coordinates elsewhere leave this subset no solution:
- * one of them is no motion that the joints allow. NULL: they are not, or none is found. */
-static const char *suggest_coordinates(const Work *w, const Subset *member, Place *at)
+/* The same where a screw, rack or gear among these rows ties motions together and all joints of the model are
+ * independent: then a coordinate elsewhere is no motion that the joints allow. NULL: they are not, or none is found. */
+static const char *suggest_coordinates(const Work *w, const Subset *member, const bool *row, Place *at)
 {
     const Model *model = w->model;
     bool body[model->bodies + 1], edge[model->joints + model->coordinates + 1];
     Place place = {0};
-    if (member->deps == member->coordinates)
+    bool geared = false;
+    for (int r = 0; r < w->n; ++r) {
+        const Connection *tie = &w->connection[w->row_of[r]];
+        geared = geared || (row[r] && !tie->is_coordinate && joint_is_geared(model->joint[tie->index].type));
+    }
+    if (!geared || member->deps == member->coordinates)
         return NULL;
     for (int i = 0; i < model->bodies; ++i)
         body[i] = i != BODY_BASE;
@@ -290,7 +295,7 @@ void subset_explain_singular(Work *w, const Sampling *sampling, int subset)
                   "equations are "
                   "independent), and the pose of %s is not determined",
                   equations.s, rank, w->n, bodies.s);
-    const char *others = suggest_coordinates(w, member, &at);
+    const char *others = suggest_coordinates(w, member, row, &at);
     if (others)
         diag_fail(
             at, others,

@@ -240,5 +240,28 @@ refused 12:113 "ratio of joint 'teeth' is 0: nothing would move" 'write the way'
 refused 12:3 "joint 'teeth' (screw) lacks the key 'ratio'" 'add `ratio: number`' '{type: screw, bodies: [rack, wheel], point: [0, 0, 0], axis: [0, 1, 0]}'
 refused 12:93 "axes of joint 'teeth': the angle between them is 0 degrees" 'turn one of them' '{type: rack_and_pinion, bodies: [rack, wheel], point: [0, 0, 0], axes: [[0, 1, 0], [0, 1, 0]], ratio: 1}'
 
+# a coordinate that equal screws in a chain hold still: it is to be changed, no joint
+cat >still.veh <<'END'
+gicgen: 1
+model: still
+base: ground
+bodies:
+  s: {mass: 2, com: [0, 0, 0], inertia: [0.01, 0.5, 0.5]}
+  n: {mass: 3, com: [0.2, 0, 0], inertia: [0.5, 0.5, 0.5]}
+joints:
+  c1: {type: cylindrical, bodies: [ground, s], point: [0, 0, 0], axis: [1, 0, 0]}
+  k1: {type: screw, bodies: [ground, s], point: [0, 0, 0], axis: [1, 0, 0], ratio: 0.005}
+  r2: {type: prismatic, bodies: [ground, n], point: [0.2, 0, 0], axis: [1, 0, 0]}
+  k2: {type: screw, bodies: [s, n], point: [0.2, 0, 0], axis: [1, 0, 0], ratio: 0.005}
+coordinates:
+  x: {type: translation, bodies: [ground, n], axis: [1, 0, 0]}
+END
+"$gicgen" still.veh -o still.c >out 2>said
+[ $? -eq 1 ] && grep -qF "still.veh:13:3: error: with the coordinates that are chosen, joint 'k2', joint 'k1' fix the same motion" said &&
+    grep -q "remedy: change coordinate 'x': .x: {type: angle, bodies: .ground, s., axis" said
+verdict $? 'a coordinate that joints hold still'
+sed 's/^  x: .*/  x: {type: angle, bodies: [ground, s], axis: [1, 0, 0]}/' still.veh >still2.veh && "$gicgen" still2.veh -o still.c 2>said
+verdict $? 'the remedy'
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
