@@ -281,9 +281,11 @@ static Use names_begin(gicl_library *library, gicl_handle handle, int kind, cons
     if (use.status != GICL_OK)
         return use;
     OpenModel *model = use.thing;
-    use.status = model_engine(library, model, said);
-    if (use.status == GICL_OK && !(*signal = model_signals(model->engine->code, kind, count, NULL)))
-        use.status = call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind);
+    use.status = kind >= 0 && kind < GICL_KINDS
+                     ? model_engine(library, model, said)
+                     : call_wrong(said, "kinds are GICL_STATE to GICL_PORT", "there is no kind %d", kind);
+    if (use.status == GICL_OK)
+        *signal = model_signals(model->engine->code, kind, count, NULL);
     if (use.status != GICL_OK)
         use_end(&use, use.status);
     return use;
