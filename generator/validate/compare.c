@@ -117,8 +117,9 @@ static void unit_rates_of_base(Comparison *c, int axis)
     }
 }
 
-/* Differences of rows whose terms all vanish are those of poses, which are solved to their rounding, times velocities
- * or squares of them: rad/s where motion is the largest speed, of a row that compares angles. */
+/* What a row may be off by where all its terms vanish. motion: the largest speed or acceleration of a point, m/s or
+ * m/s^2. Poses are right to their rounding only, and a row that compares angles multiplies what they are off by with
+ * angular velocities, which are at most motion / size. */
 static double row_floor(const Comparison *c, double motion)
 {
     return 1e-3 * motion / fmin(c->world->size, 1);

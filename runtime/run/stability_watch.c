@@ -28,7 +28,7 @@ enum {
     SHORTEST = 25, /* steps of a window */
     SAMPLES = 8,   /* samples of a window, at least */
     SPREAD = 8,    /* steps between samples, at most */
-    FEW = 5,       /* windows of which both states are judged: a short run has no others */
+    FEW = 5,       /* runs with so few windows are judged by both states of each, for want of more windows */
 };
 
 static const double off = 0.1;           /* relative to the way: far above z^2 / 12 of resolved motions */
