@@ -120,6 +120,8 @@ double trial_mean(const Trial *trial, Channel channel, double from, double to);
 double trial_at(const Trial *trial, Channel channel, double time);
 /* The first time from `from` on at which a channel passes a value upwards (sign 1) or downwards (-1); NAN: never. */
 double trial_passes(const Trial *trial, Channel channel, double from, double value, double sign);
+/* True: at its last row it slides by more than 45 degrees off its heading, at more than 1 m/s. */
+bool trial_spins(const Trial *trial);
 /* The row from a time on at which sign times a channel is largest. */
 int trial_peak(const Trial *trial, Channel channel, double from, double to, double sign);
 
@@ -172,17 +174,75 @@ void manoeuvre_report(Pool *pool, const Model *model, const Request *request);
 /* manoeuvre_page.c */
 void manoeuvre_page(const Manoeuvre *manoeuvre, const ManoeuvreKind *kind, const char *path);
 
+/* ---- manoeuvre_steer.c: what manoeuvres by steering share ------------------------------------------------ */
+
+/* A vehicle that can be steered and driven, which keeps the speed value[0] straight ahead; or an end with a message. */
+void manoeuvre_begin(Manoeuvre *manoeuvre);
+/* End with a message where the vehicle tipped over or the run broke off. */
+void manoeuvre_whole(Manoeuvre *manoeuvre, const Trial *trial, const char *remedy);
+/* Curves of channels over time for the page. */
+void manoeuvre_draw(Manoeuvre *manoeuvre, size_t count, const Channel *over);
+/* `inputs` of a scene with the steering as samples `spacing`, s, apart: angle, rad, times a wave. */
+const char *manoeuvre_steering(Manoeuvre *manoeuvre, double from, double to, double spacing, double angle,
+                               double (*wave)(const void *context, double time), const void *context);
+
+/* How an angle is found: drive with it, and the lateral acceleration that it ends in. what and verb: for messages. */
+typedef struct AngleSearch {
+    const Trial *(*drive)(Manoeuvre *manoeuvre, double angle, const char *name);
+    double (*acceleration)(const Trial *trial);
+    const char *what, *verb;
+} AngleSearch;
+
+/* The road-wheel angle, to the left, of a lateral acceleration, m/s^2, to 0.5 %: secants. Ends in car_refuse(). */
+double manoeuvre_find_angle(Manoeuvre *manoeuvre, double wanted, const AngleSearch *search);
+/* A: the angle of 0.3 g by the straight line through 0.1 to 0.375 g of steering that grows slowly to the left, and its
+ * row in the results. Ends in car_refuse(). */
+double manoeuvre_find_amplitude(Manoeuvre *manoeuvre);
+
+/* manoeuvre_step.c: the angle whose step ends in value[1], its `inputs`, and a run with it at the speed value[0]. */
+double manoeuvre_steady_angle(Manoeuvre *manoeuvre);
+const char *manoeuvre_step_profile(Manoeuvre *manoeuvre, double angle);
+const Trial *manoeuvre_step_trial(Manoeuvre *manoeuvre, double angle, const char *name);
+
+/* manoeuvre_frequency.c: gain, phase, rad, negative where it lags, and coherence of a channel by the steer angle. */
+typedef struct Response {
+    double gain, phase, coherence;
+} Response;
+typedef Response RespondAt(const void *context, Channel channel, double frequency);
+/* Rows and curves of yaw rate, lateral acceleration, roll and side slip up to a frequency, Hz. */
+void manoeuvre_responses(Manoeuvre *manoeuvre, RespondAt *at, const void *context, double to);
+/* The amplitude, rad, of steering whose lateral acceleration is value[1] steadily, by the linear model at value[0]. */
+double manoeuvre_linear_angle(Manoeuvre *manoeuvre);
+
+/* manoeuvre_straight.c: the rows of a run whose pedal moves at `begin`, s, as asked for from a speed, m/s. */
+void manoeuvre_braked(Manoeuvre *manoeuvre, const Trial *trial, double begin, double speed);
+/* True: the run may end below *context, m/s. */
+bool manoeuvre_is_slow(void *context, const Trial *trial);
+/* The way along the plane from one time to another one, m. */
+double manoeuvre_way(const Trial *trial, double from, double to);
+/* The speed from which the vehicle, pedals free, has `speed` when the pedal begins to move, and when that is, s. */
+double manoeuvre_speed_before(TestCar *car, double speed, double *begin);
+
 /* ---- the manoeuvres: manoeuvre_steady.c and so on ------------------------------------------------------- */
 
 void manoeuvre_steady_speed(Manoeuvre *manoeuvre);
 void manoeuvre_steady_radius(Manoeuvre *manoeuvre);
 void manoeuvre_step_steer(Manoeuvre *manoeuvre);
+void manoeuvre_ramp_steer(Manoeuvre *manoeuvre);
+void manoeuvre_sine(Manoeuvre *manoeuvre);
+void manoeuvre_random(Manoeuvre *manoeuvre);
 void manoeuvre_sine_dwell(Manoeuvre *manoeuvre);
 void manoeuvre_frequency(Manoeuvre *manoeuvre);
 void manoeuvre_lane_change(Manoeuvre *manoeuvre);
 void manoeuvre_braking(Manoeuvre *manoeuvre);
+void manoeuvre_split_braking(Manoeuvre *manoeuvre);
+void manoeuvre_turn_braking(Manoeuvre *manoeuvre);
+void manoeuvre_lift_off(Manoeuvre *manoeuvre);
+void manoeuvre_j_turn(Manoeuvre *manoeuvre);
+void manoeuvre_fishhook(Manoeuvre *manoeuvre);
 void manoeuvre_coast(Manoeuvre *manoeuvre);
 void manoeuvre_acceleration(Manoeuvre *manoeuvre);
+void manoeuvre_elasticity(Manoeuvre *manoeuvre);
 void manoeuvre_ride(Manoeuvre *manoeuvre);
 /* manoeuvre_straight.c: the speed, m/s, that does not grow any more by the whole accelerator; NAN: there is none, *why.
  */

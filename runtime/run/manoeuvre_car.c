@@ -276,7 +276,10 @@ bool car_keeps(TestCar *car, double speed, const char **why)
     if (!is_straight(car, trial, speed, why))
         return false;
     if (settled.rows < LONG_ENOUGH) {
-        car->remedy = pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * fmax(1, car->reached));
+        car->remedy =
+            car->reached > 0.1 * speed
+                ? pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * car->reached)
+                : "does `accelerator` drive it forwards, and `brake` not hold it at 0? see the torques of its wheels";
         *why = trial->end ? trial->end
                           : pool_print(car->pool,
                                        "the vehicle does not keep %.4g m/s straight ahead: after %g s it has %.4g m/s",

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static const double gravity = 9.80665, pi = 3.141592653589793;
+static const double pi = 3.141592653589793;
 static const double begin = 1, frequency = 0.7, dwell = 0.5, spacing = 0.01; /* s, Hz */
 static const double first = 1.5, step = 0.5, displaced = 5;                  /* amplitudes, in A */
 static const double heavy = 3500;                                            /* kg */
@@ -15,8 +15,9 @@ static double complete(void)
     return begin + 1 / frequency + dwell;
 }
 
-static double wave(double time)
+static double wave(const void *context, double time)
 {
+    (void)context;
     const double quarter = 0.75 / frequency;
     double t = time - begin;
     if (t <= 0 || time >= complete())
@@ -28,52 +29,8 @@ static double wave(double time)
 static const Trial *drive(Manoeuvre *m, const char *name, double angle)
 {
     TestCar *car = m->car;
-    Text times = {.pool = m->pool}, values = {.pool = m->pool};
-    for (double t = begin - 2 * spacing; t < complete() + 2.5 * spacing; t += spacing) {
-        text_print(&times, "%s%.9g", times.size ? ", " : "", t);
-        text_print(&values, "%s%.12g", values.size ? ", " : "", car_steering(car, angle * wave(t)));
-    }
-    const char *more = pool_print(m->pool, "inputs:\n  %s: {samples: {times: [%s], values: [%s]}}\n",
-                                  car->model->input[car->steering].name, times.s, values.s);
+    const char *more = manoeuvre_steering(m, begin, complete(), spacing, angle, wave, NULL);
     return trial_run(car, name, car_scene(car, complete() + 2, m->value[0], false, more), NULL, NULL);
-}
-
-static bool is_enough(void *context, const Trial *trial)
-{
-    const double *row = trial->row[trial->rows - 1];
-    (void)context;
-    return row[TRIAL_TIME] > begin && row[TRIAL_AY] > 0.375 * gravity;
-}
-
-/* A: the angle of 0.3 g by the straight line through 0.1 to 0.375 g of steering that grows slowly to the left. */
-static double find_amplitude(Manoeuvre *m)
-{
-    TestCar *car = m->car;
-    double by_ay = car_angle_by_acceleration(car, m->value[0]);
-    if (isnan(by_ay))
-        by_ay = car->sheet.wheelbase / (m->value[0] * m->value[0]);
-    const double to = fmin(6 * by_ay, 0.999 * car->range[1]), slow = 0.5, duration = to / by_ay / slow;
-    const char *more =
-        pool_print(m->pool, "inputs:\n  %s: {ramp: {to: %.17g, duration: %.9g, start: %g, blend: 0.5}}\n",
-                   car->model->input[car->steering].name, car_steering(car, to), duration, begin);
-    const Trial *trial = trial_run(car, "slowly increasing steer",
-                                   car_scene(car, begin + duration, m->value[0], true, more), is_enough, NULL);
-    double *x = pool_alloc(m->pool, (size_t)trial->rows * sizeof *x), mean[2] = {0};
-    double *y = pool_alloc(m->pool, (size_t)trial->rows * sizeof *y);
-    int n = 0;
-    for (int i = 0; i < trial->rows; ++i)
-        if (trial->row[i][TRIAL_AY] >= 0.1 * gravity && trial->row[i][TRIAL_AY] <= 0.375 * gravity) {
-            x[n] = trial->row[i][TRIAL_AY];
-            y[n++] = trial->row[i][TRIAL_ANGLE];
-        }
-    if (n < 3 || x[n - 1] < 0.3 * gravity)
-        car_refuse(car, "choose a lower speed: speed=15",
-                   pool_print(m->pool, "steering that grows slowly does not end in 0.3 g at %.4g m/s", m->value[0]));
-    for (int i = 0; i < n; ++i) {
-        mean[0] += x[i] / n;
-        mean[1] += y[i] / n;
-    }
-    return mean[1] + fit_slope(n, x, y) * (0.3 * gravity - mean[0]);
 }
 
 /* What the criteria look at. */
@@ -135,15 +92,9 @@ static void drive_side(Manoeuvre *m, double sign, double A)
 void manoeuvre_sine_dwell(Manoeuvre *m)
 {
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_YAW_RATE, TRIAL_AY, TRIAL_ROLL, TRIAL_Y, TRIAL_SPEED, TRIAL_LOAD};
-    TestCar *car = m->car;
-    car_need_steering(car);
-    car_need_drive(car);
-    car_need_brake(car);
-    car_settle(car, m->value[0]);
-    const double A = find_amplitude(m);
-    sheet_add(m->result, "Steering", "amplitude", "A: steer angle of 0.3 g", "rad", A);
+    manoeuvre_begin(m);
+    const double A = manoeuvre_find_amplitude(m);
     drive_side(m, 1, A);
     drive_side(m, -1, A);
-    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
-        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, over[i]};
+    manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }

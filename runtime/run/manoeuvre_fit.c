@@ -67,3 +67,10 @@ int trial_peak(const Trial *trial, Channel channel, double from, double to, doub
             most = i;
     return most;
 }
+
+bool trial_spins(const Trial *trial)
+{
+    const double *row = trial->row[trial->rows - 1], along = 1, across = 0.7853981633974483; /* m/s, 45 degrees */
+    return fabs(row[TRIAL_SIDESLIP]) > across &&
+           hypot(row[TRIAL_SPEED], row[TRIAL_SPEED] * tan(row[TRIAL_SIDESLIP])) > along;
+}

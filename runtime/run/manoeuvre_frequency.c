@@ -26,13 +26,18 @@ static void fourier(const Trial *trial, Channel channel, double frequency, doubl
     }
 }
 
-typedef struct Response {
-    double gain, phase, coherence; /* phase: rad, negative where it lags */
-} Response;
+/* A record and its length from `begin` on, s. */
+typedef struct Record {
+    const Trial *trial;
+    double duration;
+} Record;
 
 /* Of lines 1 / duration apart beside a frequency: H = sum X* Y / sum X* X. */
-static Response response_at(const Trial *trial, Channel channel, double duration, double frequency)
+static Response response_at(const void *context, Channel channel, double frequency)
 {
+    const Record *record = context;
+    const Trial *trial = record->trial;
+    const double duration = record->duration;
     double xx = 0, yy = 0, xy[2] = {0};
     for (int k = -BESIDE; k <= BESIDE; ++k) {
         double x[2], y[2];
@@ -47,15 +52,15 @@ static Response response_at(const Trial *trial, Channel channel, double duration
     return (Response){size / xx, atan2(xy[1], xy[0]), size * size / (xx * yy)};
 }
 
-static void add_channel(Manoeuvre *m, const Trial *trial, double duration, Channel channel, const char *title,
-                        const char *unit)
+static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *context, double to, Channel channel,
+                        const char *title, const char *unit)
 {
     const char *name = trial_signal[channel].name;
     for (size_t i = 0; i < sizeof table / sizeof *table; ++i) {
         const double f = table[i];
-        if (f > m->value[2])
+        if (f > to)
             break;
-        const Response r = response_at(trial, channel, duration, f);
+        const Response r = at_frequency(context, channel, f);
         const char *at = pool_print(m->pool, "%s.at_%g", name, f);
         sheet_add(m->result, i ? NULL : title, pool_print(m->pool, "%s.gain", at),
                   pool_print(m->pool, "Gain at %g Hz", f), unit, r.gain);
@@ -67,16 +72,16 @@ static void add_channel(Manoeuvre *m, const Trial *trial, double duration, Chann
 }
 
 /* Gain and phase over frequency, unwrapped, and the frequencies of the largest gain and of a phase of -45 degrees. */
-static void add_curves(Manoeuvre *m, const Trial *trial, double duration, Channel channel, const char *title,
-                       const char *unit)
+static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *context, double to, Channel channel,
+                       const char *title, const char *unit)
 {
     double *x = pool_alloc(m->pool, CURVE * sizeof *x), *gain = pool_alloc(m->pool, CURVE * sizeof *gain);
     double *phase = pool_alloc(m->pool, CURVE * sizeof *phase), *shown = pool_alloc(m->pool, CURVE * sizeof *shown);
     int most = 0;
     double lag = NAN;
     for (int i = 0; i < CURVE; ++i) {
-        x[i] = table[0] + (m->value[2] - table[0]) * i / (CURVE - 1);
-        const Response r = response_at(trial, channel, duration, x[i]);
+        x[i] = table[0] + (to - table[0]) * i / (CURVE - 1);
+        const Response r = at_frequency(context, channel, x[i]);
         gain[i] = r.gain;
         phase[i] = i ? phase[i - 1] + remainder(r.phase - phase[i - 1], 2 * pi) : r.phase;
         shown[i] = phase[i] * 180 / pi;
@@ -96,7 +101,7 @@ static void add_curves(Manoeuvre *m, const Trial *trial, double duration, Channe
         (ManoeuvreTable){pool_print(m->pool, "%s: phase", title), "deg", "frequency, Hz", CURVE, x, shown};
 }
 
-void manoeuvre_frequency(Manoeuvre *m)
+void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, double to)
 {
     static const struct {
         Channel channel;
@@ -105,20 +110,33 @@ void manoeuvre_frequency(Manoeuvre *m)
               {TRIAL_AY, "Lateral acceleration by the steer angle", "m/(s^2 rad)"},
               {TRIAL_ROLL, "Roll angle by the steer angle", "1"},
               {TRIAL_SIDESLIP, "Side slip by the steer angle", "1"}};
-    TestCar *car = m->car;
-    car_need_steering(car);
-    car_need_drive(car);
-    car_need_brake(car);
-    const double speed = m->value[0], duration = m->value[3];
-    car_settle(car, speed);
-    double by_ay = car_angle_by_acceleration(car, speed);
+    static const Channel over[] = {TRIAL_ANGLE, TRIAL_AY, TRIAL_SPEED};
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        add_channel(m, at, context, to, of[i].channel, of[i].title, of[i].unit);
+        add_curves(m, at, context, to, of[i].channel, of[i].title, of[i].unit);
+    }
+    manoeuvre_draw(m, sizeof over / sizeof *over, over);
+}
+
+double manoeuvre_linear_angle(Manoeuvre *m)
+{
+    const TestCar *car = m->car;
+    const double by_ay = car_angle_by_acceleration(car, m->value[0]);
     if (isnan(by_ay))
         car_refuse(car, "choose a lower speed",
                    pool_print(m->pool,
                               "there is no steady response to steering at %.4g m/s: "
                               "the vehicle is not stable straight ahead",
-                              speed));
-    const double angle = fmin(m->value[1] * by_ay, 0.999 * fmin(-car->range[0], car->range[1]));
+                              m->value[0]));
+    return m->value[1] * by_ay;
+}
+
+void manoeuvre_frequency(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    const double speed = m->value[0], duration = m->value[3];
+    manoeuvre_begin(m);
+    const double angle = fmin(manoeuvre_linear_angle(m), 0.999 * fmin(-car->range[0], car->range[1]));
     const char *more = pool_print(
         m->pool,
         "inputs:\n  %s: {chirp: {amplitude: %.17g, from: %g, to: %.9g, duration: %.9g, growth: logarithmic, "
@@ -126,15 +144,7 @@ void manoeuvre_frequency(Manoeuvre *m)
         car->model->input[car->steering].name, angle / car->angle, first, above * m->value[2], duration, begin);
     const Trial *trial =
         trial_run(car, "chirp", car_scene(car, begin + duration + rest, speed, true, more), NULL, NULL);
-    if (trial->tipped || trial->end)
-        car_refuse(car, pool_print(m->pool, "ask for less: ay=%.2g", 0.5 * m->value[1]),
-                   trial->end ? trial->end : "the vehicle tips over");
+    manoeuvre_whole(m, trial, pool_print(m->pool, "ask for less: ay=%.2g", 0.5 * m->value[1]));
     manoeuvre_keep(m, trial);
-    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
-        add_channel(m, trial, duration + rest, of[i].channel, of[i].title, of[i].unit);
-        add_curves(m, trial, duration + rest, of[i].channel, of[i].title, of[i].unit);
-    }
-    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_ANGLE};
-    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_AY};
-    *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, TRIAL_SPEED};
+    manoeuvre_responses(m, response_at, &(Record){trial, duration + rest}, m->value[2]);
 }

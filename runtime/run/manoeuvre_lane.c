@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Double lane change by the geometry of ISO 3888-2: the largest speed at which the vehicle enters and touches no cone.
+ * Double lane change by the geometry of ISO 3888-1 or 3888-2: the largest speed at which the vehicle enters and touches
+ * no cone.
  */
 #include "run/manoeuvre.h"
 
@@ -9,7 +10,8 @@
 static const double before = 12;                                         /* m from the start to the first lane */
 static const double begin[] = {10, 8, 6, 13}, fastest = 60, close = 0.1; /* m/s; begin: tried until one does */
 /* What the driver tries, one after the other: s that he looks ahead, m within a lane where his line leaves it. */
-static const double looks[] = {0.45, 0.3, 0.6, 0.75}, turns[] = {1.5, 0, 3};
+enum { LOOKS = 4, TURNS = 3, WAYS = LOOKS * TURNS };
+static const double looks[LOOKS] = {0.45, 0.3, 0.6, 0.75}, turns[TURNS] = {1.5, 0, 3};
 static const double shortest = 1.5; /* m that he looks ahead at least */
 
 enum { LANES = 3 };
@@ -18,10 +20,12 @@ typedef struct Lane {
     double from, to, low, high; /* m */
 } Lane;
 
-/* The vehicle as a rectangle: half its width, and its axles from the centre of mass. */
+/* The vehicle as a rectangle: half its width, and its axles from the centre of mass. tried: the order in which the
+ * driver tries; what led through last is first. */
 typedef struct Course {
     Lane lane[LANES];
     double half, axle[2];
+    int tried[WAYS];
 } Course;
 
 static Course course_of(const Manoeuvre *m)
@@ -33,12 +37,22 @@ static Course course_of(const Manoeuvre *m)
     c.axle[0] = sheet_axle_place(s, &kc->axle[0], &aside[0]) - s->com[0];
     c.axle[1] = sheet_axle_place(s, &kc->axle[kc->axles - 1], &aside[1]) - s->com[0];
     const double tire = 0.25, width = m->value[0] > 0 ? m->value[0] : 2 * fmax(aside[0], aside[1]) + tire;
-    const double wide[LANES] = {1.1 * width + 0.25, width + 1, fmax(1.3 * width + 0.25, 3)};
+    const bool first = m->value[1] < 1.5; /* part 1 */
+    const double wide[LANES] = {1.1 * width + 0.25, first ? 1.2 * width + 0.25 : width + 1,
+                                first ? 1.3 * width + 0.25 : fmax(1.3 * width + 0.25, 3)};
     const double right = -wide[0] / 2;
     c.half = width / 2;
-    c.lane[0] = (Lane){before, before + 12, right, right + wide[0]};
-    c.lane[1] = (Lane){before + 25.5, before + 36.5, c.lane[0].high + 1, c.lane[0].high + 1 + wide[1]};
-    c.lane[2] = (Lane){before + 49, before + 61, right, right + wide[2]};
+    if (first) {
+        c.lane[0] = (Lane){before, before + 15, right, right + wide[0]};
+        c.lane[1] = (Lane){before + 45, before + 70, right + 3.5, right + 3.5 + wide[1]};
+        c.lane[2] = (Lane){before + 95, before + 125, right, right + wide[2]};
+    } else {
+        c.lane[0] = (Lane){before, before + 12, right, right + wide[0]};
+        c.lane[1] = (Lane){before + 25.5, before + 36.5, c.lane[0].high + 1, c.lane[0].high + 1 + wide[1]};
+        c.lane[2] = (Lane){before + 49, before + 61, right, right + wide[2]};
+    }
+    for (int i = 0; i < WAYS; ++i)
+        c.tried[i] = i;
     return c;
 }
 
@@ -59,12 +73,16 @@ static double line(const Course *c, double turn, double x)
     return y;
 }
 
-static const char *course_text(const Manoeuvre *m, const Course *c, double look, double turn)
+/* keeps: the speed that the driver keeps; 0: pedals are free. */
+static const char *course_text(const Manoeuvre *m, const Course *c, double look, double turn, double keeps)
 {
     const TestCar *car = m->car;
     Text text = {.pool = m->pool};
-    text_print(&text, "driver:\n  steering:\n    path: {points: [");
-    for (double x = -15; x <= before + 150; x += x < before + 70 ? 1.5 : 10)
+    text_print(&text, "driver:\n");
+    if (keeps > 0 && car->accelerator >= 0 && car->brake >= 0)
+        text_print(&text, "  speed: {target: %.17g, gain: 3, integral: 1}\n", keeps);
+    text_print(&text, "  steering:\n    path: {points: [");
+    for (double x = -15; x <= c->lane[LANES - 1].to + 90; x += x < c->lane[LANES - 1].to + 9 ? 1.5 : 10)
         text_print(&text, "%s[%g, %.9g]", x > -15 ? ", " : "", x, line(c, turn, x));
     text_print(&text,
                "]}\n    input: %s\n    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %g\n    "
@@ -111,11 +129,15 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
     TestCar *car = m->car;
     if (!car_keeps(car, speed, why))
         return NULL;
-    for (size_t i = 0; i < (sizeof looks / sizeof *looks) * (sizeof turns / sizeof *turns); ++i) {
+    const bool drives = m->value[1] < 1.5; /* part 1: the speed is kept */
+    for (int k = 0; k < WAYS; ++k) {
+        const int i = c->tried[k];
         const double duration = (c->lane[LANES - 1].to + 20) / speed * 2;
-        const Trial *trial = trial_run(
-            car, pool_print(m->pool, "at %.4g m/s", speed),
-            car_scene(car, duration, speed, false, course_text(m, c, looks[i % 4], turns[i / 4])), is_through, c);
+        const Trial *trial =
+            trial_run(car, pool_print(m->pool, "at %.4g m/s", speed),
+                      car_scene(car, duration, speed, false,
+                                course_text(m, c, looks[i % LOOKS], turns[i / LOOKS], drives ? speed : 0)),
+                      is_through, c);
         const double *last = trial->row[trial->rows - 1];
         const int lane = touched(c, last);
         *why = trial->tipped                           ? "the vehicle tips over"
@@ -123,8 +145,11 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
                : lane                                  ? pool_print(m->pool, "cones of lane %d are hit", lane)
                : last[TRIAL_X] < c->lane[LANES - 1].to ? "the vehicle does not get through"
                                                        : NULL;
-        if (!*why)
+        if (!*why) {
+            memmove(c->tried + 1, c->tried, (size_t)k * sizeof *c->tried);
+            c->tried[0] = i;
             return trial;
+        }
     }
     return NULL;
 }

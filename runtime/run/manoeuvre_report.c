@@ -35,6 +35,18 @@ const ManoeuvreKind manoeuvre_kind[] = {
      "Step of the steering",
      manoeuvre_step_steer,
      {SPEED(22.222222222222221), {"ay", "m/s^2", "lateral acceleration in the end", 4, 0.1, 15}}},
+    {"ramp-steer",
+     "Ramp of the steering",
+     manoeuvre_ramp_steer,
+     {SPEED(22.222222222222221),
+      {"ay", "m/s^2", "lateral acceleration in the end", 4, 0.1, 15},
+      {"rate", "rad/s", "of the steer angle of the wheels", 0.05, 0.001, 2}}},
+    {"sine",
+     "A period of a sine of the steering",
+     manoeuvre_sine,
+     {SPEED(22.222222222222221),
+      {"ay", "m/s^2", "lateral acceleration of the first peak", 4, 0.1, 15},
+      {"frequency", "Hz", "of the sine", 0.5, 0.1, 4}}},
     {"sine-dwell",
      "Sine with dwell",
      manoeuvre_sine_dwell,
@@ -46,14 +58,53 @@ const ManoeuvreKind manoeuvre_kind[] = {
       {"ay", "m/s^2", "steady lateral acceleration of the amplitude", 1, 0.01, 8},
       {"to", "Hz", "highest frequency", 3, 1, 10},
       {"duration", "s", "of the sweep", 60, 10, 600}}},
+    {"random",
+     "Random steering",
+     manoeuvre_random,
+     {SPEED(22.222222222222221),
+      {"ay", "m/s^2", "steady lateral acceleration of the steering's rms", 1, 0.01, 8},
+      {"to", "Hz", "highest frequency", 3, 1, 10},
+      {"duration", "s", "of the steering", 120, 30, 1200},
+      {"seed", "", "of the phases", 1, 0, 1e9}}},
     {"lane-change",
      "Double lane change",
      manoeuvre_lane_change,
-     {{"width", "m", "of the vehicle; 0: of its wheels", 0, 0, 4}}},
+     {{"width", "m", "of the vehicle; 0: of its wheels", 0, 0, 4}, {"part", "", "of ISO 3888: 1 or 2", 2, 1, 2}}},
+    {"lift-off",
+     "Accelerator released in a turn",
+     manoeuvre_lift_off,
+     {SPEED(22.222222222222221), {"ay", "m/s^2", "lateral acceleration in the turn", 4, 0.1, 15}}},
+    {"turn-braking",
+     "Braking in a turn",
+     manoeuvre_turn_braking,
+     {SPEED(22.222222222222221),
+      {"ay", "m/s^2", "lateral acceleration in the turn", 4, 0.1, 15},
+      {"brake", "1", "pedal at most", 0.5, 0.01, 1}}},
+    {"j-turn",
+     "J-turn",
+     manoeuvre_j_turn,
+     {{"speed", "m/s", "the fastest", 26.8224, 5, 60},
+      {"from", "m/s", "the slowest", 15.6464, 5, 60},
+      {"angle", "A", "of the steering, in angles of 0.3 g", 8, 1, 20},
+      {"rate", "rad/s", "of the steer angle of the wheels", 1, 0.1, 10}}},
+    {"fishhook",
+     "Fishhook",
+     manoeuvre_fishhook,
+     {{"speed", "m/s", "the fastest", 22.352, 5, 60},
+      {"from", "m/s", "the slowest", 15.6464, 5, 60},
+      {"angle", "A", "of the steering, in angles of 0.3 g", 6.5, 1, 20},
+      {"rate", "rad/s", "of the steer angle of the wheels", 0.75, 0.1, 10}}},
     {"braking",
      "Braking straight ahead",
      manoeuvre_braking,
      {SPEED(27.777777777777779), {"brake", "1", "pedal", 1, 0.01, 1}}},
+    {"split-braking",
+     "Braking on split friction",
+     manoeuvre_split_braking,
+     {SPEED(22.222222222222221),
+      {"brake", "1", "pedal", 0.3, 0.01, 1},
+      {"low", "1", "friction of the left side, of the right one", 0.3, 0.01, 1},
+      {"driver", "", "1: steers straight ahead; 0: nobody does", 1, 0, 1}}},
     {"coast-down",
      "Coast-down",
      manoeuvre_coast,
@@ -62,6 +113,12 @@ const ManoeuvreKind manoeuvre_kind[] = {
      "Acceleration from rest",
      manoeuvre_acceleration,
      {{"accelerator", "1", "pedal", 1, 0.01, 1}, {"duration", "s", "at most", 120, 5, 1000}}},
+    {"elasticity",
+     "Acceleration from a speed",
+     manoeuvre_elasticity,
+     {{"low", "m/s", "from", 16.666666666666668, 1, 100},
+      {"high", "m/s", "to", 27.777777777777779, 2, 120},
+      {"accelerator", "1", "pedal", 1, 0.01, 1}}},
     {"ride",
      "Ride on a random road",
      manoeuvre_ride,
@@ -137,23 +194,27 @@ static int key_of(const ManoeuvreKind *kind, const char *name)
     return k;
 }
 
-/* Keys that have to be below others. */
+/* Keys that have to be below others, and by how much at least: gradients need a way between. */
 static void check_order(const ManoeuvreKind *kind, const double *value)
 {
     static const struct {
         const char *manoeuvre, *low, *high;
-    } of[] = {{"steady-speed", "low", "high"}, {"steady-radius", "low", "high"}, {"coast-down", "to", "speed"}};
+        double apart;
+    } of[] = {{"steady-speed", "low", "high", 0.1}, {"steady-radius", "low", "high", 0.1},
+              {"coast-down", "to", "speed", 0.1},   {"elasticity", "low", "high", 0.1},
+              {"j-turn", "from", "speed", 0},       {"fishhook", "from", "speed", 0}};
     for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
         if (strcmp(kind->name, of[i].manoeuvre) != 0)
             continue;
         const int low = key_of(kind, of[i].low), high = key_of(kind, of[i].high);
-        if (value[low] < value[high])
+        if (value[high] - value[low] > of[i].apart * (1 - 1e-9))
             continue;
         fprintf(stderr,
-                "gicrun: error: %s=%.6g is not below %s=%.6g %s\n  remedy: choose %s below %s; %s=%.6g and %s=%.6g are "
-                "usual\n",
-                of[i].low, value[low], of[i].high, value[high], kind->key[low].unit, of[i].low, of[i].high, of[i].low,
-                kind->key[low].value, of[i].high, kind->key[high].value);
+                "gicrun: error: %s=%.6g is not %sbelow %s=%.6g %s\n  remedy: choose %s below %s; %s=%.6g and %s=%.6g "
+                "are usual\n",
+                of[i].low, value[low], value[low] < value[high] ? "0.1 " : "", of[i].high, value[high],
+                kind->key[low].unit, of[i].low, of[i].high, of[i].low, kind->key[low].value, of[i].high,
+                kind->key[high].value);
         exit(2);
     }
 }

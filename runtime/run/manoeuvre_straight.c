@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Straight ahead: braking to rest, coasting down, accelerating from rest. */
+ * Straight ahead: braking to rest, coasting down, accelerating from rest and from a speed. */
 #include "run/manoeuvre.h"
 
 #include <math.h>
@@ -9,16 +9,14 @@ static const double standing = 0.02;         /* m/s */
 static const double aside = 1;               /* m off the straight line that are told */
 static const double rolling = 10;            /* m/s at which a vehicle that begins at rest has to run straight */
 
-/* A run that ends below a speed, or where the acceleration has gone. */
+/* A run that ends where the acceleration has gone. */
 typedef struct Ending {
-    double below;
     int quiet;
 } Ending;
 
-static bool is_slow(void *context, const Trial *trial)
+bool manoeuvre_is_slow(void *context, const Trial *trial)
 {
-    const Ending *ending = context;
-    return trial->row[trial->rows - 1][TRIAL_SPEED] <= ending->below;
+    return trial->row[trial->rows - 1][TRIAL_SPEED] <= *(const double *)context;
 }
 
 static bool is_fast(void *context, const Trial *trial)
@@ -31,8 +29,7 @@ static bool is_fast(void *context, const Trial *trial)
     return ending->quiet >= ROWS;
 }
 
-/* The way from one time to another one. */
-static double way(const Trial *trial, double from, double to)
+double manoeuvre_way(const Trial *trial, double from, double to)
 {
     return hypot(trial_at(trial, TRIAL_X, to) - trial_at(trial, TRIAL_X, from),
                  trial_at(trial, TRIAL_Y, to) - trial_at(trial, TRIAL_Y, from));
@@ -54,12 +51,12 @@ static void keep(Manoeuvre *m, const Trial *trial)
         *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, over[i]};
 }
 
-/* The speed from which the vehicle, pedals free, has `speed` when the pedal begins to move. */
-static double speed_before(TestCar *car, double speed)
+double manoeuvre_speed_before(TestCar *car, double speed, double *when)
 {
     enum { TRIES = 6 };
     static const double near_enough = 1e-5; /* of the speed */
     double from = speed;
+    *when = begin;
     for (int k = 0; k < TRIES; ++k) {
         const Trial *trial = trial_run(car, "coasting", car_scene(car, begin, from, false, NULL), NULL, NULL);
         const double lost = speed - trial->row[trial->rows - 1][TRIAL_SPEED];
@@ -70,38 +67,44 @@ static double speed_before(TestCar *car, double speed)
     return from;
 }
 
+void manoeuvre_braked(Manoeuvre *m, const Trial *trial, double start, double speed)
+{
+    Sheet *s = m->result;
+    const double *last = trial->row[trial->rows - 1], from = trial_at(trial, TRIAL_SPEED, start);
+    if (last[TRIAL_SPEED] > standing)
+        car_refuse(m->car, "brake=1 is the whole pedal; does the torque of `brake` follow it?",
+                   pool_print(m->pool, "the vehicle does not stop within %g s: it still has %.3g m/s", last[TRIAL_TIME],
+                              last[TRIAL_SPEED]));
+    const double upper = trial_passes(trial, TRIAL_SPEED, start, 0.8 * from, -1);
+    const double lower = trial_passes(trial, TRIAL_SPEED, start, 0.1 * from, -1);
+    const double distance = manoeuvre_way(trial, start, last[TRIAL_TIME]);
+    sheet_add(s, "Braking", "initial_speed", "Speed where the pedal begins to move", "m/s", from);
+    sheet_add_way(s, NULL, "stopping_distance", "Stopping distance from there", distance);
+    sheet_add_way(s, NULL, "stopping_distance_nominal", "Stopping distance from the speed asked for",
+                  distance * (speed / from) * (speed / from));
+    sheet_add(s, NULL, "stopping_time", "Stopping time", "s", last[TRIAL_TIME] - start);
+    sheet_add(s, NULL, "mfdd", "Mean fully developed deceleration", "m/s^2",
+              (0.64 - 0.01) * from * from / (2 * manoeuvre_way(trial, upper, lower)));
+    const double *peak = trial->row[trial_peak(trial, TRIAL_AX, start, INFINITY, -1)];
+    sheet_add(s, NULL, "peak_deceleration", "Largest deceleration", "m/s^2", -peak[TRIAL_AX]);
+    sheet_add_way(s, NULL, "aside", "Off the straight line at the end",
+                  last[TRIAL_Y] - trial_at(trial, TRIAL_Y, start));
+    sheet_add(s, NULL, "turned", "Turned at the end", "rad", last[TRIAL_YAW]);
+}
+
 void manoeuvre_braking(Manoeuvre *m)
 {
     TestCar *car = m->car;
     const double speed = m->value[0], level = m->value[1], most = 60;
-    Ending ending = {.below = standing};
+    double below = standing, start;
     car_need_brake(car);
     car_settle(car, speed);
+    const double from = manoeuvre_speed_before(car, speed, &start);
     const char *more =
-        pool_print(m->pool, "inputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, begin);
-    const Trial *trial =
-        trial_run(car, "braking", car_scene(car, most, speed_before(car, speed), false, more), is_slow, &ending);
+        pool_print(m->pool, "inputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, start);
+    const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), manoeuvre_is_slow, &below);
     keep(m, trial);
-    const double *last = trial->row[trial->rows - 1], from = trial_at(trial, TRIAL_SPEED, begin);
-    if (last[TRIAL_SPEED] > standing)
-        car_refuse(car, "brake=1 is the whole pedal; does the torque of `brake` follow it?",
-                   pool_print(m->pool, "the vehicle does not stop within %g s: it still has %.3g m/s", most,
-                              last[TRIAL_SPEED]));
-    const double upper = trial_passes(trial, TRIAL_SPEED, begin, 0.8 * from, -1);
-    const double lower = trial_passes(trial, TRIAL_SPEED, begin, 0.1 * from, -1);
-    const double distance = way(trial, begin, last[TRIAL_TIME]);
-    sheet_add(m->result, "Braking", "initial_speed", "Speed where the pedal begins to move", "m/s", from);
-    sheet_add_way(m->result, NULL, "stopping_distance", "Stopping distance from there", distance);
-    sheet_add_way(m->result, NULL, "stopping_distance_nominal", "Stopping distance from the speed asked for",
-                  distance * (speed / from) * (speed / from));
-    sheet_add(m->result, NULL, "stopping_time", "Stopping time", "s", last[TRIAL_TIME] - begin);
-    sheet_add(m->result, NULL, "mfdd", "Mean fully developed deceleration", "m/s^2",
-              (0.64 - 0.01) * from * from / (2 * way(trial, upper, lower)));
-    const double *peak = trial->row[trial_peak(trial, TRIAL_AX, begin, INFINITY, -1)];
-    sheet_add(m->result, NULL, "peak_deceleration", "Largest deceleration", "m/s^2", -peak[TRIAL_AX]);
-    sheet_add_way(m->result, NULL, "aside", "Off the straight line at the end",
-                  last[TRIAL_Y] - trial_at(trial, TRIAL_Y, begin));
-    sheet_add(m->result, NULL, "turned", "Turned at the end", "rad", last[TRIAL_YAW]);
+    manoeuvre_braked(m, trial, start, speed);
 }
 
 /* a = c0 + c2 v^2 by least squares over a time. */
@@ -127,10 +130,11 @@ static void fit_resistance(Manoeuvre *m, const Trial *trial)
 void manoeuvre_coast(Manoeuvre *m)
 {
     TestCar *car = m->car;
-    const double speed = m->value[0], below = m->value[1], most = 600;
-    Ending ending = {.below = below};
+    const double speed = m->value[0], most = 600;
+    double below = m->value[1];
     car_settle(car, speed);
-    const Trial *trial = trial_run(car, "coast-down", car_scene(car, most, speed, false, NULL), is_slow, &ending);
+    const Trial *trial =
+        trial_run(car, "coast-down", car_scene(car, most, speed, false, NULL), manoeuvre_is_slow, &below);
     keep(m, trial);
     const double *last = trial->row[trial->rows - 1];
     if (last[TRIAL_SPEED] > below)
@@ -138,7 +142,7 @@ void manoeuvre_coast(Manoeuvre *m)
                    pool_print(m->pool, "hardly anything resists the vehicle: after %g s it still has %.4g m/s", most,
                               last[TRIAL_SPEED]));
     sheet_add(m->result, "Coast-down", "time", "Time", "s", last[TRIAL_TIME]);
-    sheet_add_way(m->result, NULL, "distance", "Distance", way(trial, 0, last[TRIAL_TIME]));
+    sheet_add_way(m->result, NULL, "distance", "Distance", manoeuvre_way(trial, 0, last[TRIAL_TIME]));
     fit_resistance(m, trial);
 }
 
@@ -208,4 +212,35 @@ void manoeuvre_acceleration(Manoeuvre *m)
     else
         sheet_note(s,
                    pool_print(m->pool, "top speed: after %g s it still grows, at %.4g m/s", most, last[TRIAL_SPEED]));
+}
+
+/* True above a speed, *context. */
+static bool is_past(void *context, const Trial *trial)
+{
+    return trial->row[trial->rows - 1][TRIAL_SPEED] > *(const double *)context;
+}
+
+void manoeuvre_elasticity(Manoeuvre *m)
+{
+    TestCar *car = m->car;
+    double low = m->value[0], high = m->value[1];
+    const double level = m->value[2], most = 120;
+    car_need_drive(car);
+    car_settle(car, low);
+    const char *more =
+        pool_print(m->pool, "inputs:\n  accelerator: {step: {to: %.17g, rise: %g, start: 0}}\n", level, rise);
+    const Trial *trial = trial_run(car, "elasticity", car_scene(car, most, low, false, more), is_past, &high);
+    keep(m, trial);
+    const double there = trial_passes(trial, TRIAL_SPEED, 0, high, 1);
+    if (isnan(there))
+        car_refuse(car, "a lower speed `high`, or accelerator=1",
+                   pool_print(m->pool, "the vehicle does not reach %.4g m/s from %.4g m/s within %g s: it has %.4g m/s",
+                              high, low, most, trial->row[trial->rows - 1][TRIAL_SPEED]));
+    Sheet *s = m->result;
+    sheet_add(s, "Elasticity", "time", pool_print(m->pool, "Time from %.4g to %.4g m/s", low, high), "s", there);
+    sheet_add_way(s, NULL, "distance", "Distance", manoeuvre_way(trial, 0, there));
+    const double *peak = trial->row[trial_peak(trial, TRIAL_AX, 0, INFINITY, 1)];
+    sheet_add(s, NULL, "peak_acceleration", "Largest acceleration", "m/s^2", peak[TRIAL_AX]);
+    if (car->model->powertrain)
+        sheet_add(s, NULL, "gear", "Gear at its end", "1", trial->gear);
 }

@@ -3,6 +3,7 @@
 and phases from its equations, time histories by integrating it along the steering that was driven, gradients in closed form.
 Numbers of the tables found again from the time histories. Left and right are mirror images."""
 import csv
+import re
 import subprocess
 import sys
 
@@ -142,9 +143,8 @@ for f in (0.5, 2.0):  # found again by one sum over the record
 
 # ---- step: the bicycle steered as the vehicle was, and the table by the time history ---------------------------------------
 
-value, trials = drive("step-steer", f"speed={V}", "ay=1")
-for side, sign in (("left", 1), ("right", -1)):
-    trace = trials[side]
+def integrate(trace):
+    """The bicycle steered as the vehicle was: rows of yaw rate, lateral acceleration, roll and side slip."""
     time, delta = trace["time"], trace["steer_angle"]
     rate = np.gradient(delta, time)
     u = np.array([delta, rate, np.gradient(rate, time)]).T
@@ -161,10 +161,28 @@ for side, sign in (("left", 1), ("right", -1)):
                 k3 = A @ (state + step / 2 * k2) + B @ d[1]
                 k4 = A @ (state + step * k3) + B @ d[2]
                 state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    follow = np.array(follow)
+    return np.array(follow)
+
+
+def sizes_off(what, trace, tolerance=0.01):
+    follow = integrate(trace)
     for i, name in enumerate(names):
         off = np.max(np.abs(trace[name] - follow[:, i])) / np.max(np.abs(follow[:, i]))
-        check(f"{side}: {name} over time", off, 0, 0.01, 1)
+        check(f"{what}: {name} over time", off, 0, tolerance, 1)
+
+
+def passes(trace, name, wanted, sign):
+    """The first time after 4 s at which a column passes a value upwards (sign 1) or downwards."""
+    y, time = sign * (trace[name] - wanted), trace["time"]
+    i = np.argmax((time[1:] >= 4) & (y[1:] >= 0) & (y[:-1] < 0))
+    return time[i] - y[i] / (y[i + 1] - y[i]) * (time[i + 1] - time[i])
+
+
+value, trials = drive("step-steer", f"speed={V}", "ay=1")
+for side, sign in (("left", 1), ("right", -1)):
+    trace = trials[side]
+    time, delta = trace["time"], trace["steer_angle"]
+    sizes_off(side, trace)
     last = time >= time[-1] - 1 - 1e-9
     full = delta[last].mean()
     start = np.interp(0.5, (delta / full)[: np.argmax(delta / full > 0.6) + 1], time[: np.argmax(delta / full > 0.6) + 1])
@@ -183,6 +201,138 @@ for name in trials["left"]:
     other = name.replace("_l.", "_x.").replace("_r.", "_l.").replace("_x.", "_r.")  # of a wheel
     size = np.max(np.abs(trials["left"][name]))
     check(f"{name}: left and right", np.max(np.abs(trials["left"][name] - mirrored * trials["right"][other])), 0, 1e-7, max(size, 1e-3))
+
+# ---- ramp, a period of a sine, random steering ---------------------------------------------------------------------------------------
+
+value, trials = drive("ramp-steer", f"speed={V}", "ay=1", "rate=0.01")
+for side, sign in (("left", 1), ("right", -1)):
+    trace = trials[side]
+    sizes_off(f"ramp {side}", trace)
+    last = trace["time"] >= trace["time"][-1] - 1 - 1e-9
+    half = passes(trace, "steer_angle", trace["steer_angle"][-1] / 2, sign)
+    check(f"ramp {side}: angle", value[f"{side}.steer_angle"], sign * trace["steer_angle"][last].mean(), 1e-9)
+    steep = np.max(np.gradient(sign * trace["steer_angle"], trace["time"]))
+    check(f"ramp {side}: its rate", steep, 0.01, 1e-3)
+    for i, name in enumerate(names):
+        steady = trace[name][last].mean()
+        lag = passes(trace, name, steady / 2, np.sign(steady)) - half
+        check(f"ramp {side}: {name}, lag", value[f"{side}.{name}.lag"], lag, 1e-6, 1)
+        check(f"ramp {side}: {name}, steady", value[f"{side}.{name}.steady"], sign * steady, 1e-9)
+        check(f"ramp {side}: {name}, gain", steady / trace["steer_angle"][last].mean(), gain[i], 0.01)
+
+for f in (0.5, 1):
+    value, trials = drive("sine", f"speed={V}", "ay=0.8", f"frequency={f}")
+    for side, sign in (("left", 1), ("right", -1)):
+        trace = trials[side]
+        sizes_off(f"sine {side}", trace)
+        time = trace["time"]
+        wave = np.where((time > 4) & (time < 4 + 1 / f), np.sin(2 * np.pi * f * (time - 4)), 0) * sign * value[f"{side}.steer_angle"]
+        check(f"sine {side}: one period", np.max(np.abs(wave - trace["steer_angle"])) / value[f"{side}.steer_angle"], 0, 1e-3, 1)
+        check(f"sine {side}: the peak asked for", np.max(sign * trace["ay"]), 0.8, 6e-3)
+        for name in names:
+            y = trace[name]
+            early = (time >= 4) & (time <= 4 + 0.75 / f)
+            way = 1 if y[early].max() >= -y[early].min() else -1
+            first = np.argmax(np.where(early, way * y, -np.inf))
+            second = np.argmax(np.where(time >= time[first], -way * y, -np.inf))
+            for nth, at, quarter, turned_to in (("first", first, 1, sign), ("second", second, 3, -sign)):
+                check(f"sine {side}: {name}, {nth} lag", value[f"{side}.{name}.{nth}.lag"], time[at] - 4 - quarter / 4 / f, 1e-9, 1)
+                check(f"sine {side}: {name}, {nth} gain", value[f"{side}.{name}.{nth}.gain"],
+                      y[at] / (turned_to * value[f"{side}.steer_angle"]), 1e-3)
+
+value, trials = drive("random", f"speed={V}", "ay=0.3")
+trace = trials["random"]
+sizes_off("random", trace)
+on = (trace["time"] > 6) & (trace["time"] < 122)
+check("random: rms", value["steer_angle"], np.sqrt(np.mean(trace["steer_angle"][on] ** 2)), 0.03)
+lines = np.abs(np.fft.rfft(trace["steer_angle"][on] * np.hanning(np.sum(on)))) ** 2
+at = np.fft.rfftfreq(np.sum(on), 0.01)
+check("random: nothing beyond 3 Hz", lines[at > 3.2].sum() / lines.sum(), 0, 1e-3, 1)
+part = [lines[(at >= k) & (at < k + 0.5)].sum() / lines.sum() for k in (0.5, 1, 1.5, 2, 2.5)]
+check("random: alike everywhere", max(part) / min(part), 1, 0.6)  # neighbouring lines add by chance
+for f in (0.2, 0.5, 1, 1.5, 2, 2.5, 3):
+    H = response(f)
+    for i, name in enumerate(names):
+        check(f"random: {name}: gain at {f} Hz", value[f"{name}.at_{f:g}.gain"], abs(H[i]), 0.02)
+        off = np.angle(np.exp(1j * value[f"{name}.at_{f:g}.phase"]) / H[i])
+        check(f"random: {name}: phase at {f} Hz", off, 0, 0.025, 1)
+        check(f"random: {name}: coherence at {f} Hz", value[f"{name}.at_{f:g}.coherence"], 1, 0.02)
+again, trials = drive("random", f"speed={V}", "ay=0.3", "seed=2", "duration=60")
+check("another seed", np.corrcoef(trials["random"]["steer_angle"][600:6000], trace["steer_angle"][600:6000])[0, 1], 0, 0.3, 1)
+
+# ---- in a turn: what the table says, from the time histories ------------------------------------------------------------------------
+
+for words, levels in ((["lift-off", f"speed={V}", "ay=1"], [None]), (["turn-braking", f"speed={V}", "ay=1", "brake=0.2"], [0.05, 0.1, 0.15, 0.2])):
+    value, trials = drive(*words)
+    for side, sign in (("left", 1), ("right", -1)):
+        for level in levels:
+            name = side if level is None else f"{side}.brake_{level:g}"
+            trace = trials[name]
+            at = lambda column, t: np.interp(t, trace["time"], trace[column])
+            speed = lambda t: at("speed", t) / np.cos(at("sideslip", t))
+            R = speed(10) / at("yaw_rate", 10)
+            check(f"{name}: turn", sign * at("ay", 10), 1, 0.01)
+            check(f"{name}: speed", at("speed", 10), V, 2e-3)
+            # the circle by three of its points
+            p = np.array([[at("x", t), at("y", t)] for t in (9.2, 9.6, 10)])
+            M = 2 * (p[1:] - p[0])
+            centre = np.linalg.solve(M, (p[1:] ** 2).sum(axis=1) - (p[0] ** 2).sum())
+            check(f"{name}: radius", value[f"{name}.radius"], np.hypot(*(p[2] - centre)), 0.01)
+            for t in (0.5, 1, 2):
+                check(f"{name}: yaw rate after {t} s", value[f"{name}.at_{t:g}.yaw_rate_ratio"],
+                      at("yaw_rate", 10 + t) * R / speed(10 + t), 1e-6)
+                check(f"{name}: side slip after {t} s", value[f"{name}.at_{t:g}.sideslip_change"],
+                      sign * (at("sideslip", 10 + t) - at("sideslip", 10)), 1e-6, 1e-3)
+                inwards = np.hypot(*(p[2] - centre)) - np.hypot(at("x", 10 + t) - centre[0], at("y", 10 + t) - centre[1])
+                check(f"{name}: inwards after {t} s", value[f"{name}.at_{t:g}.inwards"], inwards, 0.02, 1)
+            check(f"{name}: deceleration", value[f"{name}.deceleration"], at("speed", 10) - at("speed", 11), 1e-9)
+            if level:  # pedal in 0.1 s: 4 wheels, as straight ahead
+                wanted = 0.95 * 4 * 2000 * level / (0.313 - deflection) / (m + 4 * spin_inertia / radius / (0.313 - deflection))
+                check(f"{name}: its size", value[f"{name}.deceleration"], wanted, 0.03)
+
+# ---- rollover: wheels without load, and when the fishhook steers back -----------------------------------------------------------------
+
+for kind in ("j-turn", "fishhook"):
+    value, trials = drive(kind)
+    for side, sign in (("left", 1), ("right", -1)):
+        mine = {name: trials[name] for name in trials if name.startswith(side)}
+        lifts = []
+        for name, trace in mine.items():
+            sides = [trace["f_l.load"] + trace["r_l.load"], trace["f_r.load"] + trace["r_r.load"]]
+            both = max(sum(1 for k in range(len(y) - 2) if (y[k:k + 3] == 0).all()) for y in sides)
+            lifts.append(both > 0)
+            delta = sign * trace["steer_angle"]
+            check(f"{kind} {name}: the angle", delta.max() / value["steer_angle"], 1, 0.02)
+            if kind == "fishhook" and not lifts[-1]:
+                back = np.argmax((delta < 0.98 * value["steer_angle"]) & (trace["time"] > 1.3))
+                roll_rate = np.gradient(trace["roll"], trace["time"])
+                begun = np.argmax(delta > 0.999 * value["steer_angle"])
+                quiet = begun + np.argmax(np.abs(roll_rate[begun:]) < np.radians(1.5))
+                check(f"{kind} {name}: steers back where it has rolled", trace["time"][back], trace["time"][quiet], 0.03, 1)
+                check(f"{kind} {name}: to the other side", delta.min() / value["steer_angle"], -1, 0.02)
+        check(f"{kind} {side}: the last alone lifts", float(sum(lifts)), 1.0, 0)
+        check(f"{kind} {side}: the last", float(lifts[-1]), 1.0, 0)
+        check(f"{kind} {side}: speeds", value[f"{side}.lifts"] - value[f"{side}.passed"], 2.2352, 1e-9)
+    # it lifts at a lateral acceleration near that of a rigid vehicle, t g / h less what it leans
+    check(f"{kind}: the lateral acceleration", value["left.ay"], 0.75 * g / h, 0.35)
+
+# ---- the track of ISO 3888-1: corners of the vehicle within the lanes -----------------------------------------------------------------
+
+value, trials = drive("lane-change", "part=1")
+trace = next(iter(trials.values()))
+w = value["width"]
+lanes = [(12, 27, 1.1 * w + 0.25, 0), (57, 82, 1.2 * w + 0.25, 3.5), (107, 137, 1.3 * w + 0.25, 0)]
+edge, worst = -(1.1 * w + 0.25) / 2, np.inf
+for ahead in (1.2 - sheet["com_x"], -1.4 - sheet["com_x"]):
+    for left in (w / 2, -w / 2):
+        x = trace["x"] + ahead * np.cos(trace["yaw"]) - left * np.sin(trace["yaw"])
+        y = trace["y"] + ahead * np.sin(trace["yaw"]) + left * np.cos(trace["yaw"])
+        for start, end, wide, aside in lanes:
+            on = (x >= start) & (x <= end)
+            assert on.any()
+            worst = min(worst, (y[on] - edge - aside).min(), (edge + aside + wide - y[on]).min())
+check("part 1: no cone is touched", float(worst >= 0), 1.0, 0)
+check("part 1: it is near one", worst, 0, 0.3, 1)
 
 # ---- steady cornering ------------------------------------------------------------------------------------------------------------
 
@@ -232,6 +382,38 @@ trace = trials["acceleration"]
 check("0 to 100 km/h", value["to_100"], np.interp(100 / 3.6, trace["speed"], trace["time"]) - 0.5, 1e-6)
 steadily = (trace["time"] > 3) & (trace["time"] < 8)
 check("its size", trace["ax"][steadily].mean(), 2 * 600 / loaded / (m + 4 * spin_inertia / radius / loaded), 0.01)
+
+value, trials = drive("elasticity", "low=10", "high=20")
+wanted = 10 * (m + 4 * spin_inertia / radius / loaded) / (2 * 600 / loaded)
+check("elasticity: its size", value["time"], wanted + 0.05, 0.01)  # the pedal moves in 0.1 s
+check("elasticity: distance", value["distance"], 15 * value["time"], 0.01)
+
+# left wheels slide: friction 0.8 of 0.3 of their load; right ones are braked by 400 N m each
+sliding = f"{work}/sliding.veh"
+with open(model) as f:
+    text = f.read()
+for name in ("fxm", "fym"):
+    text = re.sub(rf"{name}: \[[^]]*\]", f"{name}: [3000, 6000]", text)
+for name in ("fxs", "fys"):
+    text = re.sub(rf"{name}: \[[^]]*\]", f"{name}: [2400, 4800]", text)
+text = text.replace("sxm: [4, 4], sxs: [8, 8]", "sxm: [0.1, 0.1], sxs: [0.3, 0.3]").replace("sym: [4, 4], sys: [8, 8]", "sym: [0.2, 0.2], sys: [0.5, 0.5]")
+with open(sliding, "w") as f:
+    f.write(text)
+model = sliding
+value, trials = drive("split-braking", "speed=15", "brake=0.2")
+trace = trials["braking"]
+time, v = trace["time"], trace["speed"]
+on = (time > 1.2) & (v > 3)
+force = 2 * 400 / loaded + 0.8 * 0.3 * (trace["f_l.load"][on].mean() + trace["r_l.load"][on].mean())
+check("split: its size", -trace["ax"][on].mean(), force / (m + 2 * spin_inertia / radius / loaded), 0.03)
+check("split: distance", value["stopping_distance"], np.hypot(trace["x"][-1] - np.interp(0.5, time, trace["x"]), trace["y"][-1] - np.interp(0.5, time, trace["y"])), 1e-9)
+check("split: it turns to the right, where there is grip", float(value["turned_1"] < 0), 1.0, 0)
+check("split: turned after 1 s", value["turned_1"], np.interp(1.5, time, trace["yaw"]), 1e-9)
+check("split: aside after 1 s", value["aside_1"], np.interp(1.5, time, trace["y"]) - np.interp(0.5, time, trace["y"]), 1e-9)
+check("split: the driver steers", value["steer_angle"], np.abs(trace["steer_angle"]).max(), 1e-9)
+value, trials = drive("split-braking", "speed=15", "brake=0.2", "low=1")
+check("the same friction: straight", value["turned_1"], 0, 1e-4, 1)
+model = sys.argv[2]
 
 # ---- ride: a body on four springs, four wheels, integrated over the heights under the wheels; Welch and weights once more --------------
 
