@@ -140,11 +140,11 @@ typedef struct ManoeuvreCurve {
     Channel x, y;
 } ManoeuvreCurve;
 
-/* A diagram of values that are no channel: gain and phase. */
+/* A diagram of values that are no channel: gain and phase, by the run and beside it by the linear model. */
 typedef struct ManoeuvreTable {
     const char *title, *unit, *below;
-    int rows;
-    double *x, *y;
+    int rows, curves;
+    double *x, *y; /* y: [curves][rows] */
 } ManoeuvreTable;
 
 /* A manoeuvre under way. */
@@ -211,6 +211,11 @@ typedef struct Response {
 typedef Response RespondAt(const void *context, Channel channel, double frequency);
 /* Rows and curves of yaw rate, lateral acceleration, roll and side slip up to a frequency, Hz. */
 void manoeuvre_responses(Manoeuvre *manoeuvre, RespondAt *at, const void *context, double to);
+/* manoeuvre_linear.c: the same by the linear model straight ahead at a speed, m/s; NULL: there is none. */
+typedef struct LinearResponse LinearResponse;
+const LinearResponse *linear_response(const TestCar *car, double speed);
+/* A RespondAt of it, as context; the coherence is 1. */
+Response linear_response_at(const void *context, Channel channel, double frequency);
 /* The amplitude, rad, of steering whose lateral acceleration is value[1] steadily, by the linear model at value[0]. */
 double manoeuvre_linear_angle(Manoeuvre *manoeuvre);
 

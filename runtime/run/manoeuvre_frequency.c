@@ -52,8 +52,8 @@ static Response response_at(const void *context, Channel channel, double frequen
     return (Response){size / xx, atan2(xy[1], xy[0]), size * size / (xx * yy)};
 }
 
-static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *context, double to, Channel channel,
-                        const char *title, const char *unit)
+static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *context, const LinearResponse *linear,
+                        double to, Channel channel, const char *title, const char *unit)
 {
     const char *name = trial_signal[channel].name;
     for (size_t i = 0; i < sizeof table / sizeof *table; ++i) {
@@ -68,15 +68,24 @@ static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *conte
                   r.phase);
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.coherence", at),
                   pool_print(m->pool, "Coherence at %g Hz", f), "1", r.coherence);
+        const Response l = linear ? linear_response_at(linear, channel, f) : (Response){NAN, NAN, NAN};
+        if (isnan(l.gain))
+            continue;
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.linear.gain", at),
+                  pool_print(m->pool, "Gain at %g Hz by the linear model", f), unit, l.gain);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.linear.phase", at),
+                  pool_print(m->pool, "Phase at %g Hz by the linear model", f), "rad", l.phase);
     }
 }
 
 /* Gain and phase over frequency, unwrapped, and the frequencies of the largest gain and of a phase of -45 degrees. */
-static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *context, double to, Channel channel,
-                       const char *title, const char *unit)
+static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *context, const LinearResponse *linear,
+                       double to, Channel channel, const char *title, const char *unit)
 {
-    double *x = pool_alloc(m->pool, CURVE * sizeof *x), *gain = pool_alloc(m->pool, CURVE * sizeof *gain);
-    double *phase = pool_alloc(m->pool, CURVE * sizeof *phase), *shown = pool_alloc(m->pool, CURVE * sizeof *shown);
+    enum { CURVES = 2 };
+    double *x = pool_alloc(m->pool, CURVE * sizeof *x), *gain = pool_alloc(m->pool, CURVES * CURVE * sizeof *gain);
+    double *phase = pool_alloc(m->pool, CURVE * sizeof *phase);
+    double *shown = pool_alloc(m->pool, CURVES * CURVE * sizeof *shown);
     int most = 0;
     double lag = NAN;
     for (int i = 0; i < CURVE; ++i) {
@@ -85,6 +94,9 @@ static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *contex
         gain[i] = r.gain;
         phase[i] = i ? phase[i - 1] + remainder(r.phase - phase[i - 1], 2 * pi) : r.phase;
         shown[i] = phase[i] * 180 / pi;
+        const Response l = linear ? linear_response_at(linear, channel, x[i]) : (Response){NAN, NAN, NAN};
+        gain[CURVE + i] = l.gain; /* its phase is drawn beside that of the run, whatever whole turns are between */
+        shown[CURVE + i] = shown[i] + remainder(l.phase - phase[i], 2 * pi) * 180 / pi;
         most = gain[i] > gain[most] ? i : most;
         if (isnan(lag) && i && phase[i] <= -pi / 4 && phase[i - 1] > -pi / 4)
             lag = x[i - 1] + (x[i] - x[i - 1]) * (-pi / 4 - phase[i - 1]) / (phase[i] - phase[i - 1]);
@@ -96,9 +108,9 @@ static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *contex
     if (!isnan(lag))
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.lag_frequency", name), "Frequency of a phase of -45 deg",
                   "Hz", lag);
-    *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){title, unit, "frequency, Hz", CURVE, x, gain};
+    *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){title, unit, "frequency, Hz", CURVE, CURVES, x, gain};
     *POOL_PUSH(m->pool, m->table, m->tables) =
-        (ManoeuvreTable){pool_print(m->pool, "%s: phase", title), "deg", "frequency, Hz", CURVE, x, shown};
+        (ManoeuvreTable){pool_print(m->pool, "%s: phase", title), "deg", "frequency, Hz", CURVE, CURVES, x, shown};
 }
 
 void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, double to)
@@ -111,9 +123,10 @@ void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, doubl
               {TRIAL_ROLL, "Roll angle by the steer angle", "1"},
               {TRIAL_SIDESLIP, "Side slip by the steer angle", "1"}};
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_AY, TRIAL_SPEED};
+    const LinearResponse *linear = linear_response(m->car, m->value[0]);
     for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
-        add_channel(m, at, context, to, of[i].channel, of[i].title, of[i].unit);
-        add_curves(m, at, context, to, of[i].channel, of[i].title, of[i].unit);
+        add_channel(m, at, context, linear, to, of[i].channel, of[i].title, of[i].unit);
+        add_curves(m, at, context, linear, to, of[i].channel, of[i].title, of[i].unit);
     }
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }

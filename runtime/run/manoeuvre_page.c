@@ -70,7 +70,7 @@ static void write_curves(void *context, Text *out, int indent)
                                  .unit = m->table[k].unit,
                                  .below = m->table[k].below,
                                  .rows = m->table[k].rows,
-                                 .curves = 1,
+                                 .curves = m->table[k].curves,
                                  .x = m->table[k].x,
                                  .y = m->table[k].y});
     for (int k = 0; k < m->curves; ++k)

@@ -89,7 +89,7 @@ static void add_curve(Manoeuvre *m, const double density[LINES], const char *tit
         y[k - 1] = log10(density[k]);
     }
     *POOL_PUSH(m->pool, m->table, m->tables) =
-        (ManoeuvreTable){pool_print(m->pool, "%s, log10 of the density", title), unit, "frequency, Hz", rows, x, y};
+        (ManoeuvreTable){pool_print(m->pool, "%s, log10 of the density", title), unit, "frequency, Hz", rows, 1, x, y};
 }
 
 /* A channel from run_in on. */

@@ -64,6 +64,12 @@ int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double
 double sheet_yaw_rate(const Sheet *sheet, const double *z);
 /* The same file: set an instance at rest in motion straight ahead, on rolling wheels. Returns a status. */
 int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed);
+/* sheet_frequency.c: small motions about straight motion at a speed, m/s, as the steering coordinate moves; NULL: there
+ * are none. And: the change z = re + i im, [linear->count] each, of a unit of the steering coordinate that moves at
+ * omega, rad/s. False: at its own frequency. */
+typedef struct SheetMotion SheetMotion;
+const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed);
+bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double *im);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* The numbers of another one beside those of the same names; the numbers for people, the title after the names, and as

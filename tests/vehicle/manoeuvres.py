@@ -132,6 +132,9 @@ for f in (0.2, 0.5, 1, 1.5, 2, 2.5, 3):
         off = np.angle(np.exp(1j * value[f"{name}.at_{f:g}.phase"]) / H[i])
         check(f"{name}: phase at {f} Hz", off, 0, 0.01, 1)
         check(f"{name}: coherence at {f} Hz", value[f"{name}.at_{f:g}.coherence"], 1, 0.01)
+        check(f"{name}: gain at {f} Hz, linear", value[f"{name}.at_{f:g}.linear.gain"], abs(H[i]), 0.005)
+        off = np.angle(np.exp(1j * value[f"{name}.at_{f:g}.linear.phase"]) / H[i])
+        check(f"{name}: phase at {f} Hz, linear", off, 0, 0.005, 1)
 trace = trials["chirp"]
 x = trace["steer_angle"]
 straight = (trace["time"] >= 3) & (trace["time"] <= 4)

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ * Response to steering at a frequency: about straight motion at a speed, dz/dt = A z + B u with u the steering
+ * coordinate, its rate and its acceleration, and the speed held. */
+#include "gic_runtime.h"
+#include "run/sheet.h"
+#include "tape/engine_tape.h"
+
+#include <string.h>
+
+enum { X = 0, Y = 1, YAW = 5, OF_INPUT = 3 };
+
+struct SheetMotion {
+    const Sheet *sheet;
+    int n, *kept;       /* motions but places along which nothing changes, and the speed */
+    double *A, *B;      /* [n][n], [OF_INPUT][n] */
+    double *work, *rhs; /* [2 n][2 n], [2 n] */
+};
+
+const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed)
+{
+    const Linear *linear = sheet->found->linear;
+    const gic_model *code = sheet->found->engine->code;
+    const int all = linear->count;
+    const size_t size = (size_t)all * sizeof(double);
+    Instance *self = (Instance *)(void *)instance_new(sheet->pool, sheet->found->engine);
+    double *f = pool_alloc(sheet->pool, size), *A = pool_alloc(sheet->pool, (size_t)all * size), *b[OF_INPUT];
+    SheetMotion *motion = pool_alloc(sheet->pool, sizeof *motion);
+    *motion = (SheetMotion){.sheet = sheet, .kept = pool_alloc(sheet->pool, (size_t)all * sizeof *motion->kept)};
+    memcpy(self, sheet->found->self, code->size);
+    int status = sheet_set_in_motion(sheet, self, speed);
+    if (status == GIC_OK)
+        status = linearize(linear, self, f, A);
+    for (int k = 0; k < OF_INPUT && status == GIC_OK; ++k) {
+        bool jump;
+        b[k] = pool_alloc(sheet->pool, size);
+        status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer] + k, b[k], 0, NULL, &jump);
+    }
+    if (status != GIC_OK)
+        return NULL;
+    for (int i = 0; i < all; ++i)
+        if (i != X && i != Y && i != YAW && i != linear->places + X)
+            motion->kept[motion->n++] = i;
+    const size_t n = (size_t)motion->n;
+    motion->A = pool_alloc(sheet->pool, n * n * sizeof *motion->A);
+    motion->B = pool_alloc(sheet->pool, OF_INPUT * n * sizeof *motion->B);
+    motion->work = pool_alloc(sheet->pool, 4 * n * n * sizeof *motion->work);
+    motion->rhs = pool_alloc(sheet->pool, 2 * n * sizeof *motion->rhs);
+    for (int i = 0; i < motion->n; ++i) {
+        for (int j = 0; j < motion->n; ++j)
+            motion->A[i * motion->n + j] = A[motion->kept[i] * all + motion->kept[j]];
+        for (int k = 0; k < OF_INPUT; ++k)
+            motion->B[k * motion->n + i] = b[k][motion->kept[i]];
+    }
+    return motion;
+}
+
+bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double *im)
+{
+    const int n = motion->n, all = motion->sheet->found->linear->count;
+    double *M = motion->work, *b = motion->rhs;
+    /* (i omega - A) z = (B_0 + i omega B_1 - omega^2 B_2): its real part above the imaginary one */
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            const double a = -motion->A[i * n + j], turn = i == j ? omega : 0;
+            M[i * 2 * n + j] = M[(n + i) * 2 * n + n + j] = a;
+            M[i * 2 * n + n + j] = -turn;
+            M[(n + i) * 2 * n + j] = turn;
+        }
+        b[i] = motion->B[i] - omega * omega * motion->B[2 * n + i];
+        b[n + i] = omega * motion->B[n + i];
+    }
+    if (!kc_solve(2 * n, M, b) || !gic_finite(b, 2 * n))
+        return false;
+    memset(re, 0, (size_t)all * sizeof *re);
+    memset(im, 0, (size_t)all * sizeof *im);
+    for (int i = 0; i < n; ++i) {
+        re[motion->kept[i]] = b[i];
+        im[motion->kept[i]] = b[n + i];
+    }
+    return true;
+}
