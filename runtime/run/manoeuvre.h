@@ -40,8 +40,9 @@ typedef enum Channel {
 
 extern const gic_signal trial_signal[TRIAL_CHANNELS];
 
-/* And of each wheel: its load, N, and the height of the road under it, m. */
-typedef enum ChannelOfWheel { TRIAL_WHEEL_LOAD, TRIAL_WHEEL_ROAD, TRIAL_OF_WHEEL } ChannelOfWheel;
+/* And of each wheel: its load, N, the height of the road under it, m, and the coordinate that moves it up and down, m
+ * or rad; 0 where there is none. */
+typedef enum ChannelOfWheel { TRIAL_WHEEL_LOAD, TRIAL_WHEEL_ROAD, TRIAL_WHEEL_TRAVEL, TRIAL_OF_WHEEL } ChannelOfWheel;
 
 typedef struct Trial {
     const char *name, *scene; /* scene: its text */
@@ -78,6 +79,7 @@ struct TestCar {
     double straight;     /* its value straight ahead */
     double range[2];     /* of the road-wheel angle */
     int *load;           /* [wheels] components of outputs */
+    int *travel;         /* [wheels] coordinates that move them up and down; -1: none */
     double output_step;  /* s between rows */
     const char *rest;    /* place and coordinates at rest, as keys of a scene's `initial` */
     double settled;      /* the speed that was kept last; 0: none */
@@ -249,6 +251,7 @@ void manoeuvre_coast(Manoeuvre *manoeuvre);
 void manoeuvre_acceleration(Manoeuvre *manoeuvre);
 void manoeuvre_elasticity(Manoeuvre *manoeuvre);
 void manoeuvre_ride(Manoeuvre *manoeuvre);
+void manoeuvre_ride_speeds(Manoeuvre *manoeuvre);
 /* manoeuvre_straight.c: the speed, m/s, that does not grow any more by the whole accelerator; NAN: there is none, *why.
  */
 double manoeuvre_top_speed(TestCar *car, const char **why);

@@ -48,6 +48,20 @@ static void find_loads(TestCar *car)
             car->load[model->output[i].index] = at;
 }
 
+/* The coordinates that move wheels up and down, by their names. */
+static void find_travel(TestCar *car)
+{
+    const Kc *kc = car->sheet.kc;
+    car->travel = pool_alloc(car->pool, (size_t)(car->model->wheels + 1) * sizeof *car->travel);
+    for (int w = 0; w < car->model->wheels; ++w) {
+        car->travel[w] = -1;
+        for (int a = 0; a < kc->axles; ++a)
+            for (int k = 0; k < kc->axle[a].wheels && !kc->axle[a].refusal; ++k)
+                if (!strcmp(kc->axle[a].wheel[k].name, car->model->wheel[w].name))
+                    car->travel[w] = kc->axle[a].travel[k];
+    }
+}
+
 static void find_steering(TestCar *car)
 {
     const Model *model = car->model;
@@ -75,6 +89,7 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     *car = (TestCar){.pool = pool, .sheet = sheet_open(pool, model, NULL, request->solve)};
     car->model = model_watch_wheels(pool, model);
     find_loads(car);
+    find_travel(car);
     if (fabs(fabs(e[0]) - 1) > equilibrium_limit)
         car_refuse(car, "draw the base with `axes` along x, y and z",
                    "the axes of the base are not those of the drawing");

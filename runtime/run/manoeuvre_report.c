@@ -126,6 +126,14 @@ const ManoeuvreKind manoeuvre_kind[] = {
       {"class", "", "of the road by ISO 8608: 1 is A, 8 is H", 2, 1, 8},
       {"duration", "s", "that is evaluated", 60, 10, 600},
       {"seed", "", "of the road", 1, 0, 1e9}}},
+    {"ride-speeds",
+     "Ride at several speeds",
+     manoeuvre_ride_speeds,
+     {{"low", "m/s", "the slowest", 5, 1, 100},
+      {"high", "m/s", "the fastest", 25, 2, 120},
+      {"class", "", "of the road by ISO 8608: 1 is A, 8 is H", 2, 1, 8},
+      {"duration", "s", "that is evaluated", 30, 10, 600},
+      {"seed", "", "of the road", 1, 0, 1e9}}},
     {0}};
 
 void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial)
@@ -202,7 +210,8 @@ static void check_order(const ManoeuvreKind *kind, const double *value)
         double apart;
     } of[] = {{"steady-speed", "low", "high", 0.1}, {"steady-radius", "low", "high", 0.1},
               {"coast-down", "to", "speed", 0.1},   {"elasticity", "low", "high", 0.1},
-              {"j-turn", "from", "speed", 0},       {"fishhook", "from", "speed", 0}};
+              {"ride-speeds", "low", "high", 0.1},  {"j-turn", "from", "speed", 0},
+              {"fishhook", "from", "speed", 0}};
     for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
         if (strcmp(kind->name, of[i].manoeuvre) != 0)
             continue;
@@ -236,6 +245,9 @@ static void write_trace(const Manoeuvre *m, const char *path)
     for (int w = 0; w < model->wheels; ++w) {
         csv_name(&csv, pool_print(m->pool, "%s.load", model->wheel[w].name), "N");
         csv_name(&csv, pool_print(m->pool, "%s.road", model->wheel[w].name), "m");
+        const int travel = m->car->travel[w];
+        csv_name(&csv, pool_print(m->pool, "%s.travel", model->wheel[w].name),
+                 travel >= 0 && model->coordinate[travel].type == COORDINATE_ANGLE ? "rad" : "m");
     }
     csv_end_row(&csv);
     for (int t = 0; t < m->trials; ++t)

@@ -102,29 +102,42 @@ static int samples(const Trial *trial, Channel channel, double *out)
     return n;
 }
 
-static void add_accelerations(Manoeuvre *m, const Trial *trial)
+static const struct {
+    Channel channel;
+    RideWeight weight;
+    const char *title;
+} of[] = {{TRIAL_AX, RIDE_D, "Longitudinal"}, {TRIAL_AY, RIDE_D, "Lateral"}, {TRIAL_AZ, RIDE_K, "Vertical"}};
+
+/* The root of the sum of the squares of the weighted accelerations; of one of them by its channel. */
+static double total_of(const Manoeuvre *m, const Trial *trial, double weighted[TRIAL_CHANNELS])
 {
-    static const struct {
-        Channel channel;
-        RideWeight weight;
-        const char *title;
-    } of[] = {{TRIAL_AX, RIDE_D, "Longitudinal"}, {TRIAL_AY, RIDE_D, "Lateral"}, {TRIAL_AZ, RIDE_K, "Vertical"}};
-    Sheet *s = m->result;
     double density[LINES], total = 0;
     double *x = pool_alloc(m->pool, (size_t)trial->rows * sizeof *x);
     for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        welch(samples(trial, of[i].channel, x), x, density);
+        weighted[of[i].channel] = band_rms(density, &of[i].weight);
+        total += weighted[of[i].channel] * weighted[of[i].channel];
+    }
+    return sqrt(total);
+}
+
+static void add_accelerations(Manoeuvre *m, const Trial *trial)
+{
+    Sheet *s = m->result;
+    double density[LINES], weighted[TRIAL_CHANNELS];
+    double *x = pool_alloc(m->pool, (size_t)trial->rows * sizeof *x);
+    const double total = total_of(m, trial, weighted);
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
         const char *name = trial_signal[of[i].channel].name;
         welch(samples(trial, of[i].channel, x), x, density);
-        const double weighted = band_rms(density, &of[i].weight);
-        total += weighted * weighted;
         sheet_add(s, i ? NULL : "Accelerations at the centre of mass", pool_print(m->pool, "%s.rms", name),
                   pool_print(m->pool, "%s, rms", of[i].title), "m/s^2", band_rms(density, NULL));
         sheet_add(s, NULL, pool_print(m->pool, "%s.weighted", name),
-                  pool_print(m->pool, "%s, weighted rms", of[i].title), "m/s^2", weighted);
+                  pool_print(m->pool, "%s, weighted rms", of[i].title), "m/s^2", weighted[of[i].channel]);
         if (of[i].channel == TRIAL_AZ)
             add_curve(m, density, "Vertical acceleration", "(m/s^2)^2/Hz");
     }
-    sheet_add(s, NULL, "total", "Vibration total value", "m/s^2", sqrt(total));
+    sheet_add(s, NULL, "total", "Vibration total value", "m/s^2", total);
     for (int k = 0; k < 2; ++k) {
         const Channel c = k ? TRIAL_PITCH : TRIAL_ROLL;
         const int n = samples(trial, c, x);
@@ -142,7 +155,7 @@ static void add_loads(Manoeuvre *m, const Trial *trial)
 {
     const Model *model = m->car->model;
     for (int w = 0; w < model->wheels; ++w) {
-        double mean = 0, square = 0, road = 0, ground = 0;
+        double mean = 0, square = 0, road = 0, ground = 0, travel[2] = {INFINITY, -INFINITY};
         int n = 0, up = 0;
         for (int i = 0; i < trial->rows; ++i) {
             if (trial->row[i][TRIAL_TIME] < run_in)
@@ -153,6 +166,8 @@ static void add_loads(Manoeuvre *m, const Trial *trial)
             road += at[TRIAL_WHEEL_ROAD];
             ground += at[TRIAL_WHEEL_ROAD] * at[TRIAL_WHEEL_ROAD];
             up += at[TRIAL_WHEEL_LOAD] <= 0;
+            travel[0] = fmin(travel[0], at[TRIAL_WHEEL_TRAVEL]);
+            travel[1] = fmax(travel[1], at[TRIAL_WHEEL_TRAVEL]);
             ++n;
         }
         mean /= n;
@@ -165,25 +180,26 @@ static void add_loads(Manoeuvre *m, const Trial *trial)
                   pool_print(m->pool, "Share of the time without load, %s", name), "1", (double)up / n);
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.road", name),
                   pool_print(m->pool, "Road under %s, rms", name), "m", sqrt(fmax(0, ground / n - road * road)));
+        if (m->car->travel[w] >= 0)
+            sheet_add(m->result, NULL, pool_print(m->pool, "%s.working_space", name),
+                      pool_print(m->pool, "Working space of %s, from end to end", name),
+                      m->car->model->coordinate[m->car->travel[w]].type == COORDINATE_ANGLE ? "rad" : "m",
+                      travel[1] - travel[0]);
     }
 }
 
-void manoeuvre_ride(Manoeuvre *m)
+/* At a speed that it keeps, on a road of a class from a seed. */
+static const Trial *drive(Manoeuvre *m, const char *name, double speed, int class, double duration, double seed)
 {
-    static const Channel over[] = {TRIAL_AZ, TRIAL_ROLL, TRIAL_PITCH, TRIAL_LOAD, TRIAL_SPEED};
     TestCar *car = m->car;
-    const double speed = m->value[0], duration = run_in + m->value[2];
     double aside[2];
-    const int class = (int)round(m->value[1]);
-    car_need_drive(car);
-    car_need_brake(car);
-    car_settle(car, speed);
+    duration += run_in;
     sheet_axle_place(&car->sheet, &car->sheet.kc->axle[0], &aside[0]);
     Text more = {.pool = m->pool};
     text_print(&more,
                "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n"
                "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n",
-               'A' + class - 1, ceil(speed * (duration + 2) + 20), m->value[3], 10.0, 2 * aside[0], speed);
+               'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, 2 * aside[0], speed);
     if (car->axle) /* which keeps it between its tracks */
         text_print(&more,
                    "  steering:\n    path: {points: [[-20, 0], [%.9g, 0]]}\n    input: %s\n    per_angle: %.17g\n"
@@ -191,13 +207,60 @@ void manoeuvre_ride(Manoeuvre *m)
                    ceil(speed * (duration + 10) + 100), car->model->input[car->steering].name, 1 / car->angle,
                    car->sheet.wheelbase);
     car->output_step = sampling;
-    const Trial *trial = trial_run(car, "ride", car_scene(car, duration, speed, false, more.s), NULL, NULL);
-    if (trial->tipped || trial->end)
-        car_refuse(car, "a smoother road, class=1, or a lower speed",
-                   trial->end ? trial->end : "the vehicle tips over");
+    const Trial *trial = trial_run(car, name, car_scene(car, duration, speed, false, more.s), NULL, NULL);
+    manoeuvre_whole(m, trial, "a smoother road, class=1, or a lower speed");
     manoeuvre_keep(m, trial);
+    return trial;
+}
+
+void manoeuvre_ride(Manoeuvre *m)
+{
+    static const Channel over[] = {TRIAL_AZ, TRIAL_ROLL, TRIAL_PITCH, TRIAL_LOAD, TRIAL_SPEED};
+    car_need_drive(m->car);
+    car_need_brake(m->car);
+    car_settle(m->car, m->value[0]);
+    const Trial *trial = drive(m, "ride", m->value[0], (int)round(m->value[1]), m->value[2], m->value[3]);
     add_accelerations(m, trial);
     add_loads(m, trial);
-    for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
-        *POOL_PUSH(m->pool, m->curve, m->curves) = (ManoeuvreCurve){TRIAL_TIME, over[i]};
+    manoeuvre_draw(m, sizeof over / sizeof *over, over);
+}
+
+void manoeuvre_ride_speeds(Manoeuvre *m)
+{
+    static const Channel over[] = {TRIAL_AZ, TRIAL_PITCH, TRIAL_LOAD};
+    enum { SPEEDS = 6, CURVES = 4 };
+    TestCar *car = m->car;
+    const double low = m->value[0], high = m->value[1];
+    double *x = pool_alloc(m->pool, SPEEDS * sizeof *x), *y = pool_alloc(m->pool, CURVES * SPEEDS * sizeof *y);
+    int n = 0;
+    car_need_drive(car);
+    car_need_brake(car);
+    for (int k = 0; k < SPEEDS; ++k) {
+        const double speed = low + (high - low) * k / (SPEEDS - 1);
+        const char *why, *at = pool_print(m->pool, "at_%.4g", speed);
+        if (!car_keeps(car, speed, &why)) {
+            if (k == 0)
+                car_refuse(car, car->remedy, why);
+            sheet_note(m->result, pool_print(m->pool, "from %.4g m/s on: %s", speed, why));
+            break;
+        }
+        const Trial *trial = drive(m, at, speed, (int)round(m->value[2]), m->value[3], m->value[4]);
+        double weighted[TRIAL_CHANNELS];
+        x[n] = speed;
+        y[n] = total_of(m, trial, weighted);
+        sheet_add(m->result, pool_print(m->pool, "At %.4g m/s", speed), pool_print(m->pool, "%s.total", at),
+                  "Vibration total value", "m/s^2", y[n]);
+        for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+            y[(i + 1) * SPEEDS + (size_t)n] = weighted[of[i].channel];
+            sheet_add(m->result, NULL, pool_print(m->pool, "%s.%s.weighted", at, trial_signal[of[i].channel].name),
+                      pool_print(m->pool, "%s, weighted rms", of[i].title), "m/s^2", weighted[of[i].channel]);
+        }
+        ++n;
+    }
+    for (int c = 1; c < CURVES; ++c) /* rows that were not driven close up */
+        for (int i = 0; i < n; ++i)
+            y[c * n + i] = y[c * SPEEDS + i];
+    *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){
+        "Weighted acceleration: total, along, across, upwards", "m/s^2", "speed, m/s", n, CURVES, x, y};
+    manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }

@@ -118,6 +118,8 @@ static int record(Way *way)
         double *of = trial->wheel + (trial->rows * car->model->wheels + w) * TRIAL_OF_WHEEL;
         of[TRIAL_WHEEL_LOAD] = output[car->load[w]];
         of[TRIAL_WHEEL_ROAD] = output[car->load[w] + 3];
+        const int travel = car->travel[w] < 0 ? -1 : car->code->coordinate_state[car->travel[w]];
+        of[TRIAL_WHEEL_TRAVEL] = travel < 0 ? 0 : way->state[travel];
         row[TRIAL_LOAD] = fmin(row[TRIAL_LOAD], of[TRIAL_WHEEL_LOAD]);
     }
     motion(way, row);

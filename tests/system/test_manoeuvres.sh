@@ -15,7 +15,7 @@ verdict $? "the vehicle with linear tires"
 # ---- the complete vehicle
 for name in 'steady-speed speed=16' 'steady-radius radius=30' 'step-steer speed=16' 'ramp-steer speed=16' 'sine speed=16' 'sine-dwell speed=16' \
     'frequency speed=16 duration=20' 'random speed=16 duration=30' lane-change 'lane-change part=1' 'lift-off speed=16' 'turn-braking speed=16' \
-    'j-turn speed=16' 'fishhook speed=16' 'braking speed=16' 'split-braking speed=16' 'coast-down speed=16' acceleration 'elasticity low=8 high=14' 'ride speed=15 class=3 duration=20'; do
+    'j-turn speed=16' 'fishhook speed=16' 'braking speed=16' 'split-braking speed=16' 'coast-down speed=16' acceleration 'elasticity low=8 high=14' 'ride speed=15 class=3 duration=20' 'ride-speeds high=15 duration=15'; do
     # shellcheck disable=SC2086 # a name and its keys
     set -- $name
     manoeuvre=$1

@@ -473,6 +473,8 @@ for axle, name in enumerate(("f", "r")):
 for i, (name, *_) in enumerate(wheels):
     force = trace[f"{name}.load"][late]
     check(f"load of {name}", value[f"{name}.dynamic_load"], rms(force) / force.mean(), 1e-9)
+    space = trace[f"{name}.travel"][late]
+    check(f"working space of {name}", value[f"{name}.working_space"], space.max() - space.min(), 1e-9)
     check(f"road under {name}", value[f"{name}.road"], rms(trace[f"{name}.road"][late]), 1e-9)
 
 
@@ -483,6 +485,13 @@ def welch(y, size=1024, apart=0.005):
     power[1:-1] *= 2
     return np.fft.rfftfreq(size, apart), power * apart / np.sum(window**2)
 
+
+several, runs = drive("ride-speeds", "low=5", "high=20", "class=1", "duration=20")
+check("ride at several speeds: as at one", several["at_5.total"], value["total"], 1e-9)
+check("along", several["at_5.ax.weighted"], value["ax.weighted"], 1e-9)
+check("six speeds", float(len(runs)), 6.0, 0)
+faster = [several[f"at_{v}.total"] for v in (5, 8, 11, 14, 17, 20)]
+check("the faster the rougher", float(faster == sorted(faster)), 1.0, 0)
 
 # factors of ISO 2631-1, thousandths, at frequencies of thirds of octaves
 third = 10 ** (np.arange(-3, 20) / 10)
