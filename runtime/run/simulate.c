@@ -341,6 +341,11 @@ static void summary_of_events(const Run *run)
         else
             fprintf(stderr, "  %-20s %s\n", "did not happen", action->text);
     }
+    if (run->scene->driver && driver_is_crossed(run->scene->driver))
+        fprintf(stderr,
+                "  %-20s the vehicle turns to the other side than the driver steers for: is the sign of its "
+                "`per_angle` the other one?\n",
+                "driver");
     if (!isnan(o->tipped))
         fprintf(stderr, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
     if (!isnan(o->left))

@@ -94,6 +94,11 @@ static void control_path(Driver *driver, double time, const Sight *sight, double
     const double curvature = 2 * across / fmax(dx * dx + dy * dy, 1);
     const double angle = atan(driver->wheelbase * curvature) + driver->wheelbase * driver->curvature_sum;
     const double wanted = driver->per_angle * angle, steering = limited(wanted, -driver->limit, driver->limit);
+    if (speed > slowest) {
+        driver->square += driver->steered * driver->steered;
+        driver->product += driver->steered * sight->yaw_rate / speed;
+    }
+    driver->steered = steering / driver->per_angle / driver->wheelbase;
     if (speed > slowest && steering == wanted)
         driver->curvature_sum += driver->adapt * (curvature - sight->yaw_rate / speed) * driver->period;
     movement_turn(&driver->wheel, time, steering, driver->reach);
@@ -118,9 +123,16 @@ void driver_start(Driver *driver)
     driver->next = 0;
     driver->looks = 0;
     driver->speed_sum = driver->curvature_sum = driver->along = 0;
+    driver->steered = driver->square = driver->product = 0;
     driver->seen = false;
     driver->pedal[0] = driver->pedal[1] = movement_rest(0);
     driver->wheel = movement_rest(driver->straight);
+}
+
+bool driver_is_crossed(const Driver *driver)
+{
+    static const double slight = 1e-3; /* 1/m, of all looks: circles of 1 km say nothing */
+    return driver->square > slight * slight * (double)driver->looks && driver->product < -0.2 * driver->square;
 }
 
 bool driver_is_due(const Driver *driver, double time)

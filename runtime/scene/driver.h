@@ -40,6 +40,9 @@ typedef struct Driver {
     int64_t looks; /* number of looks so far */
     double next;   /* time of the next look */
     double speed_sum, curvature_sum, along;
+    /* does the vehicle turn as it is steered? the curvature that was steered for at the last look, 1/m; sums of its
+     * square, and of its product with the curvature driven */
+    double steered, square, product;
     bool seen;
     Movement pedal[2], wheel;
 } Driver;
@@ -53,6 +56,8 @@ void driver_start(Driver *driver);
 bool driver_is_due(const Driver *driver, double time);
 /* The first time after `time` at which its commands are less smooth: the next look, or an earlier end of a movement. */
 double driver_next_kink(const Driver *driver, double time);
+/* True: over the run the vehicle has turned to the other side than the driver steered for. */
+bool driver_is_crossed(const Driver *driver);
 /* Decide on new movements. */
 void driver_look(Driver *driver, double time, const Sight *sight);
 /* Clear the marks of the inputs that it moves. */

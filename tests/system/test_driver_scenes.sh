@@ -88,5 +88,31 @@ else
     sed 's/^/    /' "$work/err"
 fi
 
+# a vehicle that turns to the other side than it is steered for is told so, by either sign; one that follows is not
+for sign in 1 -1; do
+    for turn in left right; do
+        [ $turn = left ] && radius=40 || radius=-40
+        cat >"$work/circle.scene" <<END
+gicscene: 1
+duration: 8
+integrator: rkck
+output_step: 0.1
+initial: {velocity: [10, 0, 0]}
+driver:
+  speed: {target: 10}
+  steering: {path: {circle: {center: [0, $radius], radius: $radius}}, input: steer, per_angle: $sign, wheelbase: 2.6, limit: 0.4}
+END
+        "$gicrun" "$(dirname "$0")/../data/manoeuvre/linear.veh" "$work/circle.scene" -o "$work/circle.csv" >/dev/null 2>"$work/err"
+        told=$(grep -c 'turns to the other side than the driver steers for' "$work/err")
+        if [ "$told" -eq $((sign < 0)) ]; then
+            passed=$((passed + 1))
+        else
+            failed=$((failed + 1))
+            echo "FAILED: a circle to the $turn, per_angle: $sign"
+            sed 's/^/    /' "$work/err"
+        fi
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
