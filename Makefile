@@ -29,8 +29,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow $(WERROR)
 STANDARD := -std=c11 -D_POSIX_C_SOURCE=200809L
 # no contraction: results must not depend on which multiply-add the compiler fuses
 COMPILE = $(CC) $(STANDARD) $(WARNINGS) -ffp-contract=off -fPIC -fvisibility=hidden -Igenerator -Iruntime -I$(BUILD) $(CFLAGS) -MMD -MP
-# of host programs, gicrun minizip too; gicgen needs libyaml and minizip, what it emits nothing
-LIBRARIES := -lyaml -lgsl -lgslcblas -lklu -ltcc -lm -ldl
+# of host programs; gicgen needs libyaml and minizip, what it emits nothing
+LIBRARIES := -lyaml -lminizip -lgsl -lgslcblas -lklu -ltcc -lm -ldl
 # of the plug-in that the engine gcp2 loads, where it is there: by the name for linking, or as programs load it
 MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&1 && echo there),$(firstword \
     $(if $(findstring /,$(shell $(CC) -print-file-name=libdmumps_seq.so)),-ldmumps_seq) \
@@ -46,9 +46,9 @@ endef
 other_builds := $(patsubst %,-path $(BUILD)/% -prune -o,debug fuzz coverage)
 
 models := $(basename $(notdir $(wildcard models/*.veh)))
-# programs are generator/*.c and runtime/run/gicrun.c; all other files stand in folders, whose order is that of
+# programs are generator/*.c and runtime/gicrun/gicrun.c; all other files stand in folders, whose order is that of
 # tests/layers.txt, and go into one archive, from which a program takes what it uses
-programs_of_folders := $(wildcard generator/*.c) runtime/run/gicrun.c $(wildcard runtime/sweep/*.c runtime/bench/*.c \
+programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/sweep/*.c runtime/bench/*.c \
     runtime/plugin/*.c)
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
@@ -74,8 +74,8 @@ $(archive): $(objects)
 $(BUILD)/gicgen: $(BUILD)/generator/gicgen.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
 
-$(BUILD)/gicrun: $(BUILD)/runtime/run/gicrun.o $(archive)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES) -lminizip
+$(BUILD)/gicrun: $(BUILD)/runtime/gicrun/gicrun.o $(archive)
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/gicsweep: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/sweep/*.c)) $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
@@ -119,9 +119,9 @@ $(BUILD)/check/gicgen_planted: $(BUILD)/generator/gicgen.o $(planted_objects) $(
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
 
-$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/run/gicrun.o $(planted_objects) $(archive)
+$(BUILD)/check/gicrun_planted: $(BUILD)/runtime/gicrun/gicrun.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES) -lminizip
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the page says how the interpreted engines were compiled
 $(BUILD)/runtime/bench/machine.o: COMPILE += -DGICBENCH_FLAGS='"$(CFLAGS) -ffp-contract=off"'
@@ -181,8 +181,8 @@ $(BUILD)/check/test_topology: $(BUILD)/runtime/plugin/mumps_plugin.o
 $(BUILD)/check/test_topology: LIBRARIES += $(MUMPS)
 $(BUILD)/check/test_topology: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=dmumps_c
 
-# it lets allocations fail
-$(BUILD)/check/test_library: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
+# they let allocations fail
+$(BUILD)/check/test_library $(BUILD)/check/test_studies: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
 
 # what checks the generator shares no code with it
 $(BUILD)/check/test_reference $(BUILD)/check/test_reference_mechanisms: $(BUILD)/check/%: $(BUILD)/tests/unit/%.o $(reference)
@@ -250,11 +250,11 @@ $(BUILD)/check/gicrun_wrong_pose: PLANT := -DGIC_PLANT_MOTION=1
 $(BUILD)/check/gicrun_wrong_velocity: PLANT := -DGIC_PLANT_MOTION=24
 $(BUILD)/check/gicrun_wrong_acceleration: PLANT := -DGIC_PLANT_MOTION=18
 $(BUILD)/check/gicrun_wrong_rate: PLANT := -DGIC_PLANT_RATE=1
-$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/run/gicrun.o $(archive) $(spoiled)
+$(planted:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/runtime/gicrun/gicrun.o $(archive) $(spoiled)
 	@mkdir -p $@.o
 	for file in $(spoiled); do $(COMPILE) $(PLANT) -c -o $@.o/$$(basename $$file .c).o $$file || exit 1; done
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/run/gicrun.o $(patsubst %.c,$@.o/%.o,$(notdir $(spoiled))) \
-	    $(archive) $(LIBRARIES) -lminizip
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/runtime/gicrun/gicrun.o $(patsubst %.c,$@.o/%.o,$(notdir $(spoiled))) \
+	    $(archive) $(LIBRARIES)
 
 # ---- attacks of `make stress`: tests/stress/*.c are tools of tests/stress/*.sh
 

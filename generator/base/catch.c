@@ -24,7 +24,8 @@ typedef struct Catcher {
 static _Thread_local Catcher *innermost;
 
 /* For when there is no memory for a message. */
-static Message no_memory = {MESSAGE_ERROR, NULL, 0, 0, "out of memory", NULL, "gicgen: error: out of memory\n", NULL};
+static Message no_memory = {
+    .kind = MESSAGE_ERROR, .text = "out of memory", .printed = "gicgen: error: out of memory\n"};
 
 void messages_clear(Messages *messages)
 {
@@ -33,7 +34,7 @@ void messages_clear(Messages *messages)
         free(message);
         message = next;
     }
-    *messages = (Messages){NULL, NULL};
+    messages->first = messages->last = NULL;
 }
 
 /* Release what a catcher was told, or only forget it. */
@@ -67,6 +68,11 @@ bool caught(Messages *messages, void (*work)(void *context), void *context)
 bool catching(void)
 {
     return innermost;
+}
+
+const Listener *caught_listener(void)
+{
+    return innermost ? innermost->messages->listener : NULL;
 }
 
 void caught_fail(void)
@@ -122,6 +128,11 @@ static size_t size_of(const char *text)
 void caught_tell(const Message *message)
 {
     Messages *messages = innermost->messages;
+    const Listener *listener = messages->listener;
+    if (listener && listener->hear && (message->text || message->kind == MESSAGE_ERROR))
+        listener->hear(listener->context, message->text ? message : &no_memory);
+    if (message->kind == MESSAGE_PROGRESS)
+        return;
     const size_t texts =
         size_of(message->file) + size_of(message->text) + size_of(message->remedy) + size_of(message->printed);
     Message *kept = message->text ? malloc(sizeof *kept + texts) : NULL;

@@ -168,13 +168,14 @@ static void put_message(Out *out, Place at, const char *kind, const char *remedy
 }
 
 /* Hand a message to who catches it. */
-static void tell(Place at, MessageKind kind, const char *remedy, const char *text, const Out *printed)
+static void tell(Place at, MessageKind kind, bool call, const char *remedy, const char *text, const Out *printed)
 {
     Out clean = {.kept = true}, way = {.kept = true};
     put_clean(&clean, text);
     put_clean(&way, remedy ? remedy : "");
     const bool full = printed->full || clean.full || way.full;
     caught_tell(&(Message){.kind = kind,
+                           .call = call,
                            .file = at.source ? at.source->path : NULL,
                            .line = at.line,
                            .column = at.column,
@@ -187,14 +188,14 @@ static void tell(Place at, MessageKind kind, const char *remedy, const char *tex
     free(way.s);
 }
 
-static void report(Place at, MessageKind kind, const char *remedy, const char *format, va_list args)
+static void report(Place at, MessageKind kind, bool call, const char *remedy, const char *format, va_list args)
 {
     char message[MESSAGE];
     Out out = {.kept = catching()};
     vsnprintf(message, sizeof message, format, args);
     put_message(&out, at, kind == MESSAGE_ERROR ? "error" : "warning", remedy, message);
     if (out.kept)
-        tell(at, kind, remedy, message, &out);
+        tell(at, kind, call, remedy, message, &out);
     free(out.s);
 }
 
@@ -202,27 +203,50 @@ _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    report(at, MESSAGE_ERROR, remedy, format, args);
+    report(at, MESSAGE_ERROR, false, remedy, format, args);
     va_end(args);
     caught_fail();
     exit(1);
+}
+
+_Noreturn void diag_fail_call(Place at, const char *remedy, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    report(at, MESSAGE_ERROR, true, remedy, format, args);
+    va_end(args);
+    caught_fail();
+    exit(2);
 }
 
 void diag_warn(Place at, const char *remedy, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    report(at, MESSAGE_WARNING, remedy, format, args);
+    report(at, MESSAGE_WARNING, false, remedy, format, args);
     va_end(args);
 }
 
 void diag_note(const char *text)
 {
-    Out out = {.kept = catching()};
-    put_text(&out, text);
-    if (out.kept)
-        caught_tell(&(Message){.kind = MESSAGE_NOTE, .text = out.full ? NULL : out.s, .printed = out.s});
-    free(out.s);
+    if (catching())
+        caught_tell(&(Message){.kind = MESSAGE_NOTE, .text = text, .printed = text});
+    else
+        fputs(text, stderr);
+}
+
+void diag_text(const char *text)
+{
+    if (catching())
+        caught_tell(&(Message){.kind = MESSAGE_TEXT, .text = text, .printed = text});
+    else
+        fputs(text, stdout);
+}
+
+void diag_progress(const char *text)
+{
+    if (catching())
+        caught_tell(&(Message){.kind = MESSAGE_PROGRESS, .text = text, .printed = text});
 }
 
 Place diag_place(const Source *source, size_t offset)

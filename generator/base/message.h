@@ -40,8 +40,15 @@ typedef struct Source {
 _Noreturn void diag_fail(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The same as a warning; returns. */
 void diag_warn(Place at, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The same as diag_fail() for a mistake of who calls; exit status 2. */
+_Noreturn void diag_fail_call(Place at, const char *remedy, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Print a text for people as it is, such as what another program said; the lines end in it. */
 void diag_note(const char *text);
+/* The same for a text that is a result: to standard output. */
+void diag_text(const char *text);
+/* How far the work is, in a few words, for who listens; "": it is over. */
+void diag_progress(const char *text);
 /* The source line of a place; the text after the line follows. */
 const char *diag_line(Place at);
 /* The place of a byte of a source: its line, and its column in characters (UTF-8). */

@@ -201,7 +201,7 @@ CodeMemory code_memory(Pool *pool, const char *model, const Text *c, const Text 
     for (int real = 0; good && real < 2; ++real)
         good = measure(pool, folder, model, &memory, real);
     if (folder)
-        folder_remove(pool, folder);
+        folder_remove(folder);
     interrupt_release();
     if (good)
         memory.why = NULL;

@@ -65,14 +65,14 @@ bool folder_put_core(Pool *pool, const char *folder)
     return good;
 }
 
-void folder_remove(Pool *pool, const char *folder)
+void folder_remove(const char *folder)
 {
     DIR *listing = opendir(folder);
     if (!listing)
         return;
     for (struct dirent *entry; (entry = readdir(listing));)
         if (entry->d_name[0] != '.')
-            unlink(pool_print(pool, "%s/%s", folder, entry->d_name));
+            unlinkat(dirfd(listing), entry->d_name, 0);
     closedir(listing);
     rmdir(folder);
 }

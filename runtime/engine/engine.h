@@ -136,7 +136,7 @@ char *folder_make(Pool *pool);
 bool folder_put(Pool *pool, const char *folder, const char *name, const char *bytes, size_t size);
 bool folder_put_core(Pool *pool, const char *folder);
 /* Remove such a folder and its files, except those whose names begin with a dot. */
-void folder_remove(Pool *pool, const char *folder);
+void folder_remove(const char *folder);
 /* True for a file of the runtime core. */
 bool is_core(const Embedded *file);
 /* An identification of the compiler: programs and files that the words name (path, inode, size, time of change), the

@@ -165,7 +165,7 @@ static const gic_model *compile_privately(Build *b)
         return NULL;
     }
     const gic_model *code = compile(b, folder);
-    folder_remove(b->pool, folder);
+    folder_remove(folder);
     return code;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Tables as comma-separated text: results are written; states and roads are read. */
 #define _DEFAULT_SOURCE /* on_exit */
+#include "base/catch.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "host/host.h"
@@ -13,12 +14,13 @@
 
 /* ---- writing -------------------------------------------------------------------------------------------- */
 
-/* A temporary file of this process. */
-typedef struct Unfinished {
-    Pool *pool; /* its own pool, which still exists when all others are freed */
+/* A table that is being written by this process. */
+struct Unfinished {
+    FILE *file;
     pid_t process;
-    char *path; /* NULL: none */
-} Unfinished;
+    bool kept;  /* this record, until the program ends */
+    char *path; /* of its temporary file; NULL: none */
+};
 
 /* At exit of a program with an unfinished table, such as out of memory or an exit by a library: remove the temporary
  * file, and turn exit status 0 into a failure (the Fortran runtime exits with 0 if MUMPS gives up). */
@@ -31,16 +33,45 @@ static void remove_unfinished(int status, void *what)
                 program_place().source->path);
         _exit(1);
     }
-    pool_free(unfinished->pool);
+    free(unfinished->path);
+    free(unfinished);
 }
 
-/* Allocate before the file is made. */
-static Unfinished *watch(void)
+/* What becomes of the file is settled. */
+static void settle(Unfinished *unfinished)
 {
-    Pool *pool = pool_new();
-    Unfinished *unfinished = pool_alloc(pool, sizeof *unfinished);
-    *unfinished = (Unfinished){pool, getpid(), NULL};
-    on_exit(remove_unfinished, unfinished); /* if that fails, only these few bytes leak */
+    caught_disown(unfinished);
+    free(unfinished->path);
+    unfinished->path = NULL;
+    if (!unfinished->kept)
+        free(unfinished);
+}
+
+/* Where a failure ends a call and not the program. */
+static void undo(void *what)
+{
+    const Unfinished *unfinished = what;
+    fclose(unfinished->file);
+    if (unfinished->path)
+        unlink(unfinished->path);
+    settle(what);
+}
+
+/* Allocate before the file is made. A program looks after it until its end, others until the end of the call. */
+static Unfinished *watch(const char *path)
+{
+    enum { MORE = 32 }; /* of temporary_open() */
+    Unfinished *unfinished = malloc(sizeof *unfinished);
+    char *room = malloc(strlen(path) + MORE);
+    if (!unfinished || !room) {
+        free(unfinished);
+        free(room);
+        out_of_memory();
+    }
+    *unfinished = (Unfinished){.process = getpid()};
+    unfinished->kept = (!catching() || caught_listener()) && !on_exit(remove_unfinished, unfinished);
+    *room = 0;
+    unfinished->path = room;
     return unfinished;
 }
 
@@ -58,19 +89,28 @@ static _Noreturn void write_fail(const Csv *csv, const char *what)
 Csv csv_open(Pool *pool, const char *path)
 {
     Csv csv = {.pool = pool, .file = stdout, .path = path};
-    if (file_is_special(path)) {
-        csv.file = fopen(path, "w");
-        if (!csv.file)
-            diag_fail(program_place(), file_remedy(errno), "can't open %s: %s", path, strerror(errno));
-    } else if (strcmp(path, "-")) {
-        Unfinished *unfinished = watch();
-        csv.file = temporary_open(unfinished->pool, path, &unfinished->path);
-        if (!csv.file) {
-            unfinished->path = NULL;
-            write_fail(&(Csv){.path = path}, "create");
-        }
-        csv.temporary = pool_print(pool, "%s", unfinished->path);
+    if (!strcmp(path, "-"))
+        return csv;
+    const bool special = file_is_special(path);
+    Unfinished *unfinished = watch(path);
+    char *name = NULL;
+    csv.file = special ? fopen(path, "w") : temporary_open(pool, path, &name);
+    const int reason = errno;
+    if (name && csv.file) {
+        strcpy(unfinished->path, name);
+        csv.temporary = name;
+    } else {
+        free(unfinished->path);
+        unfinished->path = NULL;
     }
+    if (!csv.file) {
+        settle(unfinished);
+        errno = reason;
+        write_fail(&(Csv){.path = path}, special ? "open" : "create");
+    }
+    unfinished->file = csv.file;
+    csv.unfinished = unfinished;
+    caught_own(undo, unfinished);
     return csv;
 }
 
@@ -146,6 +186,8 @@ void csv_end_row(Csv *csv)
 void csv_close(Csv *csv)
 {
     bool written = !fflush(csv->file) && !ferror(csv->file);
+    if (csv->unfinished)
+        settle(csv->unfinished);
     if (!csv->temporary) {
         if ((csv->file != stdout && fclose(csv->file)) || !written)
             write_fail(csv, "write");
@@ -157,10 +199,12 @@ void csv_close(Csv *csv)
 
 void csv_abandon(Csv *csv)
 {
-    if (!csv->temporary)
-        return;
-    fclose(csv->file);
-    remove(csv->temporary);
+    if (csv->unfinished)
+        settle(csv->unfinished);
+    if (csv->file != stdout)
+        fclose(csv->file);
+    if (csv->temporary)
+        remove(csv->temporary);
 }
 
 /* ---- reading -------------------------------------------------------------------------------------------- */

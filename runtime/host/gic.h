@@ -8,8 +8,9 @@
  * functions may be called from any thread at once; two calls that use one instance, batch or result at the same time
  * are a mistake, which the second one reports.
  *
- * Every function with `said` returns a status and writes nothing to the terminal. What gicrun would have printed is in
- * `said` (NULL: nobody wants it), which each call empties first. Units are SI unless a name says otherwise.
+ * Every function with `said` returns a status and writes nothing to the terminal. What gicrun prints is in `said`
+ * (NULL: nobody wants it), which each call empties first; gicl_listen() brings it while the call is at work. Units are
+ * SI unless a name says otherwise. gicrun, gicsweep and gicbench are command lines over these functions.
  *
  *     gicl_library *lib = gicl_open();
  *     gicl_messages *said = gicl_messages_new();
@@ -36,7 +37,7 @@ extern "C" {
 #endif
 
 /* Increased when a program must be compiled anew; that of the library itself, and gicgen's version as text. */
-#define GICL_VERSION 2
+#define GICL_VERSION 3
 GICL_API int gicl_version(void);
 GICL_API const char *gicl_release(void);
 
@@ -54,7 +55,13 @@ typedef uint64_t gicl_handle; /* 0 is none */
 
 typedef struct gicl_messages gicl_messages;
 
-enum { GICL_ERROR = 0, GICL_WARNING = 1, GICL_NOTE = 2 };
+enum {
+    GICL_ERROR = 0,
+    GICL_WARNING = 1,
+    GICL_NOTE = 2,
+    GICL_TEXT = 3,    /* a table that gicrun prints on standard output */
+    GICL_PROGRESS = 4 /* how far the work is, at most ten times a second, "": it is over; heard, not in lists */
+};
 
 typedef struct gicl_message {
     int kind;
@@ -77,6 +84,19 @@ GICL_API int gicl_message_get(const gicl_messages *said, int index, gicl_message
 GICL_API gicl_library *gicl_open(void);
 /* Frees everything in it; no other call may be at work. GICL_WRONG: NULL. */
 GICL_API int gicl_close(gicl_library *library);
+/* Who hears messages when they come. */
+typedef struct gicl_listener {
+    size_t size;         /* sizeof(gicl_listener) */
+    const char *program; /* the name at the head of messages about no file; NULL: "gicrun" */
+    /* Called in the thread of the call that it is about; calls nothing of the library. */
+    void (*hear)(void *context, const gicl_message *message);
+    void *context;
+    int signals; /* 1: signals that end a program by default are the library's: they wait while files are written, end
+                  * a run early with the rows up to there, and then end the program. For the only thread of a program */
+} gicl_listener;
+
+/* Before other calls; texts stay the caller's and must outlive the library. NULL: nobody listens any more. */
+GICL_API int gicl_listen(gicl_library *library, const gicl_listener *listener, gicl_messages *said);
 /* Close one thing of any kind. Instances and batches of a closed model go on. */
 GICL_API int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages *said);
 
@@ -86,8 +106,9 @@ GICL_API int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages 
 typedef struct gicl_options {
     size_t size;          /* sizeof(gicl_options) */
     const char *engine;   /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
-                           * gicrun's cache; "tape": interpreted. All three give the same bits, runs of scenes
-                           * with `general` */
+                           * gicrun's cache; "tape": interpreted; "auto": "tcc", which goes over to "cc" in long runs.
+                           * All give the same bits, runs of scenes with `general`. "gic", "gcp1", "gcp2": of runs and
+                           * studies alone */
     const char *solve;    /* "auto", "reduced", "articulated", "augmented" */
     const char *recovery; /* "auto", "newton", "closed" */
     const char *compiler; /* of "cc": a command */
@@ -95,8 +116,12 @@ typedef struct gicl_options {
     const char *integrator; /* instead of the scenes': "ab3", "rk4", "adams", "rkck" */
     double tolerance;       /* of variable steps, instead of the scenes' */
     int general;            /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
+    int lanes;              /* of "cc" in runs and studies: alike parts in vectors of 2, 4, 8 or 16 numbers; 0: none */
 } gicl_options;
 
+/* Words that a member of gicl_options may be, such as "engine", "solve", "recovery", "integrator", from 0, the default
+ * of gicrun first; NULL: no more. */
+GICL_API const char *gicl_word(const char *member, int index);
 /* Read and check a model. name: that of the text in messages; files that it includes are sought from the folder in it.
  */
 GICL_API int gicl_model_open(gicl_library *library, const char *path, const gicl_options *options, gicl_handle *model,
@@ -218,6 +243,34 @@ GICL_API int gicl_array_count(gicl_library *library, gicl_handle result, int *co
 /* size: sizeof(gicl_array). */
 GICL_API int gicl_array_get(gicl_library *library, gicl_handle result, int index, gicl_array *array, size_t size,
                             gicl_messages *said);
+
+/* ---- what gicrun writes ------------------------------------------------------------------------------------- */
+
+/* Files and tables. Members are gicrun's options; NULL and 0: not given. Paths of files to be written may be "-",
+ * standard output, where gicrun's may. */
+typedef struct gicl_study {
+    size_t size;         /* sizeof(gicl_study) */
+    const char *kind;    /* "run", "drive", "eval", "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre" */
+    const char *scene;   /* a path; "run" and "drive" need one, "manoeuvre" has none */
+    const char *results; /* -o: "eval" and "linearize" need it, "drive" writes none */
+    const char *page;    /* of "run" --animate, of "drive" its page, of "kc" and "manoeuvre" --report */
+    const char *plot, *with, *replay; /* of "run" */
+    const char *states;               /* of "eval": the file of states */
+    const double *at;                 /* of "linearize": a time, s */
+    const char *axle;                 /* of "kc" */
+    double travel;                    /* of "kc", m */
+    int loads;                        /* of "kc": 1: compliance */
+    const char *compare;              /* of "kc", "sheet" and "manoeuvre" */
+    const char *manoeuvre;            /* its name */
+    const char *const *key;           /* [keys] its words key=value */
+    int keys;
+    const char *trace; /* of "manoeuvre" */
+    int quiet;         /* 1: neither progress nor notes */
+} gicl_study;
+
+/* What gicrun does. Tables for people are messages, GICL_TEXT. GICL_FAILED: a run that ends early has written its rows
+ * up to there; other files are whole or not there. */
+GICL_API int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study, gicl_messages *said);
 
 #ifdef __cplusplus
 }

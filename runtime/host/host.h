@@ -19,6 +19,13 @@ _Noreturn void usage_fail(const char *program, const char *message, const char *
 /* The whole number that a word is, from least to most; any other word ends in usage_fail. */
 int64_t usage_whole(const char *program, const char *message, const char *word, int64_t least, int64_t most);
 
+/* ---- terminal.c: messages of the library (gic.h) */
+
+struct gicl_message;
+/* The function of a program's listener: tables go to standard output, how far the work is to a terminal, all others to
+ * standard error. */
+void terminal_hear(void *context, const struct gicl_message *message);
+
 /* ---- options.c */
 
 /* An option of a command line, which sets `on`, or has an argument: `text` becomes that, or `read` gets it with the
@@ -70,12 +77,15 @@ const char *temporary_folder(void);
 
 /* ---- csv.c */
 
+typedef struct Unfinished Unfinished;
+
 /* A results file that is being written: under a temporary name beside `path`, renamed when it is closed. */
 typedef struct Csv {
     Pool *pool; /* for names */
     FILE *file;
     const char *path, *temporary; /* temporary: NULL for standard output, devices and pipes */
     bool inside;                  /* inside a row */
+    Unfinished *unfinished;       /* NULL: standard output */
 } Csv;
 
 Csv csv_open(Pool *pool, const char *path);

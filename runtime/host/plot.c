@@ -386,7 +386,7 @@ void plot_write(Pool *pool, const Plot *plot, const char *path)
     if (status == PROCESS_NOT_STARTED)
         gnuplot_missing(said);
     if (status) {
-        fputs(said, stderr);
+        diag_note(said);
         diag_fail(program_place(), "gnuplot's messages are above; is there room on the disk?",
                   "no picture: %s could not be drawn", path);
     }

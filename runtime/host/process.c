@@ -20,16 +20,23 @@ Place program_place(void)
 {
     static Source program;
     static const Source library = {.path = "gicrun"}; /* whose messages the library's are */
+    const Listener *listener = caught_listener();
     if (catching())
-        return (Place){&library, 0, 0};
+        return (Place){listener && listener->program ? listener->program : &library, 0, 0};
     program.path = program_invocation_short_name;
     return (Place){&program, 0, 0};
 }
 
-/* A library leaves signals to its program, so that hold and release do nothing there. */
+/* A library leaves signals to its program, unless that leaves them to it: else hold and release do nothing. */
+static bool left_alone(void)
+{
+    const Listener *listener = caught_listener();
+    return catching() && !(listener && listener->signals);
+}
+
 void interrupt_hold(void)
 {
-    if (catching())
+    if (left_alone())
         return;
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
@@ -39,7 +46,7 @@ void interrupt_hold(void)
 
 bool interrupt_arrived(void)
 {
-    if (catching())
+    if (left_alone())
         return false;
     sigset_t set = stop_signals(), pending;
     sigpending(&pending);
@@ -51,7 +58,7 @@ bool interrupt_arrived(void)
 
 void interrupt_release(void)
 {
-    if (catching())
+    if (left_alone())
         return;
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
@@ -130,7 +137,7 @@ static int await(pid_t child)
     sigset_t set = stop_signals();
     sigaddset(&set, SIGCHLD);
     int status;
-    if (catching()) {
+    if (left_alone()) {
         pid_t ended;
         while ((ended = waitpid(child, &status, 0)) < 0 && errno == EINTR)
             continue;

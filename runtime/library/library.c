@@ -26,6 +26,9 @@ typedef struct Slot {
 struct gicl_library {
     pthread_mutex_t lock; /* of the table */
     locale_t plain;
+    gicl_listener heard; /* as given; hear NULL: nobody */
+    Source program;
+    Listener listener;
     Slot *slot;
     uint32_t slots;
 };
@@ -86,6 +89,53 @@ int gicl_close(gicl_library *library)
     return GICL_OK;
 }
 
+/* ---- who listens -------------------------------------------------------------------------------------------- */
+
+static gicl_message seen(const Message *message)
+{
+    return (gicl_message){.kind = (int)message->kind,
+                          .file = message->file,
+                          .line = message->line,
+                          .column = message->column,
+                          .text = message->text,
+                          .remedy = message->remedy,
+                          .printed = message->printed};
+}
+
+static void hear(void *context, const Message *message)
+{
+    const gicl_listener *heard = context;
+    const gicl_message shown = seen(message);
+    heard->hear(heard->context, &shown);
+}
+
+int gicl_listen(gicl_library *library, const gicl_listener *listener, gicl_messages *said)
+{
+    call_begin(library, said);
+    if (!library)
+        return call_wrong(said, "gicl_open() makes a library", "the library is NULL");
+    if (listener && (listener->size != sizeof *listener || !listener->hear))
+        return call_wrong(said, "set size to sizeof(gicl_listener), and hear",
+                          "a listener has %zu bytes and a function, not %zu bytes%s", sizeof *listener, listener->size,
+                          listener->hear ? "" : " and none");
+    library->heard = listener ? *listener : (gicl_listener){0};
+    library->program = (Source){.path = library->heard.program};
+    library->listener = (Listener){.program = library->heard.program ? &library->program : NULL,
+                                   .signals = library->heard.signals,
+                                   .hear = library->heard.hear ? hear : NULL,
+                                   .context = &library->heard};
+    call_begin(library, said);
+    return GICL_OK;
+}
+
+void call_begin(const gicl_library *library, gicl_messages *said)
+{
+    if (!said)
+        return;
+    messages_clear(&said->list);
+    said->list.listener = library && library->listener.hear ? &library->listener : NULL;
+}
+
 /* ---- handles ------------------------------------------------------------------------------------------------ */
 
 static gicl_handle handle_of(const gicl_library *library, uint32_t i)
@@ -129,8 +179,7 @@ static Slot *slot_of(const gicl_library *library, gicl_handle handle)
 Use use_begin(gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said)
 {
     Use use = {library, handle, NULL, GICL_WRONG};
-    if (said)
-        messages_clear(&said->list);
+    call_begin(library, said);
     if (!library) {
         call_wrong(said, "gicl_open() makes a library", "the library is NULL");
         return use;
@@ -166,8 +215,7 @@ int use_end(const Use *use, int status)
 
 int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages *said)
 {
-    if (said)
-        messages_clear(&said->list);
+    call_begin(library, said);
     if (!library)
         return call_wrong(said, "gicl_open() makes a library", "the library is NULL");
     pthread_mutex_lock(&library->lock);
@@ -190,12 +238,15 @@ int gicl_free(gicl_library *library, gicl_handle handle, gicl_messages *said)
 
 int call_work(const gicl_library *library, gicl_messages *said, void (*work)(void *context), void *context)
 {
-    Messages unheard = {NULL, NULL};
+    gicl_messages unread = {{NULL, NULL, NULL}};
+    call_begin(library, &unread);
+    Messages *messages = said ? &said->list : &unread.list;
     const locale_t before = uselocale(library->plain);
-    const bool good = caught(said ? &said->list : &unheard, work, context);
+    const bool good = caught(messages, work, context);
     uselocale(before);
-    messages_clear(&unheard);
-    return good ? GICL_OK : GICL_FAILED;
+    const int status = good ? GICL_OK : messages->last && messages->last->call ? GICL_WRONG : GICL_FAILED;
+    messages_clear(&unread.list);
+    return status;
 }
 
 typedef struct Said {
@@ -274,12 +325,6 @@ int gicl_message_get(const gicl_messages *said, int index, gicl_message *message
         found = found->next;
     if (!found || !message)
         return 0;
-    *message = (gicl_message){.kind = (int)found->kind,
-                              .file = found->file,
-                              .line = found->line,
-                              .column = found->column,
-                              .text = found->text,
-                              .remedy = found->remedy,
-                              .printed = found->printed};
+    *message = seen(found);
     return 1;
 }

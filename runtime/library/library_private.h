@@ -31,14 +31,17 @@ typedef struct Use {
     int status; /* GICL_OK, or there is none: the call returns this */
 } Use;
 
-/* Begin a call: empties `said`, finds the thing. Calls that use a model may overlap, others not. The status is GICL_OK,
+/* Begin a call without a thing: empties `said`, and lets who listens hear it. */
+void call_begin(const gicl_library *library, gicl_messages *said);
+/* Begin a call: the same, and finds the thing. Calls that use a model may overlap, others not. The status is GICL_OK,
  * or GICL_WRONG with a message. */
 Use use_begin(gicl_library *library, gicl_handle handle, ThingKind kind, gicl_messages *said);
 /* End it; returns `status`. */
 int use_end(const Use *use, int status);
 /* A handle for a new thing, which its kind's free function frees; 0: no memory. */
 gicl_handle handle_new(gicl_library *library, ThingKind kind, void *thing);
-/* Run work(context) where numbers are read and written as in C; a failure adds its messages: GICL_FAILED. */
+/* Run work(context) where numbers are read and written as in C; a failure adds its messages: GICL_FAILED, or
+ * GICL_WRONG for one of the call. */
 int call_work(const gicl_library *library, gicl_messages *said, void (*work)(void *context), void *context);
 /* A mistake of the caller: GICL_WRONG with a message. */
 int call_wrong(gicl_messages *said, const char *remedy, const char *format, ...) __attribute__((format(printf, 3, 4)));
@@ -52,18 +55,22 @@ typedef struct OpenModel {
     const Model *model;
     const char *name; /* in messages: the path */
     EngineOptions options;
-    const char *engine_name, *integrator;
+    const char *engine_name, *integrator; /* one of engine_name[]; NULL: the scene's */
     double tolerance;
     bool general;
     pthread_mutex_t lock; /* of what follows, and of calls of interpreted engines, whose instances share scratch */
     const Engine *engine; /* NULL: not needed yet */
     Pool *engine_pool;
     const char *c, *h; /* NULL: not yet generated */
+    Pool *code_pool;
     atomic_int users;  /* the handle, instances and batches */
+    atomic_flag taken; /* model_once() gave the model away */
 } OpenModel;
 
 /* The model for a call that analyses it or reads a scene in `pool`, inside of call_work(). */
 const Model *model_for(const OpenModel *open, Pool *pool);
+/* The same for a call that leaves nothing behind: for the first one the model as it was read, which saves time. */
+const Model *model_once(OpenModel *open, Pool *pool);
 /* The model's code for any scene, compiled by the first call. */
 int model_engine(const gicl_library *library, OpenModel *model, gicl_messages *said);
 void model_keep(OpenModel *model);

@@ -18,6 +18,24 @@
 #include <dlfcn.h>
 #include <string.h>
 
+/* ---- words ---------------------------------------------------------------------------------------------------- */
+
+const char *gicl_word(const char *member, int index)
+{
+    if (!member || index < 0)
+        return NULL;
+    if (!strcmp(member, "solve"))
+        return index < SOLVES ? solve_name[index] : NULL;
+    if (!strcmp(member, "recovery"))
+        return index < RECOVERIES ? recovery_name[index] : NULL;
+    if (!strcmp(member, "integrator"))
+        return integrator_word(index);
+    int i = 0;
+    while (i < index && engine_name[i])
+        ++i;
+    return !strcmp(member, "engine") ? engine_name[i] : NULL;
+}
+
 /* ---- opening ------------------------------------------------------------------------------------------------ */
 
 typedef struct Opening {
@@ -32,7 +50,7 @@ static const char *kept(Pool *pool, const char *text, const char *absent)
     return pool_print(pool, "%s", text && *text ? text : absent);
 }
 
-/* Engines that have the state of FORMAT.md section 10 itself, and need no other program while they run. */
+/* Engines of instances: they have the state of FORMAT.md section 10 itself, and change no code while they run. */
 static const char *const engines[] = {"tcc", "cc", "tape"};
 
 static _Noreturn void option_fail(const char *option, const char *word, const char *words)
@@ -47,13 +65,15 @@ static void take_options(OpenModel *model, const gicl_options *given)
     Pool *pool = model->pool;
     const gicl_options *o = given ? given : &none;
     model->engine_name = kept(pool, o->engine, engines[0]);
-    bool known = false;
-    for (size_t i = 0; i < sizeof engines / sizeof *engines; ++i)
-        known = known || !strcmp(model->engine_name, engines[i]);
-    if (!known)
-        option_fail("engine", model->engine_name, "one of tcc, cc, tape");
+    if (!engine_known(model->engine_name))
+        option_fail("engine", model->engine_name, "one of tcc, cc, tape, auto, gic, gcp1, gcp2");
+    if (o->lanes && strcmp(model->engine_name, "cc") != 0)
+        option_fail("lanes", pool_print(pool, "%d", o->lanes), "0, or the engine cc");
+    if (o->lanes && !lanes_of(pool_print(pool, "%d", o->lanes)))
+        option_fail("lanes", pool_print(pool, "%d", o->lanes), "one of 0, 2, 4, 8, 16");
     model->options = (EngineOptions){.solve = solve_of(kept(pool, o->solve, "auto")),
                                      .recovery = recovery_of(kept(pool, o->recovery, "auto")),
+                                     .lanes = o->lanes,
                                      .compiler = kept(pool, o->compiler, compiler_default()),
                                      .flags = kept(pool, o->flags, ""),
                                      .quiet = true};
@@ -95,6 +115,7 @@ static int finish_opening(gicl_library *library, Opening *opening, gicl_handle *
     OpenModel *model = opening->model;
     pthread_mutex_init(&model->lock, NULL);
     atomic_init(&model->users, 1);
+    atomic_flag_clear(&model->taken);
     *handle = handle_new(library, THING_MODEL, model);
     if (*handle)
         return GICL_OK;
@@ -105,8 +126,7 @@ static int finish_opening(gicl_library *library, Opening *opening, gicl_handle *
 static int check_opening(const gicl_library *library, const void *given, const gicl_options *options,
                          gicl_handle *handle, gicl_messages *said)
 {
-    if (said)
-        messages_clear(&said->list);
+    call_begin(library, said);
     if (handle)
         *handle = 0;
     if (!library || !given || !handle)
@@ -151,6 +171,8 @@ void model_let(void *let)
             dlclose(model->engine->library);
         pool_free(model->engine_pool);
     }
+    if (model->code_pool)
+        pool_free(model->code_pool);
     pthread_mutex_destroy(&model->lock);
     pool_free(model->pool);
 }
@@ -173,7 +195,7 @@ static void read_again(void *context)
 const Model *model_for(const OpenModel *open, Pool *pool)
 {
     Again again = {pool, open->model, open->model};
-    Messages said = {NULL, NULL};
+    Messages said = {NULL, NULL, NULL};
     if (!open->model->tuning)
         return open->model;
     const bool good = caught(&said, read_again, &again);
@@ -185,13 +207,26 @@ const Model *model_for(const OpenModel *open, Pool *pool)
     return again.model;
 }
 
+const Model *model_once(OpenModel *open, Pool *pool)
+{
+    return atomic_flag_test_and_set(&open->taken) ? model_for(open, pool) : open->model;
+}
+
 /* ---- code --------------------------------------------------------------------------------------------------- */
 
 static void open_engine(void *context)
 {
     OpenModel *model = context;
+    const char *name = strcmp(model->engine_name, "auto") != 0 ? model->engine_name : engines[0];
+    bool own = false;
+    for (size_t i = 0; i < sizeof engines / sizeof *engines; ++i)
+        own = own || !strcmp(name, engines[i]);
+    if (!own)
+        option_fail("engine", name, "for instances and batches one of tcc, cc, tape");
     Pool *pool = pool_new();
-    model->engine = engine_open(pool, model->engine_name, model_for(model, pool), &model->options);
+    EngineOptions options = model->options;
+    options.lanes = 0; /* of runs alone */
+    model->engine = engine_open(pool, name, model_for(model, pool), &options);
     model->engine_pool = pool;
 }
 
@@ -220,7 +255,7 @@ void model_leave(OpenModel *model)
 static void generate_code(void *context)
 {
     OpenModel *open = context;
-    Pool *pool = open->pool;
+    Pool *pool = pool_new();
     Text c = {.pool = pool}, h = {.pool = pool};
     const Model *own = model_for(open, pool);
     const Sequence *sequence = sequence_find(pool, own);
@@ -230,6 +265,7 @@ static void generate_code(void *context)
     generate(pool, formulation, &style_readable, NULL, pool_print(pool, "%s.h", model->name), &c, &h);
     open->c = c.s;
     open->h = h.s;
+    open->code_pool = pool;
 }
 
 int gicl_generate(gicl_library *library, gicl_handle handle, const char **c, const char **h, gicl_messages *said)

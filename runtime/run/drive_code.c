@@ -126,7 +126,7 @@ const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const
     const char *folder = folder_make(pool);
     if (folder) {
         compile(&b, folder);
-        folder_remove(pool, folder);
+        folder_remove(folder);
     } else {
         b.message = pool_print(pool, "can't make a folder in %s: %s", temporary_folder(), strerror(errno));
         b.remedy = "set TMPDIR to a folder that can be written";

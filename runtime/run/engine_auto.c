@@ -2,6 +2,7 @@
  * The engine `auto`: starts at once with code that tcc made, and goes on with a compiler's faster code where a run
  * lasts long enough. The two do the same operations in the same order, so instances, flat memory of equal layout, can
  * change hands between any two steps; whether the compiler has kept every bit is tried before. */
+#include "base/catch.h"
 #include "base/random.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -31,19 +32,42 @@ struct Background {
 /* ---- the child ----------------------------------------------------------------------------------------------------
  */
 
-/* Compile and leave the object. If the parent is gone by then, remove the folder here. */
-static _Noreturn void compile(const Background *background, pid_t parent)
+static void compile_here(void *context)
 {
+    const Background *background = context;
+    interrupt_release();
+    engine_cc(background->pool, background->model, &background->options);
+}
+
+/* Compile and leave the object. If the parent is gone by then, remove the folder here. */
+static _Noreturn void compile(Background *background, pid_t parent)
+{
+    const Listener nobody = {.signals = true}; /* they are ours here, whoever called */
+    Messages unheard = {NULL, NULL, &nobody};
     const int nothing = open("/dev/null", O_RDWR);
     for (int file = 0; file < 3 && nothing >= 0; ++file)
         dup2(nothing, file);
     setpgid(0, 0); /* the terminal's Ctrl-C is for the parent, which asks us to stop */
     signal(SIGTERM, SIG_DFL);
-    interrupt_release();
-    engine_cc(background->pool, background->model, &background->options);
+    const bool good = caught(&unheard, compile_here, background);
     if (getppid() != parent)
-        folder_remove(background->pool, background->folder);
-    _exit(0);
+        folder_remove(background->folder);
+    _exit(good ? 0 : 1);
+}
+
+static void stop(void *stopped)
+{
+    Background *background = stopped;
+    if (background->child) {
+        kill(background->child, SIGTERM);
+        waitpid(background->child, NULL, 0);
+    }
+    if (background->folder)
+        folder_remove(background->folder);
+    background->child = 0;
+    background->folder = NULL;
+    background->done = true;
+    caught_disown(background);
 }
 
 static void begin(Background *background)
@@ -54,6 +78,7 @@ static void begin(Background *background)
     if (!folder)
         return;
     background->folder = folder;
+    caught_own(stop, background);
     background->options.object = pool_print(background->pool, "%s/model.so", folder);
     fflush(NULL); /* else the child would flush it too */
     const pid_t child = fork();
@@ -61,19 +86,6 @@ static void begin(Background *background)
         compile(background, parent);
     background->child = child > 0 ? child : 0;
     background->done = child < 0;
-}
-
-static void stop(Background *background)
-{
-    if (background->child) {
-        kill(background->child, SIGTERM);
-        waitpid(background->child, NULL, 0);
-    }
-    if (background->folder)
-        folder_remove(background->pool, background->folder);
-    background->child = 0;
-    background->folder = NULL;
-    background->done = true;
 }
 
 /* ---- the trial ------------------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The report of a static equilibrium for people and programs. */
 #include "base/message.h"
+#include "base/text.h"
 #include "base/vec3.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -110,27 +111,27 @@ static const double *without_rounding(Pool *pool, const Engine *engine, const Sc
 /* ---- tables --------------------------------------------------------------------------------------------- */
 
 /* Yaw, pitch and roll of A = Rz(yaw) Ry(pitch) Rx(roll). */
-static void print_base(const Equilibrium *found, const double *state)
+static void print_base(Text *out, const Equilibrium *found, const double *state)
 {
     const double degree = 3.141592653589793 / 180;
     double R[9];
     mat_from_euler(state + 3, R);
-    printf("\n%-24s  x %.9g m, y %.9g m, z %.9g m\n", found->model->body[BODY_BASE].name, shown(state[0]),
-           shown(state[1]), shown(state[2]));
-    printf("%-24s  yaw %.6g deg, pitch %.6g deg, roll %.6g deg\n", "", shown(atan2(R[3], R[0]) / degree),
-           shown(asin(fmax(-1, fmin(1, -R[6]))) / degree), shown(atan2(R[7], R[8]) / degree));
+    text_print(out, "\n%-24s  x %.9g m, y %.9g m, z %.9g m\n", found->model->body[BODY_BASE].name, shown(state[0]),
+               shown(state[1]), shown(state[2]));
+    text_print(out, "%-24s  yaw %.6g deg, pitch %.6g deg, roll %.6g deg\n", "", shown(atan2(R[3], R[0]) / degree),
+               shown(asin(fmax(-1, fmin(1, -R[6]))) / degree), shown(atan2(R[7], R[8]) / degree));
 }
 
-static void print_coordinates(const Equilibrium *found, const double *state, const double *input)
+static void print_coordinates(Text *out, const Equilibrium *found, const double *state, const double *input)
 {
     const gic_model *code = found->engine->code;
     if (code->coordinate_count)
-        printf("\n%-24s  %16s\n", "coordinate", "value");
+        text_print(out, "\n%-24s  %16s\n", "coordinate", "value");
     for (int c = 0; c < code->coordinate_count; ++c) {
         const int at = code->coordinate_state[c];
         const double value = at < 0 ? input[code->coordinate_input[c]] : state[at];
-        printf("%-24s  %16.9g %s%s\n", code->coordinate[c].name, value, code->coordinate[c].unit,
-               at < 0 ? ", driven" : "");
+        text_print(out, "%-24s  %16.9g %s%s\n", code->coordinate[c].name, value, code->coordinate[c].unit,
+                   at < 0 ? ", driven" : "");
     }
 }
 
@@ -140,7 +141,7 @@ static bool along_angle(const Model *model, const Force *force)
            (force->coordinate >= 0 && model->coordinate[force->coordinate].type == COORDINATE_ANGLE);
 }
 
-static void print_forces(const Equilibrium *found, const double *output)
+static void print_forces(Text *out, const Equilibrium *found, const double *output)
 {
     const Model *model = found->model;
     bool begun = false;
@@ -149,10 +150,10 @@ static void print_forces(const Equilibrium *found, const double *output)
         if (at < 0)
             continue;
         if (!begun)
-            printf("\n%-24s  %16s\n", "force element", "force");
+            text_print(out, "\n%-24s  %16s\n", "force element", "force");
         begun = true;
-        printf("%-24s  %16.9g %s\n", model->force[i].name, shown(output[at]),
-               along_angle(model, &model->force[i]) ? "N m" : "N");
+        text_print(out, "%-24s  %16.9g %s\n", model->force[i].name, shown(output[at]),
+                   along_angle(model, &model->force[i]) ? "N m" : "N");
     }
 }
 
@@ -169,31 +170,31 @@ static double weight(const Model *model)
     return model->free_base && vertical && !tuned_number(model, &model->gravity[2]) ? -mass * model->gravity[2] : 0;
 }
 
-static void print_wheels(Pool *pool, const Equilibrium *found, const double *output)
+static void print_wheels(Text *out, const Equilibrium *found, const double *output)
 {
     const Model *model = found->model;
     double sum = 0;
     if (!model->wheels)
         return;
-    printf("\n%-24s  %16s  %14s  %14s\n", "wheel", "load", "deflection", "road height");
+    text_print(out, "\n%-24s  %16s  %14s  %14s\n", "wheel", "load", "deflection", "road height");
     for (int i = 0; i < model->wheels; ++i) {
         const double *wheel = output + equilibrium_wheel(found, i);
-        printf("%-24s  %14.9g N  %12.6g m  %12.6g m\n", model->wheel[i].name, wheel[0], wheel[1], wheel[3]);
+        text_print(out, "%-24s  %14.9g N  %12.6g m  %12.6g m\n", model->wheel[i].name, wheel[0], wheel[1], wheel[3]);
         sum += wheel[0];
     }
-    printf("%-24s  %14.9g N", "sum", sum);
+    text_print(out, "%-24s  %14.9g N", "sum", sum);
     if (weight(model) > 0)
-        printf(", weight %.9g N", weight(model));
-    printf("\n");
+        text_print(out, ", weight %.9g N", weight(model));
+    text_print(out, "\n");
     for (int i = 0; i < model->wheels; ++i) {
-        const char *faded = equilibrium_faded(pool, found, output, i);
+        const char *faded = equilibrium_faded(out->pool, found, output, i);
         if (faded)
-            printf("%s%s\n", i ? "" : "\n", faded);
+            text_print(out, "%s%s\n", i ? "" : "\n", faded);
     }
 }
 
 /* Fast states of tires and brakes that are not 0. */
-static void print_fast_states(const Equilibrium *found, const double *state)
+static void print_fast_states(Text *out, const Equilibrium *found, const double *state)
 {
     const gic_model *code = found->engine->code;
     bool begun = false;
@@ -201,9 +202,9 @@ static void print_fast_states(const Equilibrium *found, const double *state)
         if (shown(state[i]) == 0)
             continue;
         if (!begun)
-            printf("\n%-24s  %16s\n", "fast state", "value");
+            text_print(out, "\n%-24s  %16s\n", "fast state", "value");
         begun = true;
-        printf("%-24s  %16.9g %s\n", code->state[i].name, shown(state[i]), code->state[i].unit);
+        text_print(out, "%-24s  %16.9g %s\n", code->state[i].name, shown(state[i]), code->state[i].unit);
     }
 }
 
@@ -225,28 +226,52 @@ static const Scene *start_at(Pool *pool, const Equilibrium *found, const double 
 }
 
 /* The `initial` of a scene that starts there. */
-static void print_initial(Pool *pool, const Equilibrium *found, const double *state)
+static void print_initial(Text *out, const Equilibrium *found, const double *state)
 {
     const gic_model *code = found->engine->code;
-    const Scene *start = start_at(pool, found, state);
+    const Scene *start = start_at(out->pool, found, state);
     const double *at = start->position, *euler = start->euler;
     bool begun = false;
-    printf("\ninitial:\n");
+    text_print(out, "\ninitial:\n");
     if (code->free_base) {
-        printf("  position: [%.17g, %.17g, %.17g]\n", at[0], at[1], at[2]);
-        printf("  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", euler[0], euler[1], euler[2], euler[3]);
+        text_print(out, "  position: [%.17g, %.17g, %.17g]\n", at[0], at[1], at[2]);
+        text_print(out, "  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", euler[0], euler[1], euler[2],
+                   euler[3]);
     }
     for (int c = 0; c < code->coordinate_count; ++c) {
         if (code->coordinate_state[c] < 0)
             continue;
-        printf("%s    %s: %.17g\n", begun ? "" : "  coordinates:\n", code->coordinate[c].name, start->value[c]);
+        text_print(out, "%s    %s: %.17g\n", begun ? "" : "  coordinates:\n", code->coordinate[c].name,
+                   start->value[c]);
         begun = true;
     }
     if (code->discrete_count > code->free_base)
-        printf("  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
+        text_print(out, "  gear: %d\n", discrete_states(&found->self->head, code)[code->free_base]);
     for (int i = 0; i < code->fast_count && !found->locked; ++i) /* else they roll with the scene's velocities */
-        printf("%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
-               state[code->slow_count + i]);
+        text_print(out, "%s    %s: %.17g\n", i ? "" : "  states:\n", code->state[code->slow_count + i].name,
+                   state[code->slow_count + i]);
+}
+
+/* The whole table. */
+static void print_table(Text *out, const Engine *engine, const Equilibrium *found, double residual)
+{
+    const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
+    const double *input = tape_array(found->self, code->input_offset);
+    const double *output = tape_array(found->self, code->output_offset);
+    text_print(out, "%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
+    text_print(out, "%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
+    if (found->locked && found->linear->of_wheels)
+        text_print(out, "%-24s  locked, for the scene starts in motion; they roll from there\n", "wheels");
+    if (found->neutral)
+        text_print(out, "%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
+    if (code->free_base)
+        print_base(out, found, state);
+    print_coordinates(out, found, state, input);
+    print_forces(out, found, output);
+    print_wheels(out, found, output);
+    print_fast_states(out, found, state);
+    print_initial(out, found, state);
 }
 
 /* ---- for programs --------------------------------------------------------------------------------------- */
@@ -338,28 +363,14 @@ double equilibrium_settle(Pool *pool, const Engine *engine, const Scene *scene, 
 void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
                         const Equilibrium *found)
 {
-    const gic_model *code = found->engine->code;
-    const double *state = tape_array(found->self, code->state_offset);
-    const double *input = tape_array(found->self, code->input_offset);
-    const double *output = tape_array(found->self, code->output_offset);
     const double residual = equilibrium_settle(pool, engine, scene, request->quiet, found);
     if (request->results && !strcmp(request->results, "-")) {
         write_state(pool, found, request->results);
         return;
     }
-    printf("%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
-    printf("%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
-    if (found->locked && found->linear->of_wheels)
-        printf("%-24s  locked, for the scene starts in motion; they roll from there\n", "wheels");
-    if (found->neutral)
-        printf("%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
-    if (code->free_base)
-        print_base(found, state);
-    print_coordinates(found, state, input);
-    print_forces(found, output);
-    print_wheels(pool, found, output);
-    print_fast_states(found, state);
-    print_initial(pool, found, state);
+    Text table = {.pool = pool};
+    print_table(&table, engine, found, residual);
+    diag_text(table.s);
     /* last, so that a file is there only where nothing failed */
     if (request->results)
         write_state(pool, found, request->results);

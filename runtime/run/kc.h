@@ -239,7 +239,7 @@ typedef struct KcGive {
 const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool opposed, KcGive *give);
 /* All loads of all axles as CSV; those of an axle for people. */
 void kc_loads_csv(Pool *pool, const Kc *kc, const char *path);
-void kc_loads_print(Pool *pool, const Kc *kc, int axle);
+void kc_loads_print(Text *out, const Kc *kc, int axle);
 
 /* ---- kc_report.c: --kc */
 

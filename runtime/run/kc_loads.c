@@ -5,6 +5,7 @@
  * loads L of places p sum_e Q_e dx_e/dw_a + sum_i F_i dz_i/dw_a + L dp/dw_a = 0    for all a,    z_i held. Newton's
  * method finds the place without loads, and the derivative by L follows from the same matrix (implicit function
  * theorem), which has the exact second derivatives of x_e and z_i in it. */
+#include "base/text.h"
 #include "base/vec3.h"
 #include "gic_runtime.h"
 #include "host/host.h"
@@ -231,26 +232,27 @@ void kc_loads_csv(Pool *pool, const Kc *kc, const char *path)
     interrupt_release();
 }
 
-void kc_loads_print(Pool *pool, const Kc *kc, int a)
+void kc_loads_print(Text *out, const Kc *kc, int a)
 {
+    Pool *pool = out->pool;
     const KcAxle *axle = &kc->axle[a];
     const double degrees = kc_of_wheel[KC_CAMBER].scale;
     KcGive give[KC_WHEELS];
     const char *why = kc_compliance(kc, axle, KC_LATERAL, false, give);
     if (why) {
-        printf("  compliance: not there: %s\n", why);
+        text_print(out, "  compliance: not there: %s\n", why);
         return;
     }
-    printf("\n  %-34s%-16s %12s %12s %12s %12s\n", "compliance by 1 kN or 100 N m", "wheel", "toe, deg", "camber, deg",
-           "contact x mm", "contact y mm");
+    text_print(out, "\n  %-34s%-16s %12s %12s %12s %12s\n", "compliance by 1 kN or 100 N m", "wheel", "toe, deg",
+               "camber, deg", "contact x mm", "contact y mm");
     for (int k = 0; k < 2 * KC_LOADS; ++k) {
         const double unit = k / 2 == KC_ALIGNING ? 100 : 1000;
         kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give);
         for (int i = 0; i < axle->wheels; ++i)
-            printf("  %-34s%-16s %12s %12s %12s %12s\n",
-                   i ? "" : pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ", opposed" : ""),
-                   axle->wheel[i].name, kc_shown(pool, give[i].toe, degrees * unit),
-                   kc_shown(pool, give[i].camber, degrees * unit), kc_shown(pool, give[i].contact[0], 1e3 * unit),
-                   kc_shown(pool, give[i].contact[1], 1e3 * unit));
+            text_print(out, "  %-34s%-16s %12s %12s %12s %12s\n",
+                       i ? "" : pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ", opposed" : ""),
+                       axle->wheel[i].name, kc_shown(pool, give[i].toe, degrees * unit),
+                       kc_shown(pool, give[i].camber, degrees * unit), kc_shown(pool, give[i].contact[0], 1e3 * unit),
+                       kc_shown(pool, give[i].contact[1], 1e3 * unit));
     }
 }

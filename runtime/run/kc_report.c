@@ -55,14 +55,14 @@ const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion,
                       motion == KC_OPPOSITE ? " on the left" : "", curve->stop[end]);
 }
 
-static void tell_stops(Pool *pool, const KcStudy *study, FILE *file, const char *before)
+static void tell_stops(Text *out, const KcStudy *study, const char *before)
 {
     for (int a = 0; a < study->kc->axles; ++a)
         for (KcMotion m = 0; m < KC_MOTIONS; ++m)
             for (int end = 0; end < 2; ++end) {
-                const char *text = kc_stop(pool, study, a, m, end);
+                const char *text = kc_stop(out->pool, study, a, m, end);
                 if (text)
-                    fprintf(file, "%s%s\n", before, text);
+                    text_print(out, "%s%s\n", before, text);
             }
 }
 
@@ -95,38 +95,39 @@ const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double 
     return "mm/deg";
 }
 
-static void print_axle(Pool *pool, const KcStudy *study, int a)
+static void print_axle(Text *out, const KcStudy *study, int a)
 {
+    Pool *pool = out->pool;
     const Kc *kc = study->kc;
     const KcAxle *axle = &kc->axle[a];
-    printf("\n%s\n", axle->name);
+    text_print(out, "\n%s\n", axle->name);
     if (!kc_first(study, a))
         return;
     const KcRow *row = kc_zero(study, a, -1);
-    printf("  %-50s%-9s", "travel 0", "");
+    text_print(out, "  %-50s%-9s", "travel 0", "");
     for (int i = 0; i < axle->wheels; ++i)
-        printf(" %14s", axle->wheel[i].name);
+        text_print(out, " %14s", axle->wheel[i].name);
     for (int q = 0; q < KC_OF_WHEEL; ++q) {
         if (isnan(row->wheel[0][q]))
             continue;
-        printf("\n  %-50s%-9s", kc_of_wheel[q].title, kc_of_wheel[q].shown);
+        text_print(out, "\n  %-50s%-9s", kc_of_wheel[q].title, kc_of_wheel[q].shown);
         for (int i = 0; i < axle->wheels; ++i)
-            printf(" %14s", kc_shown(pool, row->wheel[i][q], kc_of_wheel[q].scale));
+            text_print(out, " %14s", kc_shown(pool, row->wheel[i][q], kc_of_wheel[q].scale));
     }
     for (int e = 0; e < kc->elements; ++e)
         if (kc_ratio_seen(kc, axle, row, e)) {
-            printf("\n  %-50s%-9s", pool_print(pool, "Motion ratio of %s", kc->element[e].name),
-                   kc->element[e].angle ? "rad/m" : "1");
+            text_print(out, "\n  %-50s%-9s", pool_print(pool, "Motion ratio of %s", kc->element[e].name),
+                       kc->element[e].angle ? "rad/m" : "1");
             for (int i = 0; i < axle->wheels; ++i)
-                printf(" %14s", kc_shown(pool, row->ratio[i * kc->elements + e], 1));
+                text_print(out, " %14s", kc_shown(pool, row->ratio[i * kc->elements + e], 1));
         }
-    printf("\n");
+    text_print(out, "\n");
     for (int q = 0; q < KC_OF_AXLE; ++q) {
         double scale;
         const char *unit = kc_shown_unit(kc, axle, q, &scale);
         const double value = kc_zero(study, a, q)->axle[q];
         if (!isnan(value))
-            printf("  %-50s%-9s %14s\n", kc_of_axle[q].title, unit, kc_shown(pool, value, scale));
+            text_print(out, "  %-50s%-9s %14s\n", kc_of_axle[q].title, unit, kc_shown(pool, value, scale));
     }
 }
 
@@ -228,11 +229,13 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
         kc_loads_csv(pool, kc, request->results);
         return;
     }
-    printf("compliance of %s, models/KC.md defines it\n", model->name);
+    Text table = {.pool = pool}, *out = &table;
+    text_print(out, "compliance of %s, models/KC.md defines it\n", model->name);
     for (int a = 0; a < kc->axles; ++a) {
-        printf("\n%s\n", kc->axle[a].name);
-        kc_loads_print(pool, kc, a);
+        text_print(out, "\n%s\n", kc->axle[a].name);
+        kc_loads_print(out, kc, a);
     }
+    diag_text(table.s);
 }
 
 void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
@@ -259,14 +262,17 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
         write_csv(pool, &study, request->results);
     if (request->report)
         kc_page(pool, &study, request->report);
+    Text text = {.pool = pool}, *out = &text;
     if (request->results || request->report) {
-        if (!request->quiet)
-            tell_stops(pool, &study, stderr, "gicrun: note: ");
+        tell_stops(out, &study, pool_print(pool, "%s: note: ", program_place().source->path));
+        if (text.s && !request->quiet)
+            diag_note(text.s);
         return;
     }
-    printf("kinematics of %s, models/KC.md defines them\n", model->name);
+    text_print(out, "kinematics of %s, models/KC.md defines them\n", model->name);
     for (int a = 0; a < study.kc->axles; ++a)
-        print_axle(pool, &study, a);
-    printf("\n");
-    tell_stops(pool, &study, stdout, "");
+        print_axle(out, &study, a);
+    text_print(out, "\n");
+    tell_stops(out, &study, "");
+    diag_text(text.s);
 }

@@ -165,19 +165,23 @@ static int largest_rate(const LinearModel *m, const Linear *linear)
     return most;
 }
 
-static void print_report(const LinearModel *m, const Model *model, const OperatingPoint *point, const char *path)
+static void print_report(Pool *pool, const LinearModel *m, const Model *model, const OperatingPoint *point,
+                         const char *path)
 {
-    printf("%s: linear model %s\n", model->name, point->text);
-    printf("  %d states, %d inputs, %d outputs, %d parameters%s%s\n", m->states, m->inputs, m->outputs, m->parameters,
-           path ? " in " : "", path ? path : "");
+    Text text = {.pool = pool}, *out = &text;
+    text_print(out, "%s: linear model %s\n", model->name, point->text);
+    text_print(out, "  %d states, %d inputs, %d outputs, %d parameters%s%s\n", m->states, m->inputs, m->outputs,
+               m->parameters, path ? " in " : "", path ? path : "");
     if (point->linear->places) {
         const int most = largest_rate(m, point->linear);
-        printf("  largest acceleration: %.3g %s, of %s\n", m->f[most], m->rate[most].unit, point->linear->name[most]);
+        text_print(out, "  largest acceleration: %.3g %s, of %s\n", m->f[most], m->rate[most].unit,
+                   point->linear->name[most]);
     }
-    printf("  neutral: ");
+    text_print(out, "  neutral: ");
     for (int k = 0; k < m->neutral; ++k)
-        printf("%s%s", k ? ", " : "", m->neutral_name[k]);
-    printf("%s\n", m->neutral ? "" : "nothing");
+        text_print(out, "%s%s", k ? ", " : "", m->neutral_name[k]);
+    text_print(out, "%s\n", m->neutral ? "" : "nothing");
+    diag_text(text.s);
 }
 
 void linear_report(Pool *pool, const Model *model, const OperatingPoint *point, const Request *request)
@@ -189,5 +193,5 @@ void linear_report(Pool *pool, const Model *model, const OperatingPoint *point, 
     else
         write_arrays(pool, m, path);
     if (strcmp(path, "-") != 0 && !request->quiet)
-        print_report(m, model, point, path);
+        print_report(pool, m, model, point, path);
 }

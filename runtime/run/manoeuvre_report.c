@@ -143,30 +143,28 @@ void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial)
 
 /* ---- the command line ----------------------------------------------------------------------------------- */
 
-static const ManoeuvreKind *kind_of(const char *name)
+static const ManoeuvreKind *kind_of(Pool *pool, const char *name)
 {
     for (const ManoeuvreKind *kind = manoeuvre_kind; kind->name; ++kind)
         if (!strcmp(kind->name, name))
             return kind;
-    fprintf(stderr, "gicrun: error: there is no manoeuvre '%s'\n  remedy: one of", name);
+    Text known = {.pool = pool};
     for (const ManoeuvreKind *kind = manoeuvre_kind; kind->name; ++kind)
-        fprintf(stderr, "%s %s", kind == manoeuvre_kind ? "" : ",", kind->name);
-    fputs("\n", stderr);
-    exit(2);
+        text_print(&known, "%s %s", kind == manoeuvre_kind ? "one of" : ",", kind->name);
+    diag_fail_call(program_place(), known.s, "there is no manoeuvre '%s'", name);
 }
 
-static _Noreturn void refuse_key(const ManoeuvreKind *kind, const char *word)
+static _Noreturn void refuse_key(Pool *pool, const ManoeuvreKind *kind, const char *word)
 {
-    fprintf(stderr, "gicrun: error: %s takes no '%s'\n  remedy: one of", kind->name, word);
+    Text known = {.pool = pool};
     for (int k = 0; k < MANOEUVRE_KEYS && kind->key[k].name; ++k)
-        fprintf(stderr, "%s %s=%.6g %s (%s)", k ? "," : "", kind->key[k].name, kind->key[k].value, kind->key[k].unit,
-                kind->key[k].about);
-    fputs("\n", stderr);
-    exit(2);
+        text_print(&known, "%s %s=%.6g %s (%s)", k ? "," : "one of", kind->key[k].name, kind->key[k].value,
+                   kind->key[k].unit, kind->key[k].about);
+    diag_fail_call(program_place(), known.s, "%s takes no '%s'", kind->name, word);
 }
 
 /* key=value of the command line; given: the keys before it. */
-static void read_key(const ManoeuvreKind *kind, const char *word, double *value, bool *given)
+static void read_key(Pool *pool, const ManoeuvreKind *kind, const char *word, double *value, bool *given)
 {
     static const char decimal[] = "0123456789+-.eE"; /* strtod() takes others, too: 0x10, inf */
     const char *sign = strchr(word, '=');
@@ -177,21 +175,16 @@ static void read_key(const ManoeuvreKind *kind, const char *word, double *value,
         char *end;
         value[k] = strtod(sign + 1, &end);
         if (*end || end == sign + 1 || sign[1 + strspn(sign + 1, decimal)] ||
-            !(value[k] >= key->least && value[k] <= key->most)) {
-            fprintf(stderr,
-                    "gicrun: error: '%s' is no decimal number from %.6g to %.6g %s\n  remedy: %s=%.6g is usual\n", word,
-                    key->least, key->most, key->unit, key->name, key->value);
-            exit(2);
-        }
-        if (given[k]) {
-            fprintf(stderr, "gicrun: error: '%s' is given twice, the second time by '%s'\n  remedy: leave one out\n",
-                    key->name, word);
-            exit(2);
-        }
+            !(value[k] >= key->least && value[k] <= key->most))
+            diag_fail_call(program_place(), pool_print(pool, "%s=%.6g is usual", key->name, key->value),
+                           "'%s' is no decimal number from %.6g to %.6g %s", word, key->least, key->most, key->unit);
+        if (given[k])
+            diag_fail_call(program_place(), "leave one out", "'%s' is given twice, the second time by '%s'", key->name,
+                           word);
         given[k] = true;
         return;
     }
-    refuse_key(kind, word);
+    refuse_key(pool, kind, word);
 }
 
 static int key_of(const ManoeuvreKind *kind, const char *name)
@@ -203,7 +196,7 @@ static int key_of(const ManoeuvreKind *kind, const char *name)
 }
 
 /* Keys that have to be below others, and by how much at least: gradients need a way between. */
-static void check_order(const ManoeuvreKind *kind, const double *value)
+static void check_order(Pool *pool, const ManoeuvreKind *kind, const double *value)
 {
     static const struct {
         const char *manoeuvre, *low, *high;
@@ -218,13 +211,11 @@ static void check_order(const ManoeuvreKind *kind, const double *value)
         const int low = key_of(kind, of[i].low), high = key_of(kind, of[i].high);
         if (value[high] - value[low] > of[i].apart * (1 - 1e-9))
             continue;
-        fprintf(stderr,
-                "gicrun: error: %s=%.6g is not %sbelow %s=%.6g %s\n  remedy: choose %s below %s; %s=%.6g and %s=%.6g "
-                "are usual\n",
-                of[i].low, value[low], value[low] < value[high] ? "0.1 " : "", of[i].high, value[high],
-                kind->key[low].unit, of[i].low, of[i].high, of[i].low, kind->key[low].value, of[i].high,
-                kind->key[high].value);
-        exit(2);
+        diag_fail_call(program_place(),
+                       pool_print(pool, "choose %s below %s; %s=%.6g and %s=%.6g are usual", of[i].low, of[i].high,
+                                  of[i].low, kind->key[low].value, of[i].high, kind->key[high].value),
+                       "%s=%.6g is not %sbelow %s=%.6g %s", of[i].low, value[low],
+                       value[low] < value[high] ? "0.1 " : "", of[i].high, value[high], kind->key[low].unit);
     }
 }
 
@@ -294,14 +285,14 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
 
 void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
 {
-    const ManoeuvreKind *kind = kind_of(request->manoeuvre);
+    const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
     double value[MANOEUVRE_KEYS] = {0};
     bool given[MANOEUVRE_KEYS] = {false};
     for (int k = 0; k < MANOEUVRE_KEYS; ++k)
         value[k] = kind->key[k].value;
     for (int k = 0; k < request->keys; ++k)
-        read_key(kind, request->key[k], value, given);
-    check_order(kind, value);
+        read_key(pool, kind, request->key[k], value, given);
+    check_order(pool, kind, value);
     Manoeuvre m = drive(pool, model, kind, value, request);
     if (request->compare) {
         const Manoeuvre other = drive(pool, model_read(pool, request->compare), kind, value, request);

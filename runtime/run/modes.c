@@ -262,7 +262,7 @@ static const char *share_name(const Linear *linear, int i)
 }
 
 /* The three largest shares above a tenth. */
-static void print_shares(const Linear *linear, const Mode *mode)
+static void print_shares(Text *out, const Linear *linear, const Mode *mode)
 {
     const int count = linear->count - linear->places;
     bool named[count + 1];
@@ -275,9 +275,9 @@ static void print_shares(const Linear *linear, const Mode *mode)
         if (most < 0)
             break;
         named[most] = true;
-        printf("%s%s %.0f %%", n ? ", " : "", share_name(linear, most), 100 * mode->share[most]);
+        text_print(out, "%s%s %.0f %%", n ? ", " : "", share_name(linear, most), 100 * mode->share[most]);
     }
-    printf("\n");
+    text_print(out, "\n");
 }
 
 /* To four places, for people; no -0. */
@@ -286,29 +286,32 @@ static double shown(double value)
     return round(value * 1e4) / 1e4 + 0.0;
 }
 
-static void print_table(const Linear *linear, const Modes *modes)
+static void print_table(Text *out, const Linear *linear, const Modes *modes)
 {
-    printf("\n%22s  %14s  %7s  %13s  %s\n", "eigenvalue [1/s]", "frequency [Hz]", "damping", "time constant", "moves");
+    text_print(out, "\n%22s  %14s  %7s  %13s  %s\n", "eigenvalue [1/s]", "frequency [Hz]", "damping", "time constant",
+               "moves");
     for (int k = 0; k < modes->count; ++k) {
         const Mode *mode = &modes->mode[k];
         const double size = hypot(mode->real, mode->imaginary);
         if (mode->imaginary > 0)
-            printf("%10.4f +- %7.4fi  %14.4f  %7.4f  ", shown(mode->real), mode->imaginary, size / (2 * pi),
-                   shown(-mode->real / size));
+            text_print(out, "%10.4f +- %7.4fi  %14.4f  %7.4f  ", shown(mode->real), mode->imaginary, size / (2 * pi),
+                       shown(-mode->real / size));
         else
-            printf("%10.4f %11s  %14s  %7s  ", mode->real, "", "", "");
+            text_print(out, "%10.4f %11s  %14s  %7s  ", mode->real, "", "", "");
         if (shown(mode->real) != 0)
-            printf("%11.4g s  ", 1 / fabs(mode->real));
+            text_print(out, "%11.4g s  ", 1 / fabs(mode->real));
         else
-            printf("%13s  ", "");
-        print_shares(linear, mode);
+            text_print(out, "%13s  ", "");
+        print_shares(out, linear, mode);
     }
     if (modes->zeros)
-        printf("%22s  %d eigenvalues that are zero: neutral in %s\n", "0", modes->zeros,
-               modes->neutral ? modes->neutral : "nothing of its own");
-    printf("\nfrequency: |eigenvalue| / 2 pi; damping: its share of the critical one; moves: participation, of places "
-           "with "
-           "their\nrates; x y z, roll pitch yaw: along and about the axes of the base\n");
+        text_print(out, "%22s  %d eigenvalues that are zero: neutral in %s\n", "0", modes->zeros,
+                   modes->neutral ? modes->neutral : "nothing of its own");
+    text_print(
+        out,
+        "\nfrequency: |eigenvalue| / 2 pi; damping: its share of the critical one; moves: participation, of places "
+        "with "
+        "their\nrates; x y z, roll pitch yaw: along and about the axes of the base\n");
 }
 
 /* Columns before the shares. */
@@ -371,13 +374,14 @@ static bool is_acceleration(const Linear *linear, int i)
 }
 
 /* Print the three largest accelerations of a vehicle in motion. */
-static void print_motion(const Equilibrium *found)
+static void print_motion(Text *out, const Equilibrium *found)
 {
     const Linear *linear = found->linear;
     double before = INFINITY;
-    printf("%s: small motions about the places of the static equilibrium, in motion as the scene's initial state\n"
-           "no steady state has to be there: the largest acceleration is",
-           found->model->name);
+    text_print(out,
+               "%s: small motions about the places of the static equilibrium, in motion as the scene's initial state\n"
+               "no steady state has to be there: the largest acceleration is",
+               found->model->name);
     for (int n = 0; n < 3 && n < linear->count - linear->places; ++n) {
         int most = -1;
         for (int i = linear->places; i < linear->count; ++i)
@@ -387,9 +391,10 @@ static void print_motion(const Equilibrium *found)
         if (most < 0)
             break;
         before = fabs(found->f[most]);
-        printf("%s %.3g%s of %s", n ? ", then" : "", found->f[most], n ? "" : " m/s^2 or rad/s^2", linear->name[most]);
+        text_print(out, "%s %.3g%s of %s", n ? ", then" : "", found->f[most], n ? "" : " m/s^2 or rad/s^2",
+                   linear->name[most]);
     }
-    printf("\n");
+    text_print(out, "\n");
 }
 
 void modes_warn_jumps(const Linear *linear, Place at)
@@ -431,9 +436,11 @@ void modes_report(Pool *pool, const Scene *scene, const Request *request, const 
         write_csv(pool, linear, modes, "-");
         return;
     }
+    Text table = {.pool = pool};
     if (moves)
-        print_motion(found);
+        print_motion(&table, found);
     else
-        printf("%s: small motions about the static equilibrium\n", found->model->name);
-    print_table(linear, modes);
+        text_print(&table, "%s: small motions about the static equilibrium\n", found->model->name);
+    print_table(&table, linear, modes);
+    diag_text(table.s);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * run: the program gicrun: engines by name, scenes step by step, equilibrium, pages. */
+ * run: what gicrun does: engines by name, scenes step by step, equilibrium, pages. */
 #ifndef RUN_RUN_H
 #define RUN_RUN_H
 
@@ -9,8 +9,6 @@
 #include "model/model.h"
 #include "run/variable_step.h"
 #include "scene/scene.h"
-
-/* ---- gicrun.c: the command line */
 
 /* The rows of a run in memory: what the results file would have. */
 typedef struct RunColumns {
@@ -22,39 +20,31 @@ typedef struct RunColumns {
     int64_t room;       /* rows that fit */
 } RunColumns;
 
-/* The options of the command line. */
+/* What is asked for. */
 typedef struct Request {
-    const char *model, *scene; /* paths; scene may be NULL with `states` */
-    const char *states;        /* --eval, or NULL */
-    bool rests, modes, linear; /* --equilibrium, --modes, --linearize */
-    bool kinematics, sheet;    /* --kc, --sheet */
-    bool loads;                /* --loads */
-    const char *axle;          /* --axle, or NULL: all */
-    const char *report;        /* --report, or NULL */
-    const char *compare;       /* --compare, or NULL */
-    const char *manoeuvre;     /* --manoeuvre, or NULL */
-    const char *trace;         /* --trace, or NULL */
-    int keys;                  /* words key=value of a manoeuvre */
-    char **key;
-    double travel;                /* --travel, m; 0: as usual */
-    double at;                    /* --at, s; NAN: not given */
+    const char *scene;     /* path; NULL: none */
+    const char *states;    /* the file of evaluate() */
+    bool loads;            /* of kc_report(): compliance */
+    const char *axle;      /* of kc_report(); NULL: all */
+    double travel;         /* the same, m; 0: as usual */
+    const char *report;    /* of kc_report() and manoeuvre_report(): a page; NULL: none */
+    const char *compare;   /* of them and sheet_report(): the file of another model; NULL: none */
+    const char *manoeuvre; /* its name */
+    const char *trace;     /* of manoeuvre_report(): a file of all trials; NULL: none */
+    int keys;              /* its words key=value */
+    const char *const *key;
     const char *results;          /* "-": standard output; NULL: none */
-    RunColumns *columns;          /* for the library: the same in memory; NULL: not wanted */
-    const char *picture;          /* --plot, or NULL */
-    const char *with;             /* --with, or NULL */
+    RunColumns *columns;          /* of simulate(): the same in memory; NULL: not wanted */
+    const char *picture;          /* the same: a picture, or NULL */
+    const char *with;             /* the same: results of another run, or NULL */
     const struct CsvTable *other; /* what is in it */
-    const char *page;             /* --animate, or NULL */
-    const char *driven;           /* --drive, or NULL */
-    const char *recording;        /* --replay, or NULL */
-    const char *engine;           /* one of engine_name */
+    const char *page;             /* the same: a page that moves, or NULL */
+    const char *driven;           /* of drive_write(): its page */
+    const char *engine;           /* of manoeuvres: one of engine_name */
     Solve solve;
     Recovery recovery;
-    int lanes;              /* as in EngineOptions */
-    const char *compiler;   /* command, perhaps with options */
-    const char *flags;      /* more options of the compiler */
-    const char *integrator; /* replaces the scene's, or NULL */
-    double tolerance;       /* replaces the scene's, or 0 */
-    bool general;           /* code for any scene */
+    const char *compiler; /* command, perhaps with options */
+    const char *flags;    /* more options of the compiler */
     bool quiet;
 } Request;
 

@@ -124,16 +124,19 @@ void sheet_csv(const Sheet *sheet, const char *path)
 
 void sheet_print(const Sheet *sheet, const char *title)
 {
-    printf("%s%s%s%s\n", sheet->model->name, sheet->other ? " and " : "", sheet->other ? sheet->other : "", title);
+    Text text = {.pool = sheet->pool}, *out = &text;
+    text_print(out, "%s%s%s%s\n", sheet->model->name, sheet->other ? " and " : "", sheet->other ? sheet->other : "",
+               title);
     for (int i = 0; i < sheet->rows; ++i) {
         const SheetRow *row = &sheet->row[i];
         if (row->section)
-            printf("\n%s\n", row->section);
-        printf("  %-60s%-9s %14s", row->title, row->shown, kc_shown(sheet->pool, row->value, row->scale));
+            text_print(out, "\n%s\n", row->section);
+        text_print(out, "  %-60s%-9s %14s", row->title, row->shown, kc_shown(sheet->pool, row->value, row->scale));
         if (sheet->other)
-            printf(" %14s%s", kc_shown(sheet->pool, row->other, row->scale), sheet_differs(row) ? " *" : "");
-        printf("\n");
+            text_print(out, " %14s%s", kc_shown(sheet->pool, row->other, row->scale), sheet_differs(row) ? " *" : "");
+        text_print(out, "\n");
     }
+    diag_text(text.s);
 }
 
 Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve)
@@ -155,11 +158,12 @@ Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve
 
 void sheet_notes(const Sheet *sheet, const Request *request)
 {
+    Pool *pool = sheet->pool;
     for (int i = 0; i < sheet->notes; ++i)
         if (!request->results)
-            printf("%s%s\n", i ? "" : "\n", sheet->note[i]);
+            diag_text(pool_print(pool, "%s%s\n", i ? "" : "\n", sheet->note[i]));
         else if (!request->quiet)
-            fprintf(stderr, "gicrun: note: %s\n", sheet->note[i]);
+            diag_note(pool_print(pool, "%s: note: %s\n", program_place().source->path, sheet->note[i]));
 }
 
 /* On a level road, as the model is set up. */

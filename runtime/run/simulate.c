@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Run a scene: steps, results, progress, summary. */
 #include "base/message.h"
+#include "base/text.h"
 #include "compare/contact_pieces.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -22,7 +23,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 enum {
     BATCH = 256,        /* steps between looks at the clock */
@@ -277,22 +277,24 @@ static void record(Run *run)
 
 static void show_progress(Run *run)
 {
-    if (run->request->quiet || !isatty(STDERR_FILENO))
+    char text[100];
+    const double time = gic_time(run->self);
+    if (run->request->quiet)
         return;
-    double time = gic_time(run->self);
-    fprintf(stderr, "\r%5.1f %%  t = %.3f s  %.0f times real time\x1b[K", 100 * time / run->scene->duration, time,
-            time / fmax(run->integrating, 1e-9));
+    snprintf(text, sizeof text, "%5.1f %%  t = %.3f s  %.0f times real time", 100 * time / run->scene->duration, time,
+             time / fmax(run->integrating, 1e-9));
+    diag_progress(text);
     run->shown = true;
 }
 
 static void clear_progress(const Run *run)
 {
     if (run->shown)
-        fputs("\r\x1b[K", stderr);
+        diag_progress("");
 }
 
 /* Print the work that was skipped, each kind if there was any. */
-static void summary_of_skips(const gic_head *head)
+static void summary_of_skips(Text *out, const gic_head *head)
 {
     const struct {
         int64_t count;
@@ -308,11 +310,11 @@ static void summary_of_skips(const gic_head *head)
     };
     for (size_t i = 0; i < sizeof skip / sizeof *skip; ++i)
         if (skip[i].count)
-            fprintf(stderr, "  %-20s %lld %s\n", skip[i].name, (long long)skip[i].count, skip[i].what);
+            text_print(out, "  %-20s %lld %s\n", skip[i].name, (long long)skip[i].count, skip[i].what);
 }
 
 /* Print ranges and rates of inputs by their profiles: the demands on driven coordinates. */
-static void summary_of_inputs(const Run *run)
+static void summary_of_inputs(Text *out, const Run *run)
 {
     const Scene *scene = run->scene;
     for (int i = 0; i < scene->profiles; ++i) {
@@ -322,24 +324,24 @@ static void summary_of_inputs(const Run *run)
         const ProfilePeaks peaks = profile_peaks(profile, scene->duration);
         const bool none = !strcmp(profile->unit, "1");
         const char *unit = none ? "1" : profile->unit;
-        fprintf(stderr, "  %-20s %.4g to %.4g%s%s, rate up to %.4g %s/s, acceleration up to %.4g %s/s^2\n",
-                pool_print(run->pool, "input %s", run->engine->code->input[profile->input].name), peaks.low, peaks.high,
-                none ? "" : " ", none ? "" : unit, peaks.rate, unit, peaks.acceleration, unit);
+        text_print(out, "  %-20s %.4g to %.4g%s%s, rate up to %.4g %s/s, acceleration up to %.4g %s/s^2\n",
+                   pool_print(run->pool, "input %s", run->engine->code->input[profile->input].name), peaks.low,
+                   peaks.high, none ? "" : " ", none ? "" : unit, peaks.rate, unit, peaks.acceleration, unit);
     }
 }
 
 /* What happened on the way, and what became of the vehicle. */
-static void summary_of_events(const Run *run)
+static void summary_of_events(Text *out, const Run *run)
 {
     const Actions *actions = run->scene->actions;
     const Outcome *o = &run->outcome;
     for (int i = 0; actions && i < actions->count; ++i) {
         const Action *action = &actions->action[i];
         if (action->done)
-            fprintf(stderr, "  %-20s %s at t = %.9g s%s%s\n", action->ends ? "ended" : "happened", action->text,
-                    action->time, action->mark ? ": " : "", action->mark ? action->mark : "");
+            text_print(out, "  %-20s %s at t = %.9g s%s%s\n", action->ends ? "ended" : "happened", action->text,
+                       action->time, action->mark ? ": " : "", action->mark ? action->mark : "");
         else
-            fprintf(stderr, "  %-20s %s\n", "did not happen", action->text);
+            text_print(out, "  %-20s %s\n", "did not happen", action->text);
     }
     if (run->scene->driver && driver_is_crossed(run->scene->driver))
         fprintf(stderr,
@@ -347,15 +349,16 @@ static void summary_of_events(const Run *run)
                 "`per_angle` the other one?\n",
                 "driver");
     if (!isnan(o->tipped))
-        fprintf(stderr, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
+        text_print(out, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
     if (!isnan(o->left))
-        fprintf(stderr, "  %-20s beyond the road's data from t = %.6g s on\n", "vehicle leaves road", o->left);
+        text_print(out, "  %-20s beyond the road's data from t = %.6g s on\n", "vehicle leaves road", o->left);
     if (!isnan(o->rest) && o->moved)
-        fprintf(stderr, "  %-20s from t = %.6g s on\n", "vehicle at rest", o->rest);
+        text_print(out, "  %-20s from t = %.6g s on\n", "vehicle at rest", o->rest);
 }
 
 static void summary(const Run *run, double total)
 {
+    Text text = {.pool = run->pool}, *out = &text;
     const gic_head *head = run->self;
     const Scene *scene = run->scene;
     const double time = gic_time(head), solutions = (double)head->newton_count;
@@ -364,29 +367,30 @@ static void summary(const Run *run, double total)
     const char *ratio = head->ratio > 1 ? pool_print(run->pool, ", ratio %d", head->ratio) : "";
     const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
                                     : pool_print(run->pool, "of %.6g s (%s%s)", scene->step, integrator, ratio);
-    fprintf(stderr, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
-            (long long)run->samples, results ? " in " : "",
-            !results               ? ""
-            : strcmp(results, "-") ? results
-                                   : "standard output");
-    fprintf(stderr, "  right-hand sides     %lld\n", (long long)head->rhs_count);
+    text_print(out, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
+               (long long)run->samples, results ? " in " : "",
+               !results               ? ""
+               : strcmp(results, "-") ? results
+                                      : "standard output");
+    text_print(out, "  right-hand sides     %lld\n", (long long)head->rhs_count);
     if (head->fast_count)
-        fprintf(stderr, "  fast rates           %lld\n", (long long)head->fast_count);
-    fprintf(stderr, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
-            (long long)head->correction_count, (long long)head->newton_count,
-            solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
+        text_print(out, "  fast rates           %lld\n", (long long)head->fast_count);
+    text_print(out, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
+               (long long)head->correction_count, (long long)head->newton_count,
+               solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
     if (!run->variable && (scene->locate || scene->most_work))
-        fprintf(stderr, "  work of a step       at most %lld right-hand sides and looks at contacts and gears\n",
-                (long long)run->most_work);
-    summary_of_skips(head);
-    summary_of_inputs(run);
-    fprintf(stderr, "  parameter switches   %lld\n", (long long)head->switch_count);
-    fprintf(stderr, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
-    summary_of_events(run);
+        text_print(out, "  work of a step       at most %lld right-hand sides and looks at contacts and gears\n",
+                   (long long)run->most_work);
+    summary_of_skips(out, head);
+    summary_of_inputs(out, run);
+    text_print(out, "  parameter switches   %lld\n", (long long)head->switch_count);
+    text_print(out, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);
+    summary_of_events(out, run);
     if (engine_remark(run->engine))
-        fprintf(stderr, "  compiled code        %s\n", engine_remark(run->engine));
-    fprintf(stderr, "  CPU time             %.3g s in steps, %.0f times real time; %.3g s with outputs\n",
-            run->integrating, time / fmax(run->integrating, 1e-9), total);
+        text_print(out, "  compiled code        %s\n", engine_remark(run->engine));
+    text_print(out, "  CPU time             %.3g s in steps, %.0f times real time; %.3g s with outputs\n",
+               run->integrating, time / fmax(run->integrating, 1e-9), total);
+    diag_note(text.s);
 }
 
 static const char *remedy_of(int status)
@@ -717,7 +721,8 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     if (request->results)
         csv_close(&run.csv);
     if (run.interrupted)
-        fprintf(stderr, "gicrun: interrupted at t = %.6g s; results up to there are kept\n", gic_time(run.self));
+        diag_note(pool_print(pool, "%s: interrupted at t = %.6g s; results up to there are kept\n",
+                             program_place().source->path, gic_time(run.self)));
     interrupt_release();
     variable_close(run.variable);
     if (!request->quiet)

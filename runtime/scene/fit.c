@@ -173,7 +173,7 @@ static void try_files(void *tried)
 /* True if the scene in a file fits the model in another file. Files with errors do not. */
 static bool files_fit(const char *scene, const char *model)
 {
-    Messages unheard = {NULL, NULL};
+    Messages unheard = {NULL, NULL, NULL};
     Trial trial = {scene, model, false};
     const bool good = caught(&unheard, try_files, &trial);
     messages_clear(&unheard);

@@ -93,6 +93,11 @@ int32_t integrator_method(const char *name)
     return -1;
 }
 
+const char *integrator_word(int index)
+{
+    return index >= 0 && index < INTEGRATORS ? integrators[index].name : NULL;
+}
+
 const char *integrator_name(int32_t method)
 {
     int i = 0;

@@ -88,6 +88,8 @@ void scene_along(Scene *scene);
 void scene_warn_range(const Coordinate *coordinate, Place at, double low, double high);
 /* The method of a name, -1: none; the name of a method. */
 int32_t integrator_method(const char *name);
+/* Their names, from 0; NULL: no more. */
+const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */
 /* A new profile for the input that `key` names; name: of all inputs. Fails if the input has one. */

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # layers.sh ROOT OBJECTS: prints a line for each include and each call, or use of data, from a folder of ROOT/generator or
 # ROOT/runtime to one that stands below it in tests/layers.txt, for each include of a private header of another folder, and
-# for each folder that only the list or only the disk has. OBJECTS: the build folder, with an object of each source.
+# for each folder that only the list or only the disk has, and for what a folder with a star uses beside the library's
+# interface. OBJECTS: the build folder, with an object of each source.
 root=$1
 objects=$2
 table=$(dirname "$0")/../layers.txt
@@ -14,7 +15,8 @@ find generator runtime -name '*.[ch]' | sort >"$objects/layers.files"
 # shellcheck disable=SC2016  # of awk
 ranks='
     function folder(path) { sub(/\/[^\/]*$/, "", path); return path }
-    FILENAME == table { if ($0 !~ /^#/ && NF) rank[$1] = ++count; next }'
+    function thin(own, to) { return star[own] && to != own && to !~ /^(runtime|generator\/base|runtime\/host)$/ }
+    FILENAME == table { if ($0 !~ /^#/ && NF) { rank[$1] = ++count; star[$1] = $2 == "*" } next }'
 
 awk -v table="$table" "$ranks"'
     { seen[folder($0)] = 1 }
@@ -37,6 +39,8 @@ awk -v table="$table" "$ranks"'
             print FILENAME ":" FNR ": includes " name ", which is no file of ours; write folder/name.h"
         else if (rank[folder(to)] > rank[own])
             print FILENAME ":" FNR ": includes " name ", of a folder that stands on this one"
+        else if (thin(own, folder(to)))
+            print FILENAME ":" FNR ": includes " name ", in a command line over the library"
         else if (to ~ /_private\.h$/ && folder(to) != own)
             print FILENAME ":" FNR ": includes " name ", which is private to its folder"
     }' files="$objects/layers.files" "$table" "$objects/layers.files" $(cat "$objects/layers.files")
@@ -51,10 +55,12 @@ awk -v table="$table" "$ranks"'
         if (!uses) print "no object has a symbol"
         for (i = 1; i <= uses; ++i) {
             to = home[used[i]]
-            if (to == "" || rank[folder(to)] <= rank[folder(use[i])]) continue
+            if (to == "") continue
+            over = thin(folder(use[i]), folder(to)) && used[i] !~ /^gicl_/
+            if (!over && rank[folder(to)] <= rank[folder(use[i])]) continue
             sub(/o$/, "c", to)
             sub(/o$/, "c", use[i])
-            print use[i] ": uses " used[i] " of " to ", a folder that stands on this one"
+            print use[i] ": uses " used[i] " of " to (over ? ", in a command line over the library" : ", a folder that stands on this one")
         }
     }' "$table" "$objects/layers.symbols"
 rm -f "$objects/layers.files" "$objects/layers.symbols"

@@ -40,6 +40,11 @@ layers
 check "a private header of another folder" alone "private to its folder"
 take_back runtime/run/simulate.c
 
+plant runtime/gicrun/gicrun.c '#include "model/model.h"'
+layers
+check "a program that passes the library by" alone "runtime/gicrun/gicrun.c:"
+take_back runtime/gicrun/gicrun.c
+
 plant runtime/run/simulate.c '#include "../scene/scene.h"'
 layers
 check "an include by another path" alone "write folder/name.h"

@@ -236,7 +236,7 @@ static void test_wrong_calls(void **state)
     assert_int_equal(gicl_time(lib->lib, next, NULL, NULL), GICL_WRONG);
     const gicl_options options[] = {{.size = 3},
                                     {.size = sizeof *options, .engine = "tccc"},
-                                    {.size = sizeof *options, .engine = "auto"},
+                                    {.size = sizeof *options, .lanes = 4},
                                     {.size = sizeof *options, .solve = "?"},
                                     {.size = sizeof *options, .recovery = "?"},
                                     {.size = sizeof *options, .integrator = "euler"},

@@ -98,7 +98,7 @@ class Model:
         else:
             data = text.encode()
             call("model_text", _bytes(name), data, len(data), ctypes.byref(options), ctypes.byref(handle))
-        self.warnings = [message["printed"] for message in _library.messages()]
+        self.warnings = _library.texts(_library.WARNING, _library.NOTE)
         self._owned = _library.Owned(handle)
         self._names = {}
 
@@ -155,7 +155,7 @@ class Model:
         handle, failure, arrays = Handle(), None, {}
         try:
             call(name, self._handle, *arguments, ctypes.byref(handle))
-            self.warnings = [message["printed"] for message in _library.messages()]
+            self.warnings = _library.texts(_library.WARNING, _library.NOTE)
         except Error as error:
             if not handle:
                 raise
@@ -203,6 +203,21 @@ class Model:
             raise TypeError("at: a time of a scene's run, and no scene is given")
         time = math.nan if at is None else _number(at, "at")
         return Linear(self._result("linearize", _bytes(scene), time)[0])
+
+    def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
+              axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None):
+        """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
+        "equilibrium", "modes", "linearize", "kc", "sheet" or "manoeuvre"; others are gicrun's options (page: of --animate,
+        --drive or --report). keys: of a manoeuvre, {name: number}."""
+        words = [_bytes(f"{name}={_number(value, name)!r}") for name, value in (keys or {}).items()]
+        time = None if at is None else ctypes.pointer(ctypes.c_double(_number(at, "at")))
+        study = _library.Study(ctypes.sizeof(_library.Study), _bytes(kind), _bytes(scene), _bytes(results), _bytes(page),
+                               _bytes(plot), _bytes(with_), _bytes(replay), _bytes(states), time, _bytes(axle),
+                               _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre),
+                               (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace), True)
+        call("write", self._handle, ctypes.byref(study))
+        self.warnings = _library.texts(_library.WARNING, _library.NOTE)
+        return "".join(_library.texts(_library.TEXT))
 
     def __repr__(self):
         return "<gicgen.Model>"

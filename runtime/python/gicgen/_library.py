@@ -4,8 +4,9 @@ import ctypes
 import os
 import threading
 
-API = 2  # GICL_VERSION of gic.h
+API = 3  # GICL_VERSION of gic.h
 OK, FAILED, WRONG = 0, 1, 2
+ERROR, WARNING, NOTE, TEXT, PROGRESS = range(5)
 STATE, RATE, INPUT, OUTPUT, PARAMETER, PORT = range(6)
 Handle = ctypes.c_uint64
 
@@ -18,7 +19,18 @@ class Message(ctypes.Structure):
 class Options(ctypes.Structure):
     _fields_ = [("size", ctypes.c_size_t), ("engine", ctypes.c_char_p), ("solve", ctypes.c_char_p),
                 ("recovery", ctypes.c_char_p), ("compiler", ctypes.c_char_p), ("flags", ctypes.c_char_p),
-                ("integrator", ctypes.c_char_p), ("tolerance", ctypes.c_double), ("general", ctypes.c_int)]
+                ("integrator", ctypes.c_char_p), ("tolerance", ctypes.c_double), ("general", ctypes.c_int),
+                ("lanes", ctypes.c_int)]
+
+
+class Study(ctypes.Structure):
+    _fields_ = [("size", ctypes.c_size_t), ("kind", ctypes.c_char_p), ("scene", ctypes.c_char_p),
+                ("results", ctypes.c_char_p), ("page", ctypes.c_char_p), ("plot", ctypes.c_char_p),
+                ("with_", ctypes.c_char_p), ("replay", ctypes.c_char_p), ("states", ctypes.c_char_p),
+                ("at", ctypes.POINTER(ctypes.c_double)), ("axle", ctypes.c_char_p), ("travel", ctypes.c_double),
+                ("loads", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
+                ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
+                ("quiet", ctypes.c_int)]
 
 
 class Array(ctypes.Structure):
@@ -40,8 +52,9 @@ class Error(Exception):
         self.line = last.get("line") or None
         self.column = last.get("column") or None
         self.status = status
-        self.warnings = [message["printed"] for message in said[:-1]]
-        super().__init__("".join(message["printed"] for message in said).rstrip("\n") or self.text)
+        self.warnings = [message["printed"] for message in said[:-1] if message.get("kind") != TEXT]
+        super().__init__("".join(message["printed"] for message in said if message.get("kind") != TEXT).rstrip("\n")
+                         or self.text)
 
 
 class WrongCall(Error, ValueError):
@@ -118,6 +131,7 @@ _ARGUMENTS = {
     "equilibrium": [Handle, ctypes.c_char_p, _P],
     "modes": [Handle, ctypes.c_char_p, _P],
     "linearize": [Handle, ctypes.c_char_p, ctypes.c_double, _P],
+    "write": [Handle, _P],
     "array_count": [Handle, _P],
     "array_get": [Handle, ctypes.c_int, _P, ctypes.c_size_t],
 }
@@ -163,6 +177,11 @@ def call(name, *arguments):
     status = getattr(_c, "gicl_" + name)(_library, *arguments, _said.list)
     if status != OK:
         raise_status(status)
+
+
+def texts(*kinds):
+    """What messages of some kinds print, of the last call."""
+    return [message["printed"] for message in messages() if message["kind"] in kinds]
 
 
 def raise_status(status):

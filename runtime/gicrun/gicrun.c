@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: MIT
+ * gicrun: generate, compile and run a model. This file: the command line, over the library. */
+#include "base/file.h"
+#include "host/gic.h"
+#include "host/host.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
+    "              [--with other.csv] [--animate page.html] [--replay recording.csv]\n"
+    "       gicrun --drive page.html MODEL.veh SCENE\n"
+    "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
+    "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
+    "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
+    "       gicrun --manoeuvre NAME MODEL.veh [key=value ...] [-o results.csv] [--trace FILE]\n"
+    "              [--report page.html]\n"
+    "\n"
+    "Generates C for a vehicle model, compiles it and runs a scene; or studies the model.\n"
+    "\n"
+    "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
+    "                     picture or a page is asked for)\n"
+    "      --plot FILE    draw the scene's `plot`, with gnuplot\n"
+    "      --with FILE    draw other results too, in dots\n"
+    "      --animate FILE write a page for a browser in which the model moves along its road\n"
+    "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
+    "      --replay FILE  repeat what it recorded\n"
+    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
+    "                     a scene gives the road only\n"
+    "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
+    "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
+    "                     wheel loads; -o: the state as a row that --eval reads\n"
+    "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
+    "                     the scene's velocities; -o: the same as CSV\n"
+    "      --linearize    the linear model about the same state: A, B, C, D and derivatives by\n"
+    "                     tunable parameters, with names and units; -o: as CSV, or for NumPy\n"
+    "                     or MATLAB\n"
+    "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
+    "      --kc           kinematics of axles over travel and steering, models/KC.md; -o: as CSV\n"
+    "      --axle NAME, --travel M\n"
+    "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
+    "      --loads        with --kc: compliance instead\n"
+    "      --sheet        the vehicle on a page, models/SHEET.md\n"
+    "      --manoeuvre NAME\n"
+    "                     standard manoeuvres, models/MANOEUVRES.md; an unknown name lists\n"
+    "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
+    "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
+    "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
+    "      --integrator NAME\n"
+    "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
+    "                     of the scene's\n"
+    "      --tolerance NUMBER of these\n"
+    "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
+    "                     long run by the C compiler too (cc); tape: formulas interpreted;\n"
+    "                     gic, gcp1, gcp2\n"
+    "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
+    "      --recovery WAY of dependent coordinates: newton; closed, wherever there is a closed\n"
+    "                     form; auto (default), whichever takes less\n"
+    "      --general      code for any scene; else it leaves out what its scene doesn't need\n"
+    "      --lanes W      with --engine cc: alike parts in vectors of 2, 4, 8 or 16 numbers\n"
+    "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, after ours, in one word\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "gicrun(1): $CC, $GICGEN_CACHE, $GICGEN_CACHE_SIZE, $XDG_CACHE_HOME and $TMPDIR.\n"
+    "\n"
+    "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
+    "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
+    "2 wrong usage.\n";
+
+/* What is asked for. */
+typedef struct Asked {
+    const char *model;
+    bool rests, modes, linear, kinematics, sheet, loads, general, quiet;
+    const char *animated, *driven, *report; /* --animate, --drive, --report */
+    double at;                              /* --at; NAN: not given */
+    gicl_options options;
+    gicl_study study;
+} Asked;
+
+static void read_tolerance(void *asked, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || !(value >= 1e-13 && value <= 0.1))
+        usage_fail("gicrun", "--tolerance must be a number between 1e-13 and 0.1, unlike", word);
+    ((Asked *)asked)->options.tolerance = value;
+}
+
+static void read_at(void *asked, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || end == word || !(value >= 0 && isfinite(value)))
+        usage_fail("gicrun", "--at must be a time in s, 0 or more, unlike", word);
+    ((Asked *)asked)->at = value;
+}
+
+static void read_travel(void *asked, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || end == word || !(value > 0 && value <= 10))
+        usage_fail("gicrun", "--travel must be a length in m, above 0 and at most 10, unlike", word);
+    ((Asked *)asked)->study.travel = value;
+}
+
+/* Is a word one of those that an option may have? */
+static bool known(const char *option, const char *word)
+{
+    const char *name;
+    for (int i = 0; (name = gicl_word(option, i)); ++i)
+        if (!strcmp(name, word))
+            return true;
+    return false;
+}
+
+static void read_engine(void *asked, char *name)
+{
+    const char *other;
+    ((Asked *)asked)->options.engine = name;
+    if (known("engine", name))
+        return;
+    fprintf(stderr, "gicrun: error: there is no engine '%s'\n  remedy: one of", name);
+    for (int i = 0; (other = gicl_word("engine", i)); ++i)
+        fprintf(stderr, "%s %s", i ? "," : "", other);
+    fputs("\n", stderr);
+    exit(2);
+}
+
+static void read_solve(void *asked, char *form)
+{
+    ((Asked *)asked)->options.solve = form;
+    if (!known("solve", form))
+        usage_fail("gicrun", "--solve takes auto, reduced, articulated or augmented, not", form);
+}
+
+static void read_recovery(void *asked, char *way)
+{
+    ((Asked *)asked)->options.recovery = way;
+    if (!known("recovery", way))
+        usage_fail("gicrun", "--recovery takes auto, newton or closed, not", way);
+}
+
+static void read_lanes(void *asked, char *word)
+{
+    static const char *const lanes[] = {"2", "4", "8", "16"};
+    for (size_t i = 0; i < sizeof lanes / sizeof *lanes; ++i)
+        if (!strcmp(word, lanes[i]))
+            ((Asked *)asked)->options.lanes = 2 << i;
+    if (!((Asked *)asked)->options.lanes)
+        usage_fail("gicrun", "--lanes takes 2, 4, 8 or 16, not", word);
+}
+
+static bool linear_file_known(const char *path)
+{
+    return !strcmp(path, "-") || path_ends(path, ".csv") || path_ends(path, ".npz") || path_ends(path, ".mat");
+}
+
+static Asked read_command_line(int count, char **word)
+{
+    Asked asked = {.options = {.size = sizeof asked.options, .engine = gicl_word("engine", 0)},
+                   .at = NAN,
+                   .study = {.size = sizeof asked.study}};
+    gicl_study *study = &asked.study;
+    const Option option[] = {
+        {"output", 'o', .text = &study->results},
+        {"plot", .text = &study->plot},
+        {"with", .text = &study->with},
+        {"animate", .text = &asked.animated},
+        {"drive", .text = &asked.driven},
+        {"replay", .text = &study->replay},
+        {"eval", .text = &study->states},
+        {"equilibrium", .on = &asked.rests},
+        {"modes", .on = &asked.modes},
+        {"linearize", .on = &asked.linear},
+        {"at", .read = read_at},
+        {"kc", .on = &asked.kinematics},
+        {"sheet", .on = &asked.sheet},
+        {"manoeuvre", .text = &study->manoeuvre},
+        {"trace", .text = &study->trace},
+        {"loads", .on = &asked.loads},
+        {"axle", .text = &study->axle},
+        {"travel", .read = read_travel},
+        {"report", .text = &asked.report},
+        {"compare", .text = &study->compare},
+        {"integrator", .text = &asked.options.integrator},
+        {"tolerance", .read = read_tolerance},
+        {"engine", .read = read_engine},
+        {"solve", .read = read_solve},
+        {"recovery", .read = read_recovery},
+        {"general", .on = &asked.general},
+        {"lanes", .read = read_lanes},
+        {"cc", .text = &asked.options.compiler},
+        {"cflags", .text = &asked.options.flags},
+        {"quiet", 'q', .on = &asked.quiet},
+    };
+    const int first =
+        options_read("gicrun", help, count, word, option, (int)(sizeof option / sizeof *option), &asked, NULL);
+    const int files = count - first;
+    if (files < 1)
+        usage_fail("gicrun", "no model given", NULL);
+    if (asked.rests + asked.modes + asked.linear + asked.kinematics + asked.sheet + (study->states != NULL) +
+            (study->manoeuvre != NULL) >
+        1)
+        usage_fail("gicrun",
+                   "one of --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre, please", NULL);
+    if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads))
+        usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
+    if (asked.report && !asked.kinematics && !study->manoeuvre)
+        usage_fail("gicrun", "--report goes with --kc or --manoeuvre", NULL);
+    if (study->trace && !study->manoeuvre)
+        usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
+    if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
+        usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
+    if (study->compare && asked.kinematics && (asked.report || asked.loads))
+        usage_fail("gicrun",
+                   "--kc --compare is a table at the position of set-up: it goes without --report and --loads", NULL);
+    if (asked.loads && (asked.report || study->travel > 0))
+        usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
+    if (asked.report && !path_ends(asked.report, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", asked.report);
+    const bool runs = !study->states && !asked.rests && !asked.modes && !asked.linear && !asked.kinematics &&
+                      !asked.sheet && !study->manoeuvre;
+    const bool at = !isnan(asked.at);
+    if (at && !asked.linear)
+        usage_fail("gicrun", "--at goes with --linearize", NULL);
+    if (files < 2 && (runs || at))
+        usage_fail("gicrun", "no scene given", NULL);
+    study->key = (const char *const *)word + first + 1;
+    study->keys = study->manoeuvre ? files - 1 : 0;
+    if (files > 2 && !study->manoeuvre)
+        usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
+    asked.model = word[first];
+    study->scene = files > 1 && !study->manoeuvre ? word[first + 1] : NULL;
+    if (!strcmp(asked.model, "-"))
+        usage_fail("gicrun", "the model must be a file", NULL);
+    if (asked.options.lanes && strcmp(asked.options.engine, "cc") != 0)
+        usage_fail("gicrun", "--lanes goes with --engine cc, not with", asked.options.engine);
+    if (asked.linear && strcmp(asked.options.engine, gicl_word("engine", 0)) != 0 &&
+        strcmp(asked.options.engine, "tape") != 0)
+        usage_fail("gicrun", "derivatives are those of the engine tape: --linearize does not go with --engine",
+                   asked.options.engine);
+    if (asked.options.integrator && !known("integrator", asked.options.integrator))
+        usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", asked.options.integrator);
+    if (study->plot && !runs)
+        usage_fail("gicrun",
+                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
+                   NULL);
+    if (study->plot && !plot_known(study->plot))
+        usage_fail("gicrun", "the picture must end in .svg or .png, unlike", study->plot);
+    if (study->with && !study->plot && !asked.animated)
+        usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
+    if (asked.animated && !runs)
+        usage_fail("gicrun",
+                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
+                   NULL);
+    if (asked.animated && !path_ends(asked.animated, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", asked.animated);
+    if (asked.driven && (!runs || study->results || study->plot || asked.animated || study->replay))
+        usage_fail("gicrun",
+                   "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
+                   "nor with --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre",
+                   NULL);
+    if (asked.driven && !path_ends(asked.driven, ".html"))
+        usage_fail("gicrun", "the page must end in .html, unlike", asked.driven);
+    if (study->replay && !runs)
+        usage_fail("gicrun",
+                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--manoeuvre",
+                   NULL);
+    if (asked.linear && study->results && !linear_file_known(study->results))
+        usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", study->results);
+    if (!study->results && !study->plot && !asked.animated && !asked.driven && (runs || study->states || asked.linear))
+        study->results = "-";
+    study->kind = study->states      ? "eval"
+                  : asked.rests      ? "equilibrium"
+                  : asked.modes      ? "modes"
+                  : asked.linear     ? "linearize"
+                  : asked.kinematics ? "kc"
+                  : asked.sheet      ? "sheet"
+                  : study->manoeuvre ? "manoeuvre"
+                  : asked.driven     ? "drive"
+                                     : "run";
+    study->page = asked.animated ? asked.animated : asked.driven ? asked.driven : asked.report;
+    study->loads = asked.loads;
+    study->quiet = asked.quiet;
+    asked.options.general = asked.general;
+    return asked;
+}
+
+/* Outputs that are one file with the results. */
+static void check_outputs(const Asked *asked)
+{
+    const gicl_study *study = &asked->study;
+    const struct {
+        const char *path, *message;
+    } output[] = {{study->plot, "--plot needs another file than the results, which go to"},
+                  {asked->animated, "--animate needs another file than the results, which go to"},
+                  {asked->report, "--report needs another file than the results, which go to"},
+                  {study->trace, "--trace needs another file than the results, which go to"}};
+    for (size_t i = 0; i < sizeof output / sizeof *output; ++i)
+        if (files_are_one(output[i].path, study->results))
+            usage_fail("gicrun", output[i].message, study->results);
+}
+
+int main(int count, char **word)
+{
+    Asked asked = read_command_line(count, word);
+    const gicl_listener terminal = {
+        .size = sizeof terminal, .program = program_place().source->path, .hear = terminal_hear, .signals = 1};
+    gicl_library *library = gicl_open();
+    gicl_messages *said = gicl_messages_new();
+    gicl_handle model;
+    if (!library || !said)
+        out_of_memory();
+    int status = gicl_listen(library, &terminal, said);
+    if (status == GICL_OK)
+        status = gicl_model_open(library, asked.model, &asked.options, &model, said);
+    if (status == GICL_OK) {
+        check_outputs(&asked);
+        asked.study.at = isnan(asked.at) ? NULL : &asked.at;
+        status = gicl_write(library, model, &asked.study, said);
+    }
+    gicl_messages_free(said);
+    gicl_close(library);
+    return status; /* GICL_FAILED and GICL_WRONG are exit statuses */
+}

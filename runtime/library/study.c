@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: MIT
+ * What gicrun writes: runs, pages, tables. */
+#include "base/file.h"
+#include "base/message.h"
+#include "engine/engine.h"
+#include "host/gic.h"
+#include "host/host.h"
+#include "library/library_private.h"
+#include "model/model.h"
+#include "read/read.h"
+#include "run/engines.h"
+#include "run/kc.h"
+#include "run/linear_model.h"
+#include "run/linearize.h"
+#include "run/manoeuvre.h"
+#include "run/run.h"
+#include "run/sheet.h"
+#include "scene/replay.h"
+#include "scene/scene.h"
+#include "vehicle/vehicle.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+typedef enum Kind { RUN, DRIVE, EVAL, EQUILIBRIUM, MODES, LINEARIZE, KC, SHEET, MANOEUVRE, KINDS } Kind;
+
+static const char *const kind_name[KINDS] = {"run",       "drive", "eval",  "equilibrium", "modes",
+                                             "linearize", "kc",    "sheet", "manoeuvre"};
+
+/* ---- the call -------------------------------------------------------------------------------------------------- */
+
+enum { ALL = (1 << KINDS) - 1 };
+#define IN(kind) (1 << (kind))
+
+/* Words of a study, the kinds that take them, and those that need them. */
+static const struct {
+    const char *name;
+    size_t offset;
+    int takes, needs;
+} word_of[] = {
+    {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE), IN(RUN) | IN(DRIVE)},
+    {"results", offsetof(gicl_study, results), ALL & ~IN(DRIVE), IN(EVAL) | IN(LINEARIZE)},
+    {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(MANOEUVRE), IN(DRIVE)},
+    {"plot", offsetof(gicl_study, plot), IN(RUN), 0},
+    {"with", offsetof(gicl_study, with), IN(RUN), 0},
+    {"replay", offsetof(gicl_study, replay), IN(RUN), 0},
+    {"states", offsetof(gicl_study, states), IN(EVAL), IN(EVAL)},
+    {"axle", offsetof(gicl_study, axle), IN(KC), 0},
+    {"compare", offsetof(gicl_study, compare), IN(KC) | IN(SHEET) | IN(MANOEUVRE), 0},
+    {"manoeuvre", offsetof(gicl_study, manoeuvre), IN(MANOEUVRE), IN(MANOEUVRE)},
+    {"trace", offsetof(gicl_study, trace), IN(MANOEUVRE), 0},
+};
+
+static const char *word(const gicl_study *study, size_t i)
+{
+    return *(const char *const *)(const void *)((const char *)study + word_of[i].offset);
+}
+
+/* GICL_OK, or GICL_WRONG with a message. */
+static int check_words(const gicl_study *study, Kind kind, gicl_messages *said)
+{
+    for (size_t i = 0; i < sizeof word_of / sizeof *word_of; ++i) {
+        const bool given = word(study, i);
+        if (given && !(word_of[i].takes & IN(kind)))
+            return call_wrong(said, "leave it NULL", "%s takes no '%s'", study->kind, word_of[i].name);
+        if (!given && word_of[i].needs & IN(kind))
+            return call_wrong(said, NULL, "%s needs '%s'", study->kind, word_of[i].name);
+    }
+    if (study->at && (kind != LINEARIZE || !study->scene))
+        return call_wrong(said, "leave it NULL", "'at' goes with linearize and a scene");
+    if (study->at && !(*study->at >= 0 && isfinite(*study->at)))
+        return call_wrong(said, NULL, "'at' must be finite and at least 0");
+    if ((study->travel != 0 || study->loads) && kind != KC)
+        return call_wrong(said, "leave them 0", "'travel' and 'loads' go with kc");
+    if (study->travel != 0 && !(study->travel > 0 && study->travel <= 10))
+        return call_wrong(said, NULL, "'travel' must be above 0 and at most 10 m");
+    if (study->keys < 0 || (study->keys && (kind != MANOEUVRE || !study->key)))
+        return call_wrong(said, NULL, "'keys' is the number of words in 'key', which go with manoeuvre");
+    if (study->with && !study->plot && !study->page)
+        return call_wrong(said, NULL, "'with' goes with 'plot' or 'page'");
+    if (study->plot && !plot_known(study->plot))
+        return call_wrong(said, NULL, "'plot' must end in .svg or .png");
+    if (kind == LINEARIZE && !linear_file_known(study->results))
+        return call_wrong(said, NULL, "'results' of linearize must end in .csv, .npz or .mat, or be -");
+    return GICL_OK;
+}
+
+/* ---- the work -------------------------------------------------------------------------------------------------- */
+
+typedef struct Writing {
+    OpenModel *open;
+    const gicl_study *study;
+    Kind kind;
+    Pool *pool;
+    const Engine *engine; /* that is to be closed; NULL: none */
+} Writing;
+
+/* Refuse outputs that are inputs, or one file. */
+static void check_outputs(const Request *request, const Model *model, const Scene *scene)
+{
+    const char *const output[] = {request->results, request->picture, request->page,
+                                  request->driven,  request->report,  request->trace};
+    const Source states = {.path = request->states ? request->states : "-"};
+    for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
+        if (!output[i])
+            continue;
+        for (size_t k = 0; k < i; ++k)
+            if (files_are_one(output[i], output[k]))
+                diag_fail_call(program_place(), "choose another one", "two outputs go to the file '%s'", output[i]);
+        file_check(output[i]);
+        source_keep(model->source, output[i]);
+        source_keep(&states, output[i]);
+        if (request->other)
+            source_keep(request->other->source, output[i]);
+        if (scene)
+            source_keep(scene->source, output[i]);
+    }
+}
+
+/* Of a path, or NULL, without its folders. */
+static const char *name_of(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path;
+}
+
+static Request request_of(const Writing *w)
+{
+    const gicl_study *s = w->study;
+    const EngineOptions *options = &w->open->options;
+    return (Request){.scene = s->scene,
+                     .states = s->states,
+                     .loads = s->loads,
+                     .axle = s->axle,
+                     .travel = s->travel,
+                     .report = w->kind == KC || w->kind == MANOEUVRE ? s->page : NULL,
+                     .compare = s->compare,
+                     .manoeuvre = s->manoeuvre,
+                     .trace = s->trace,
+                     .keys = s->keys,
+                     .key = s->key,
+                     .results = s->results,
+                     .picture = s->plot,
+                     .with = s->with,
+                     .page = w->kind == RUN ? s->page : NULL,
+                     .driven = w->kind == DRIVE ? s->page : NULL,
+                     .engine = w->open->engine_name,
+                     .solve = options->solve,
+                     .recovery = options->recovery,
+                     .compiler = options->compiler,
+                     .flags = options->flags,
+                     .quiet = s->quiet};
+}
+
+/* The reports on the static equilibrium. */
+static void report_rest(const Writing *w, const Model *model, const Scene *scene, const Request *request)
+{
+    const Equilibrium *found = equilibrium_find(w->pool, model, scene, request->solve);
+    if (w->kind == EQUILIBRIUM)
+        equilibrium_report(w->pool, w->engine, scene, request, found);
+    else
+        modes_report(w->pool, scene, request, found);
+}
+
+/* With an engine. */
+static void compute(Writing *w, const Model *model, const Scene *scene, const Request *request)
+{
+    Pool *pool = w->pool;
+    const OpenModel *open = w->open;
+    const bool runs = w->kind == RUN || w->kind == DRIVE;
+    if (runs)
+        scene = equilibrium_start(pool, model, scene, request->solve);
+    if (w->study->replay)
+        scene = scene_replay(pool, model, scene, w->study->replay);
+    EngineOptions options = open->options;
+    options.quiet = request->quiet;
+    /* a page shows whatever outputs tell; lanes are for code for all scenes */
+    const bool general = open->general || request->page || request->driven || w->study->replay || options.lanes;
+    w->engine = runs ? engine_open_run(pool, open->engine_name, model, scene, general ? NULL : request->scene,
+                                       request->picture, &options)
+                     : engine_open(pool, open->engine_name, model, &options);
+    if (w->kind == DRIVE)
+        drive_write(pool, model, scene, w->engine, request);
+    else if (w->kind == EVAL)
+        evaluate(pool, w->engine, scene, request);
+    else if (!runs)
+        report_rest(w, model, scene, request);
+    else
+        simulate(pool, w->engine, model, scene,
+                 request->page
+                     ? animation_new(pool, model, scene, request->scene, request->other, name_of(request->with))
+                     : NULL,
+                 request);
+}
+
+static void make_pool(void *context)
+{
+    ((Writing *)context)->pool = pool_new();
+}
+
+static void write_study(void *context)
+{
+    Writing *w = context;
+    Pool *pool = w->pool;
+    OpenModel *open = w->open;
+    Request request = request_of(w);
+    if (w->kind == DRIVE && !engine_generates(open->engine_name))
+        diag_fail_call(program_place(), "`gicrun -h` shows how",
+                       "a page of --drive runs generated code, and does not go with --engine '%s'", open->engine_name);
+    const Model *model = model_once(open, pool);
+    if (request.page || request.driven) /* the page shows forces of all wheels as arrows */
+        model = model_watch_wheels(pool, model);
+    const Scene *scene =
+        request.scene ? scene_read(pool, request.scene, model, open->integrator, open->tolerance) : NULL;
+    if (request.with)
+        request.other = csv_read(pool, request.with, "time [s],chassis.z [m]", NULL);
+    check_outputs(&request, model, scene);
+    if (request.picture)
+        plot_check(pool);
+    if (w->kind == MANOEUVRE)
+        manoeuvre_report(pool, model, &request);
+    else if (w->kind == KC)
+        kc_report(pool, model, scene, &request);
+    else if (w->kind == SHEET)
+        sheet_report(pool, model, scene, &request);
+    else {
+        model = scene_rig(pool, model, &scene);
+        if (w->kind == LINEARIZE) {
+            const OperatingPoint point =
+                operating_point(pool, model, scene, request.solve, w->study->at ? *w->study->at : NAN);
+            linear_report(pool, model, &point, &request);
+        } else
+            compute(w, model, scene, &request);
+    }
+}
+
+int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study, gicl_messages *said)
+{
+    const Use use = use_begin(library, model, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
+    if (!study || study->size != sizeof *study)
+        return use_end(&use,
+                       call_wrong(said, "set size to sizeof(gicl_study), and compile with the library's own gic.h",
+                                  "a study has %zu bytes, not %zu", sizeof *study, study ? study->size : 0));
+    Writing w = {.open = use.thing, .study = study, .kind = RUN};
+    while (w.kind < KINDS && (!study->kind || strcmp(study->kind, kind_name[w.kind]) != 0))
+        ++w.kind;
+    if (w.kind == KINDS)
+        return use_end(&use,
+                       call_wrong(said, "one of run, drive, eval, equilibrium, modes, linearize, kc, sheet, manoeuvre",
+                                  "there is no study '%s'", study->kind ? study->kind : ""));
+    int status = check_words(study, w.kind, said);
+    if (status != GICL_OK)
+        return use_end(&use, status);
+    status = call_work(library, said, make_pool, &w);
+    if (status != GICL_OK)
+        return use_end(&use, status);
+    status = call_work(library, said, write_study, &w);
+    /* an engine's own memory was released with a work that failed */
+    if (status == GICL_OK && w.engine)
+        engine_close(w.engine);
+    if (w.engine && w.engine->library)
+        dlclose(w.engine->library);
+    pool_free(w.pool);
+    return use_end(&use, status);
+}
