@@ -48,7 +48,7 @@ other_builds := $(patsubst %,-path $(BUILD)/% -prune -o,debug fuzz coverage)
 models := $(basename $(notdir $(wildcard models/*.veh)))
 # programs are generator/*.c and runtime/gicrun/gicrun.c; all other files stand in folders, whose order is that of
 # tests/layers.txt, and go into one archive, from which a program takes what it uses
-programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/sweep/*.c runtime/bench/*.c \
+programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/gicsweep/*.c runtime/bench/*.c \
     runtime/plugin/*.c)
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
@@ -77,7 +77,7 @@ $(BUILD)/gicgen: $(BUILD)/generator/gicgen.o $(archive)
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun/gicrun.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/gicsweep: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/sweep/*.c)) $(archive)
+$(BUILD)/gicsweep: $(BUILD)/runtime/gicsweep/gicsweep.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/gicbench: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/bench/*.c)) $(archive)

@@ -53,8 +53,10 @@ bool caught(Messages *messages, void (*work)(void *context), void *context)
 {
     Catcher catcher = {.messages = messages, .outer = innermost};
     innermost = &catcher;
-    /* with the mask of signals, which is changed while files are written */
-    const bool good = !sigsetjmp(catcher.back, 1);
+    /* with the mask of signals, which is changed while files are written; a program that ends with a failure is not to
+     * be ended by the signal that came before */
+    const Listener *listener = messages->listener;
+    const bool good = !sigsetjmp(catcher.back, !(listener && listener->signals));
     if (good)
         work(context);
     innermost = catcher.outer;

@@ -227,6 +227,16 @@ void diag_warn(Place at, const char *remedy, const char *format, ...)
     va_end(args);
 }
 
+_Noreturn void diag_fail_as(const char *printed)
+{
+    if (catching())
+        caught_tell(&(Message){.kind = MESSAGE_ERROR, .text = printed, .printed = printed});
+    else
+        fputs(printed, stderr);
+    caught_fail();
+    exit(1);
+}
+
 void diag_note(const char *text)
 {
     if (catching())

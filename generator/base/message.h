@@ -43,6 +43,8 @@ void diag_warn(Place at, const char *remedy, const char *format, ...) __attribut
 /* The same as diag_fail() for a mistake of who calls; exit status 2. */
 _Noreturn void diag_fail_call(Place at, const char *remedy, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* The same for an error that another process found and told in full. */
+_Noreturn void diag_fail_as(const char *printed);
 /* Print a text for people as it is, such as what another program said; the lines end in it. */
 void diag_note(const char *text);
 /* The same for a text that is a result: to standard output. */

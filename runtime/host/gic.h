@@ -272,6 +272,28 @@ typedef struct gicl_study {
  * up to there; other files are whole or not there. */
 GICL_API int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study, gicl_messages *said);
 
+/* ---- what gicsweep does -------------------------------------------------------------------------------------- */
+
+enum { GICL_SWEEP_MOST = 10000000 }; /* runs */
+
+/* One scene with many values. Members are gicsweep's options. */
+typedef struct gicl_sweep {
+    size_t size;             /* sizeof(gicl_sweep) */
+    const char *scene;       /* a path */
+    const char *results;     /* a file; finished runs are in `results`.journal meanwhile, and the same call goes on */
+    const char *const *vary; /* [varied] NAME=LOW:HIGH:COUNT, or NAME=LOW:HIGH with `latin` */
+    int varied;
+    int64_t latin; /* so many runs of a Latin hypercube; 0: a grid */
+    uint64_t seed; /* of its random numbers */
+    int alone;     /* 1: each run by itself, by the model's engine; 0: in lanes where compiler and model allow that */
+    int quiet;     /* 1: neither progress nor notes */
+} gicl_sweep;
+
+/* Runs are made in $OMP_NUM_THREADS processes, by default one for each processor. *result (result NULL: not wanted):
+ * array "runs" with the columns of the file. */
+GICL_API int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *sweep, gicl_handle *result,
+                            gicl_messages *said);
+
 #ifdef __cplusplus
 }
 #endif

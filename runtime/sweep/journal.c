@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The journal of a sweep: lines are appended, never changed, and written to the disk before the next batch begins.
  * The first line identifies the sweep; an incomplete last line is ignored. */
+#include "base/catch.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "host/host.h"
@@ -32,7 +33,7 @@ static void append(Journal *journal, const char *bytes, size_t size)
         journal_fail(journal, "write");
 }
 
-static void note(Journal *journal, const Result *result)
+static void note(Journal *journal, const RunResult *result)
 {
     if (journal->row[result->run])
         return;
@@ -57,7 +58,7 @@ static bool take_line(Journal *journal, const char *line)
     const long status = strtol(next, &end, 10);
     if (end == next || *end != ' ')
         return false;
-    note(journal, &(Result){run, (int)status, end + 1, NULL});
+    note(journal, &(RunResult){run, (int)status, end + 1, NULL});
     return true;
 }
 
@@ -87,6 +88,12 @@ static void take(Journal *journal, const char *first)
         journal_fail(journal, "write");
 }
 
+/* Where a failure ends a call and not the program. */
+static void let_go(void *held)
+{
+    close(*(const int *)held);
+}
+
 Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs)
 {
     Journal journal = {.pool = pool, .path = pool_print(pool, "%s.journal", results), .runs = runs};
@@ -99,6 +106,9 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     if (fstat(journal.file, &is) || !S_ISREG(is.st_mode) || is.st_uid != geteuid())
         diag_fail(program_place(), "remove it, or choose another place with -o", "%s is no file, or somebody else's",
                   journal.path);
+    journal.held = pool_alloc(pool, sizeof *journal.held);
+    *journal.held = journal.file;
+    caught_own(let_go, journal.held);
     if (flock(journal.file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         diag_fail(program_place(), "wait for it, or choose another place with -o", "another gicsweep is writing %s",
                   journal.path);
@@ -116,7 +126,7 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
     return journal;
 }
 
-void journal_add(Journal *journal, const Result *result, int results)
+void journal_add(Journal *journal, const RunResult *result, int results)
 {
     Text text = {.pool = journal->pool};
     for (int i = 0; i < results; ++i) {
@@ -126,8 +136,14 @@ void journal_add(Journal *journal, const Result *result, int results)
     append(journal, text.s, text.size);
 }
 
+void journal_close(const Journal *journal)
+{
+    caught_disown(journal->held);
+    close(journal->file);
+}
+
 void journal_remove(Journal *journal)
 {
     unlink(journal->path);
-    close(journal->file);
+    journal_close(journal);
 }

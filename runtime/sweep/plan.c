@@ -11,26 +11,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A mistake in a word of the call. */
+static _Noreturn void refuse(const char *message, const char *word)
+{
+    diag_fail_call(program_place(), "`gicsweep -h` shows how", "%s '%s'", message, word);
+}
+
 void vary_read(Pool *pool, SweepPlan *plan, const char *word)
 {
     static const char form[] = "--vary takes name=low:high or name=low:high:count, not";
     const char *equals = strchr(word, '=');
     Vary vary = {.name = pool_print(pool, "%.*s", (int)(equals ? equals - word : 0), word)};
     if (!equals || equals == word)
-        usage_fail("gicsweep", form, word);
+        refuse(form, word);
     char *end;
     vary.low = strtod(equals + 1, &end);
     if (end == equals + 1 || *end != ':')
-        usage_fail("gicsweep", form, word);
+        refuse(form, word);
     const char *next = end + 1;
     vary.high = strtod(next, &end);
     if (end == next || (*end && *end != ':') || !isfinite(vary.low) || !isfinite(vary.high))
-        usage_fail("gicsweep", form, word);
+        refuse(form, word);
     if (*end) {
         next = end + 1;
         vary.count = strtoll(next, &end, 10);
         if (end == next || *end || vary.count < 1 || vary.count > SWEEP_RUNS_MOST)
-            usage_fail("gicsweep", "a count must be a whole number from 1 on in", word);
+            refuse("a count must be a whole number from 1 on in", word);
     }
     *POOL_PUSH(pool, plan->vary, plan->varied) = vary;
 }
@@ -146,15 +152,14 @@ void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *e
         look_up(pool, vary, model, engine);
         for (int w = 0; w < v; ++w)
             if (plan->vary[w].kind == vary->kind && plan->vary[w].index == vary->index)
-                usage_fail("gicsweep", "--vary is given twice for", vary->name);
+                refuse("--vary is given twice for", vary->name);
         if (plan->latin && vary->count)
-            usage_fail("gicsweep", "with --latin a range has no count of its own:", vary->name);
+            refuse("with --latin a range has no count of its own:", vary->name);
         if (!plan->latin && !vary->count)
-            usage_fail("gicsweep", "without --latin a range needs a count, name=low:high:count:", vary->name);
+            refuse("without --latin a range needs a count, name=low:high:count:", vary->name);
         plan->runs *= vary->count ? vary->count : 1;
         if (plan->runs > SWEEP_RUNS_MOST)
-            usage_fail("gicsweep", "these are more than ten million runs; --latin takes fewer, not so many as",
-                       vary->name);
+            refuse("these are more than ten million runs; --latin takes fewer, not so many as", vary->name);
     }
     if (plan->latin)
         make_latin(pool, plan);

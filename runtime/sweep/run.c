@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The runs of a sweep: in batches, side by side in lanes, or one by one, in one process or several. */
+#include "base/catch.h"
 #include "base/message.h"
 #include "base/text.h"
 #include "engine/engine.h"
@@ -19,7 +20,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { CHUNK = 4096 /* steps between checks for a request to stop */ };
 
@@ -159,12 +159,14 @@ static void look_around(Runner *r)
         return;
     r->looked = now;
     r->stopped = interrupt_arrived();
-    if (r->silent || r->sweep->quiet || !isatty(STDERR_FILENO))
+    if (r->silent || r->sweep->quiet)
         return;
-    fprintf(stderr, "\r%5.1f %%  %lld of %lld runs, %lld failed, %.4g runs/s\x1b[K",
-            100 * (double)journal->finished / (double)journal->runs, (long long)journal->finished,
-            (long long)journal->runs, (long long)journal->failed,
-            (double)(journal->finished - r->before) / fmax(now - r->begun, 1e-9));
+    char text[200];
+    snprintf(text, sizeof text, "%5.1f %%  %lld of %lld runs, %lld failed, %.4g runs/s",
+             100 * (double)journal->finished / (double)journal->runs, (long long)journal->finished,
+             (long long)journal->runs, (long long)journal->failed,
+             (double)(journal->finished - r->before) / fmax(now - r->begun, 1e-9));
+    diag_progress(text);
     r->shown = true;
 }
 
@@ -370,15 +372,15 @@ static void take_up(Runner *r, Slot *slot, int64_t run)
 }
 
 /* The result of a slot's run; its texts live as long as the journal. */
-static Result result_of(const Runner *r, const Slot *slot)
+static RunResult result_of(const Runner *r, const Slot *slot)
 {
     Pool *pool = r->sweep->journal->pool;
-    return (Result){slot->run, slot->status, row_text(r->pool, r->sweep, slot),
-                    slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
+    return (RunResult){slot->run, slot->status, row_text(r->pool, r->sweep, slot),
+                       slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
 }
 
 /* Runs side by side, as many as there are slots at most. False: someone asked to stop. */
-static bool make_runs(void *context, const int64_t *run, int runs, Result *result)
+static bool make_runs(void *context, const int64_t *run, int runs, RunResult *result)
 {
     Runner *r = context;
     r->pool = pool_new(); /* memory of a batch's scenes is freed afterwards */
@@ -395,14 +397,14 @@ static bool make_runs(void *context, const int64_t *run, int runs, Result *resul
 }
 
 /* The same without progress. */
-static bool make_silently(void *context, const int64_t *run, int runs, Result *result)
+static bool make_silently(void *context, const int64_t *run, int runs, RunResult *result)
 {
     Runner *r = context;
     r->silent = true;
     return make_runs(r, run, runs, result);
 }
 
-static bool take_results(void *context, const Result *result, int results)
+static bool take_results(void *context, const RunResult *result, int results)
 {
     Runner *r = context;
     if (results)
@@ -414,7 +416,7 @@ static bool take_results(void *context, const Result *result, int results)
 /* In this process. */
 static void run_alone(Runner *r, const int64_t *run, int64_t count)
 {
-    Result result[r->slots];
+    RunResult result[r->slots];
     for (int64_t next = 0; next < count && !r->stopped; next += r->slots) {
         const int runs = count - next < r->slots ? (int)(count - next) : r->slots;
         if (make_runs(r, run + next, runs, result))
@@ -435,6 +437,8 @@ bool sweep_run(const Sweep *sweep)
     r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
     if (sweep->many && !r.batch)
         diag_fail(program_place(), NULL, "no memory for %d vehicles", sweep->many->vehicles);
+    if (r.batch)
+        caught_own(free, r.batch);
     r.begun = clock_seconds(CLOCK_MONOTONIC);
     int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(sweep->plan->runs + 1)), count = 0;
     for (int64_t i = 0; i < sweep->plan->runs; ++i)
@@ -451,7 +455,9 @@ bool sweep_run(const Sweep *sweep)
     else
         run_alone(&r, run, count);
     if (r.shown)
-        fputs("\r\x1b[K", stderr);
+        diag_progress("");
+    if (r.batch)
+        caught_disown(r.batch);
     free(r.batch);
     return !r.stopped;
 }

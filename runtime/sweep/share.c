@@ -3,6 +3,7 @@
  * results. Processes rather than threads, since engines and the libraries that they use keep state of their own, and
  * no process waits for another. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+#include "base/catch.h"
 #include "base/message.h"
 #include "base/text.h"
 #include "host/host.h"
@@ -61,10 +62,19 @@ static void send_bytes(int pipe, const void *bytes, size_t size)
     }
 }
 
-static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
+/* What a process works on. */
+typedef struct Work {
+    const Share *share;
+    _Atomic int64_t *taken;
+    int pipe;
+} Work;
+
+static void make(void *context)
 {
-    Result result[share->together];
-    for (int64_t i; (i = atomic_fetch_add(taken, share->together)) < share->count;) {
+    const Work *work = context;
+    const Share *share = work->share;
+    RunResult result[share->together];
+    for (int64_t i; (i = atomic_fetch_add(work->taken, share->together)) < share->count;) {
         const int64_t left = share->count - i;
         const int runs = left < share->together ? (int)left : share->together;
         if (!share->make(share->context, share->run + i, runs, result))
@@ -72,12 +82,24 @@ static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
         for (int k = 0; k < runs; ++k) {
             const Parcel parcel = {result[k].run, result[k].status, (uint32_t)strlen(result[k].row) + 1,
                                    result[k].reason ? (uint32_t)strlen(result[k].reason) + 1 : 0};
-            send_bytes(pipe, &parcel, sizeof parcel);
-            send_bytes(pipe, result[k].row, parcel.row);
-            send_bytes(pipe, result[k].reason, parcel.reason);
+            send_bytes(work->pipe, &parcel, sizeof parcel);
+            send_bytes(work->pipe, result[k].row, parcel.row);
+            send_bytes(work->pipe, result[k].reason, parcel.reason);
         }
     }
-    _exit(0);
+}
+
+/* A failure ends this process, whoever called, with its message. */
+static _Noreturn void work(const Share *share, _Atomic int64_t *taken, int pipe)
+{
+    const Listener *listener = caught_listener();
+    const Listener ours = {.program = program_place().source,
+                           .signals = !catching() || (listener && listener->signals)};
+    Messages said = {NULL, NULL, &ours};
+    const bool good = caught(&said, make, &(Work){share, taken, pipe});
+    for (const Message *message = said.first; message; message = message->next)
+        fputs(message->printed, stderr);
+    _exit(good ? 0 : 1);
 }
 
 /* ---- whom they work for -------------------------------------------------------------------------------------------
@@ -116,7 +138,7 @@ static bool start(Pool *pool, const Share *share, _Atomic int64_t *taken, Worker
 
 /* Take the complete parcels from the bytes that a worker has sent; texts of results point into them. Returns their
  * number. */
-static int open_parcels(Pool *pool, Worker *worker, Result **result, int results)
+static int open_parcels(Pool *pool, Worker *worker, RunResult **result, int results)
 {
     const Text heard = worker->heard;
     size_t at = 0;
@@ -126,7 +148,7 @@ static int open_parcels(Pool *pool, Worker *worker, Result **result, int results
             break;
         const char *row = heard.s + at + sizeof parcel;
         *POOL_PUSH(pool, *result, results) =
-            (Result){parcel.run, parcel.status, row, parcel.reason ? row + parcel.row : NULL};
+            (RunResult){parcel.run, parcel.status, row, parcel.reason ? row + parcel.row : NULL};
         at += sizeof parcel + parcel.row + parcel.reason;
     }
     if (at) {
@@ -157,8 +179,7 @@ static _Noreturn void fail_as(Pool *pool, const Worker *worker)
     if (WIFSIGNALED(worker->status))
         diag_fail(program_place(), "finished runs are kept: the same command goes on",
                   "a process that made runs was ended by signal %d", WTERMSIG(worker->status));
-    fputs(nameless_text(pool, worker->said), stderr);
-    exit(1);
+    diag_fail_as(nameless_text(pool, worker->said));
 }
 
 static void end_all(Worker *worker, size_t workers)
@@ -168,23 +189,47 @@ static void end_all(Worker *worker, size_t workers)
             kill(worker[w].process, SIGKILL);
 }
 
+/* All of them, where a failure ends a call and not the program. */
+typedef struct Workers {
+    _Atomic int64_t *taken;
+    Worker *worker;
+    size_t count;
+} Workers;
+
+static void let_go(void *context)
+{
+    const Workers *all = context;
+    end_all(all->worker, all->count);
+    for (size_t w = 0; w < all->count; ++w) {
+        if (all->worker[w].pipe >= 0) {
+            close(all->worker[w].pipe);
+            waitpid(all->worker[w].process, NULL, 0);
+        }
+        close(all->worker[w].said);
+    }
+    munmap((void *)all->taken, sizeof *all->taken);
+}
+
 bool share_runs(Pool *pool, const Share *share, size_t processes)
 {
     _Atomic int64_t *taken = mmap(NULL, sizeof *taken, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (taken == MAP_FAILED)
         diag_fail(program_place(), NULL, "no memory for the counter of runs: %s", strerror(errno));
-    Worker worker[processes];
+    Worker *worker = pool_alloc(pool, processes * sizeof *worker);
     struct pollfd ready[processes];
     const Worker *broken = NULL;
     bool stopped = false;
     size_t workers = 0;
+    Workers *all = pool_alloc(pool, sizeof *all);
+    *all = (Workers){taken, worker, 0};
+    caught_own(let_go, all);
     while (workers < processes && start(pool, share, taken, worker, workers))
-        ++workers;
+        all->count = ++workers;
     if (!workers)
         diag_fail(program_place(), "try again when there are fewer of them", "can't start a process: %s",
                   strerror(errno));
     for (size_t open = workers; open;) {
-        Result *result = NULL;
+        RunResult *result = NULL;
         int results = 0;
         for (size_t w = 0; w < workers; ++w) /* closed ones, which are negative, are passed over */
             ready[w] = (struct pollfd){.fd = worker[w].pipe, .events = POLLIN};
@@ -204,10 +249,9 @@ bool share_runs(Pool *pool, const Share *share, size_t processes)
             end_all(worker, workers);
         }
     }
-    munmap((void *)taken, sizeof *taken);
     if (broken)
         fail_as(pool, broken);
-    for (size_t w = 0; w < workers; ++w)
-        close(worker[w].said);
+    caught_disown(all);
+    let_go(all);
     return !stopped;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * gicsweep: one scene with many values of parameters, inputs and initial states. Its parts, file by file, in the order
- * in which they are used; conventions as in vehicle/vehicle.h. */
+ * What gicsweep does: one scene with many values of parameters, inputs and initial states. Its parts, file by file, in
+ * the order in which they are used; conventions as in vehicle/vehicle.h. */
 #ifndef SWEEP_SWEEP_H
 #define SWEEP_SWEEP_H
 
@@ -36,7 +36,7 @@ typedef struct SweepPlan {
     double *share;  /* [varied][runs] where within it */
 } SweepPlan;
 
-/* name=low:high or name=low:high:count; the name is looked up later. Mistakes end in a usage error. */
+/* name=low:high or name=low:high:count; the name is looked up later. Mistakes end in diag_fail_call(). */
 void vary_read(Pool *pool, SweepPlan *plan, const char *word);
 /* Look names up, count the runs. */
 void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine);
@@ -46,11 +46,11 @@ double plan_value(const SweepPlan *plan, int varied, int64_t run);
 /* ---- share.c: runs shared out among processes ----------------------------------------------------------- */
 
 /* The result of a run. */
-typedef struct Result {
+typedef struct RunResult {
     int64_t run;
     int status;
     const char *row, *reason; /* its row of the results; the reason of a failure, NULL: none or unknown */
-} Result;
+} RunResult;
 
 typedef struct Share {
     int64_t count;
@@ -58,10 +58,10 @@ typedef struct Share {
     int lock;           /* a file descriptor that processes made by share_runs() close */
     int together;       /* most runs that are made at once */
     /* Called in one of the processes: make runs. False: a request to stop came. */
-    bool (*make)(void *context, const int64_t *run, int runs, Result *result);
+    bool (*make)(void *context, const int64_t *run, int runs, RunResult *result);
     /* Called in the caller's process with the results that came, perhaps 0, at least ten times a second. False:
      * stop. */
-    bool (*take)(void *context, const Result *result, int results);
+    bool (*take)(void *context, const RunResult *result, int results);
     void *context;
 } Share;
 
@@ -80,7 +80,7 @@ bool share_runs(Pool *pool, const Share *share, size_t processes);
 typedef struct Journal {
     Pool *pool;
     const char *path;
-    int file;
+    int file, *held; /* held: the same, closed where a failure ends a call */
     int64_t runs, finished, failed;
     const char **row; /* [runs] text of each row; NULL: not finished */
     int first_status; /* of the failed run with the lowest number; GIC_OK: none failed */
@@ -91,7 +91,9 @@ typedef struct Journal {
 /* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
 Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
 /* Rows of runs, into the file and onto the disk; texts stay in use. */
-void journal_add(Journal *journal, const Result *result, int results);
+void journal_add(Journal *journal, const RunResult *result, int results);
+/* Keep it for later. */
+void journal_close(const Journal *journal);
 /* Remove the journal after the results are written. */
 void journal_remove(Journal *journal);
 
@@ -111,5 +113,30 @@ typedef struct Sweep {
 
 /* All runs that are not finished. False: someone asked to stop. */
 bool sweep_run(const Sweep *sweep);
+
+/* ---- sweep.c: all of it ---------------------------------------------------------------------------------- */
+
+typedef struct SweepRequest {
+    const char *results; /* a file, beside which the journal is */
+    const char *engine;  /* each run by itself; NULL: lanes where they can be had */
+    EngineOptions code;
+    const char *const *vary; /* [varied] words for vary_read() */
+    int varied;
+    int64_t latin; /* 0: a grid */
+    uint64_t seed;
+    bool quiet;
+} SweepRequest;
+
+/* What became of it. */
+typedef struct SweepTable {
+    const Engine *engine;     /* for the caller to close; NULL: not opened */
+    const gic_signal *signal; /* [columns] */
+    int columns;
+    int64_t runs;
+    const char **row; /* [runs] numbers separated by commas */
+} SweepTable;
+
+/* Make the runs and write the results. Ends in diag_fail where that can't be. */
+void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table);
 
 #endif

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ * Sweeps: what gicsweep does, and its table in memory. */
+#include "base/message.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "host/gic.h"
+#include "library/library_private.h"
+#include "library/result_private.h"
+#include "scene/scene.h"
+#include "sweep/sweep.h"
+
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Sweeping {
+    OpenModel *open;
+    const gicl_sweep *asked;
+    Pool *pool;
+    SweepTable table;
+    Result *result; /* NULL: not wanted */
+} Sweeping;
+
+static void make_pool(void *context)
+{
+    ((Sweeping *)context)->pool = pool_new();
+}
+
+static void sweep(void *context)
+{
+    Sweeping *s = context;
+    const gicl_sweep *asked = s->asked;
+    const OpenModel *open = s->open;
+    const Model *model = model_once(s->open, s->pool);
+    const Scene *scene = scene_read(s->pool, asked->scene, model, open->integrator, open->tolerance);
+    SweepRequest request = {.results = asked->results,
+                            .engine = asked->alone ? open->engine_name : NULL,
+                            .code = open->options,
+                            .vary = asked->vary,
+                            .varied = asked->varied,
+                            .latin = asked->latin,
+                            .seed = asked->seed,
+                            .quiet = asked->quiet};
+    request.code.quiet = asked->quiet;
+    sweep_all(s->pool, model, scene, &request, &s->table);
+}
+
+/* The table in a pool of its own. */
+static void keep(void *context)
+{
+    Sweeping *s = context;
+    const SweepTable *table = &s->table;
+    Pool *pool = pool_new();
+    double *value = pool_alloc(pool, sizeof *value * (size_t)(table->runs * table->columns + 1)), *next = value;
+    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)table->columns);
+    for (int c = 0; c < table->columns; ++c)
+        signal[c] = (gic_signal){pool_print(pool, "%s", table->signal[c].name),
+                                 pool_print(pool, "%s", table->signal[c].unit ? table->signal[c].unit : "1")};
+    for (int64_t r = 0; r < table->runs; ++r) {
+        const char *text = table->row[r];
+        char *end;
+        for (int c = 0; c < table->columns; ++c, text = *end ? end + 1 : end)
+            *next++ = strtod(text, &end);
+    }
+    s->result = pool_alloc(pool, sizeof *s->result);
+    s->result->pool = pool;
+    result_add(s->result, "runs", table->runs, table->columns, value, NULL, signal);
+}
+
+static int check(const gicl_sweep *asked, gicl_messages *said)
+{
+    if (!asked || asked->size != sizeof *asked)
+        return call_wrong(said, "set size to sizeof(gicl_sweep), and compile with the library's own gic.h",
+                          "a sweep has %zu bytes, not %zu", sizeof *asked, asked ? asked->size : 0);
+    if (!asked->scene || !asked->results || !asked->vary || asked->varied < 1)
+        return call_wrong(said, NULL, "a sweep needs a scene, a file for results, and what varies");
+    if (asked->latin < 0 || asked->latin > GICL_SWEEP_MOST)
+        return call_wrong(said, NULL, "runs of a Latin hypercube are 1 to %d, or 0: a grid", GICL_SWEEP_MOST);
+    for (int v = 0; v < asked->varied; ++v)
+        if (!asked->vary[v])
+            return call_wrong(said, NULL, "number %d of what varies is NULL", v);
+    return GICL_OK;
+}
+
+int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *asked, gicl_handle *result,
+                   gicl_messages *said)
+{
+    if (result)
+        *result = 0;
+    const Use use = use_begin(library, model, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
+    Sweeping s = {.open = use.thing, .asked = asked};
+    int status = check(asked, said);
+    if (status == GICL_OK)
+        status = call_work(library, said, make_pool, &s);
+    if (status != GICL_OK)
+        return use_end(&use, status);
+    status = call_work(library, said, sweep, &s);
+    if (status == GICL_OK && s.table.engine)
+        engine_close(s.table.engine);
+    if (status == GICL_OK && result)
+        status = call_work(library, said, keep, &s);
+    if (status == GICL_OK && result && !(*result = handle_new(library, THING_RESULT, s.result))) {
+        result_free(s.result);
+        status = call_wrong(said, NULL, "no memory for another handle");
+    }
+    if (s.table.engine && s.table.engine->library)
+        dlclose(s.table.engine->library);
+    pool_free(s.pool);
+    return use_end(&use, status);
+}
