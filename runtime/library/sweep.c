@@ -97,10 +97,11 @@ int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *a
     if (status != GICL_OK)
         return use_end(&use, status);
     status = call_work(library, said, sweep, &s);
-    if (status == GICL_OK && s.table.engine)
-        engine_close(s.table.engine);
-    if (status == GICL_OK && result)
+    const bool made = status == GICL_OK;
+    if (made && result) /* names of signals are the engine's */
         status = call_work(library, said, keep, &s);
+    if (made)
+        engine_close(s.table.engine);
     if (status == GICL_OK && result && !(*result = handle_new(library, THING_RESULT, s.result))) {
         result_free(s.result);
         status = call_wrong(said, NULL, "no memory for another handle");

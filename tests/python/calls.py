@@ -3,9 +3,12 @@
 """calls.py: the Python package by unittest, from the folder of the sources: results are those of gicrun, views are
 the instance's memory, wrong calls raise exceptions that say what was expected, environments keep Gymnasium's rules."""
 import copy
+import csv
 import gc
 import math
+import os
 import pickle
+import tempfile
 import threading
 import unittest
 
@@ -292,6 +295,52 @@ class Calls(unittest.TestCase):
         numpy.testing.assert_allclose(numpy.unique(poles.round(6)), numpy.sort(modes["real"]).round(6))
         rest = self.model.equilibrium()
         numpy.testing.assert_allclose(self.model.instance().rhs(0, rest.states[:]), 0, atol=1e-8)
+
+    def test_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "run.csv")
+            self.assertEqual(self.model.write("run", SCENE, results=path), "")
+            with open(path, encoding="ascii") as file:
+                rows = list(csv.reader(file))
+            columns = self.model.run(SCENE)
+            self.assertEqual([name.split(" [")[0] for name in rows[0]], list(columns))
+            self.assertEqual([float(row[1]) for row in rows[1:]], list(columns[list(columns)[1]]))
+            table = self.model.write("modes", results=os.path.join(folder, "modes.csv"))
+            self.assertIn("eigenvalue [1/s]", table)
+            self.assertEqual(sorted(os.listdir(folder)), ["modes.csv", "run.csv"])
+            text = gicgen.Model(TIRES).write("kc", axle="front", travel=0.02)
+            self.assertTrue(text.startswith("kinematics of hmmwv_tires"))
+            self.model.write("linearize", SCENE, at=0.1, results=os.path.join(folder, "a.npz"))
+            with numpy.load(os.path.join(folder, "a.npz")) as arrays:
+                self.assertTrue(numpy.array_equal(arrays["A"], self.model.linearize(SCENE, 0.1).A))
+            with self.assertRaisesRegex(gicgen.WrongCall, "no study 'mode'"):
+                self.model.write("mode")
+            with self.assertRaisesRegex(gicgen.WrongCall, "modes takes no 'axle'"):
+                self.model.write("modes", axle="front")
+            with self.assertRaisesRegex(gicgen.WrongCall, "one of steady-speed"):
+                self.model.write("manoeuvre", manoeuvre="steady", keys={"speed": 3})
+            with self.assertRaisesRegex(gicgen.Error, "can't"):
+                self.model.write("modes", results=os.path.join(folder, "no", "modes.csv"))
+
+    def test_sweep(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "sweep.csv")
+            table = self.model.sweep(SCENE, {"bounce": (0.01, 0.05, 3)}, path, alone=True)
+            self.assertEqual(list(table["bounce"]), [0.01, 0.03, 0.05])
+            self.assertEqual(list(table["status"]), [0, 0, 0])
+            self.assertEqual(table["carriage.z.end"][2], self.model.run(SCENE)["carriage.z"][-1])
+            with open(path, encoding="ascii") as file:
+                rows = list(csv.reader(file))[1:]
+            self.assertEqual([[float(x) for x in row] for row in rows], [list(row) for row in zip(*(table[name] for name in table))])
+            self.assertEqual(os.listdir(folder), ["sweep.csv"])
+            some = self.model.sweep(SCENE, {"bounce": (0.01, 0.05)}, path, latin=4, seed=3, alone=True)
+            self.assertEqual(sorted((some["bounce"] - 0.01) // 0.01), [0, 1, 2, 3])
+            with self.assertRaisesRegex(gicgen.Error, "nothing that can be varied is called 'bouce'"):
+                self.model.sweep(SCENE, {"bouce": (0, 1, 2)}, path)
+            with self.assertRaisesRegex(gicgen.WrongCall, "needs a count"):
+                self.model.sweep(SCENE, {"bounce": (0, 1)}, path, alone=True)
+            with self.assertRaises(ValueError):
+                self.model.sweep(SCENE, {"bounce": (0, math.nan, 2)}, path)
 
     def test_threads(self):
         def work(out):

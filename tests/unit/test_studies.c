@@ -354,6 +354,79 @@ static void test_no_memory(void **state)
     }
 }
 
+/* A sweep: its table is its file, memory that ends leaves finished runs and no more, and wrong calls are errors. */
+static void test_sweep(void **state)
+{
+    enum { RUNS = 3 };
+    const Lib *lib = *state;
+    char path[100], table[100];
+    setenv("OMP_NUM_THREADS", "1", 1); /* a process that fails in the place of this one would be seen by nobody */
+    FILE *file = fopen(in(lib, "short.scene", path), "w");
+    fputs("gicscene: 1\nduration: 0.02\nstep: 0.002\n", file);
+    fclose(file);
+    const char *const vary[] = {"bounce=0:0.05:3"}, *const other[] = {"bounce=0:0.05"}, *const twice[] = {*vary, *vary};
+    const gicl_sweep sweep = {.size = sizeof sweep,
+                              .scene = path,
+                              .results = in(lib, "sweep.csv", table),
+                              .vary = vary,
+                              .varied = 1,
+                              .alone = 1,
+                              .quiet = 1};
+    gicl_handle result;
+    gicl_array array;
+    assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &sweep, &result, lib->said), GICL_OK);
+    assert_int_equal(gicl_message_count(lib->said), 0);
+    assert_int_equal(gicl_array_get(lib->lib, result, 0, &array, sizeof array, lib->said), GICL_OK);
+    assert_int_equal(array.rows, RUNS);
+    char *whole = bytes(table);
+    const char *text = strchr(whole, '\n');
+    assert_int_equal(strncmp(whole, "run,bounce [m],status,time [s],", 31), 0);
+    for (int64_t i = 0; i < array.rows * array.columns; ++i) {
+        char *end;
+        const double value = strtod(text + 1, &end);
+        assert_memory_equal(&value, &array.data[i], sizeof value);
+        assert_int_equal(*end, (i + 1) % array.columns ? ',' : '\n');
+        text = end;
+    }
+    assert_int_equal(text[1], 0);
+    /* memory that ends: what is finished is kept, and the same call goes on to the same table */
+    int rounds = 0;
+    do {
+        remove(table);
+        failed = false;
+        until = ++rounds;
+        const int status = gicl_sweep_run(lib->lib, lib->model, &sweep, &result, lib->said);
+        until = 0;
+        if (status != GICL_OK) {
+            assert_true(failed);
+            assert_int_equal(result, 0);
+            assert_non_null(strstr(last(lib->said).text, "memory"));
+            assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &sweep, NULL, lib->said), GICL_OK);
+        }
+        char *found = bytes(table);
+        assert_string_equal(whole, found);
+        free(found);
+        assert_int_equal(files(lib->folder, false), 2);
+    } while (failed);
+    assert_true(rounds > 20);
+    free(whole);
+    gicl_sweep wrong[] = {sweep, sweep, sweep, sweep, sweep, sweep, sweep, sweep};
+    wrong[0].size = 3;
+    wrong[1].scene = NULL;
+    wrong[2].results = NULL;
+    wrong[3].vary = NULL;
+    wrong[4].varied = 0;
+    wrong[5].latin = -1;
+    wrong[6].vary = other;
+    wrong[7].vary = twice;
+    wrong[7].varied = 2;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i)
+        assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &wrong[i], &result, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_sweep_run(lib->lib, lib->model, NULL, &result, lib->said), GICL_WRONG);
+    wrong[1].scene = quarter;
+    assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &wrong[1], &result, lib->said), GICL_FAILED);
+}
+
 /* ---- threads -------------------------------------------------------------------------------------------------- */
 
 enum { THREADS = 8 };
@@ -411,6 +484,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_listener, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_wrong_studies, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_no_memory, open_lib, close_lib),
+        cmocka_unit_test_setup_teardown(test_sweep, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_threads, open_lib, close_lib),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -33,6 +33,12 @@ class Study(ctypes.Structure):
                 ("quiet", ctypes.c_int)]
 
 
+class Sweep(ctypes.Structure):
+    _fields_ = [("size", ctypes.c_size_t), ("scene", ctypes.c_char_p), ("results", ctypes.c_char_p),
+                ("vary", ctypes.POINTER(ctypes.c_char_p)), ("varied", ctypes.c_int), ("latin", ctypes.c_int64),
+                ("seed", ctypes.c_uint64), ("alone", ctypes.c_int), ("quiet", ctypes.c_int)]
+
+
 class Array(ctypes.Structure):
     _fields_ = [("name", ctypes.c_char_p), ("rows", ctypes.c_int64), ("columns", ctypes.c_int),
                 ("data", ctypes.POINTER(ctypes.c_double)), ("row_name", ctypes.POINTER(ctypes.c_char_p)),
@@ -132,6 +138,7 @@ _ARGUMENTS = {
     "modes": [Handle, ctypes.c_char_p, _P],
     "linearize": [Handle, ctypes.c_char_p, ctypes.c_double, _P],
     "write": [Handle, _P],
+    "sweep_run": [Handle, _P, _P],
     "array_count": [Handle, _P],
     "array_get": [Handle, ctypes.c_int, _P, ctypes.c_size_t],
 }
