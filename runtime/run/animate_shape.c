@@ -87,8 +87,11 @@ static double reach(const Shape *shape, const double x[3])
     return most;
 }
 
+/* Half the diagonal of the solid box that stands for a body without points away from a hinge. */
+static double half_diagonal(const Shape *shape) { return norm3(shape->box) / 2; }
+
 /* A hinge is drawn as wide as a third of the smaller body at it: an arm between a hinge and a ball joint becomes a
- * triangle. */
+ * triangle. A body all of whose points are at its hinges keeps them, and is as large as its inertia says. */
 static void add_hinges(const Shaper *shaper)
 {
     const Model *model = shaper->model;
@@ -97,22 +100,24 @@ static void add_hinges(const Shaper *shaper)
         points[b] = shaper->shapes->body[b].points;
     for (int j = 0; j < model->joints; ++j) {
         const Joint *joint = &model->joint[j];
-        double x[2][3], width = INFINITY;
+        double x[2][3], far[2], width = INFINITY;
         if (joint->type != JOINT_REVOLUTE && joint->type != JOINT_CYLINDRICAL)
             continue;
         for (int k = 0; k < 2; ++k) {
             Shape plain = shaper->shapes->body[joint->body[k]];
             plain.points = points[joint->body[k]]; /* points of hinges are not counted */
             vector(model, joint->point[k], x[k]);
-            const double far = reach(&plain, x[k]);
-            width = far > 0 ? fmin(width, far / 3) : width;
+            far[k] = reach(&plain, x[k]);
+            const double size = far[k] > 0 ? far[k] : half_diagonal(&plain);
+            width = size > 0 ? fmin(width, size / 3) : width;
         }
         for (int k = 0; k < 2 && isfinite(width); ++k)
             for (int side = -1; side <= 1; side += 2) {
                 double end[3];
                 for (int i = 0; i < 3; ++i)
                     end[i] = x[k][i] + side * width * number(model, &joint->axis[k][i]);
-                add_point(shaper, joint->body[k], end);
+                if (far[k] > 0)
+                    add_point(shaper, joint->body[k], end);
             }
     }
 }

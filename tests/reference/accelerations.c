@@ -280,6 +280,27 @@ static quad joint_moments(const Solver *solver, const Reaction *reaction, int bo
     return sum;
 }
 
+static bool hands_on_torque(const Joint *joint)
+{
+    return joint->type != SPHERICAL && joint->type != DISTANCE && joint->type != REVOLUTE_SPHERICAL &&
+           joint->type != POINT_ON_LINE && joint->type != POINT_IN_PLANE;
+}
+
+/* The terms of which a joint's torque is left on one of its bodies: the moments of that body's joints, and where it
+ * carries another body by a joint that hands torques on, those of that one. What a light plate between a trailer's hinge
+ * and a tractor's lets through is what is left of the trailer's forces on their long arms, though none has an arm on the
+ * plate. */
+static quad torque_terms(const Solver *solver, const Reaction *reaction, int joint, int side)
+{
+    const Model *model = solver->model;
+    const int body = model->joint[joint].body[side];
+    quad sum = joint_moments(solver, reaction, body);
+    for (int j = 0; j < model->joints; ++j)
+        if (j != joint && model->joint[j].body[0] == body && hands_on_torque(&model->joint[j]))
+            sum += joint_moments(solver, reaction, model->joint[j].body[1]);
+    return sum;
+}
+
 /* The same of drive forces and reactions. A torque is what is left of the moments that the joints of a body exert,
  * where a force on a long arm may turn a light strut, say, hardly at all: they are terms too, those of the body where
  * they are smaller. */
@@ -297,10 +318,9 @@ static void contribution_forces(Solver *solver, Sum *sum)
     for (int j = 0; j < model->joints; ++j) {
         const Reaction *own = &reaction[j];
         Reaction *total = &sum->reaction[j];
-        const int *body = model->joint[j].body;
-        quad moments = joint_moments(solver, reaction, body[1]);
-        if (body[0] >= solver->first)
-            moments = fminq(moments, joint_moments(solver, reaction, body[0]));
+        quad moments = torque_terms(solver, reaction, j, 1);
+        if (model->joint[j].body[0] >= solver->first)
+            moments = fminq(moments, torque_terms(solver, reaction, j, 0));
         for (int i = 0; i < 3; ++i) {
             total->force[i] += own->force[i];
             total->torque[i] += own->torque[i];

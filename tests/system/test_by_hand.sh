@@ -19,6 +19,7 @@ by_hand() {
     done <"$work/notes"
 }
 by_hand formula_student
+by_hand semitrailer
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
