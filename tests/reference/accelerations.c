@@ -287,9 +287,9 @@ static bool hands_on_torque(const Joint *joint)
 }
 
 /* The terms of which a joint's torque is left on one of its bodies: the moments of that body's joints, and where it
- * carries another body by a joint that hands torques on, those of that one. What a light plate between a trailer's hinge
- * and a tractor's lets through is what is left of the trailer's forces on their long arms, though none has an arm on the
- * plate. */
+ * carries another body by a joint that hands torques on, those of that one. What a light plate between a trailer's
+ * hinge and a tractor's lets through is what is left of the trailer's forces on their long arms, though none has an arm
+ * on the plate. */
 static quad torque_terms(const Solver *solver, const Reaction *reaction, int joint, int side)
 {
     const Model *model = solver->model;

@@ -233,6 +233,11 @@ def check_sequence(page, sequence):
         lists = ("bodies", "joints", "coordinates", "known before")
         entry.update({what: word for what, word in zip(lists, row[3:7]) if word})
         told.append(entry)
+    # of joints and coordinates that could change places either way is good: chains of subsets take their own
+    for entry in told + subsets:
+        for label in ("joints", "coordinates"):
+            if label in entry:
+                entry[label] = ", ".join(sorted(re.split(r", (?![^(]*\))", entry[label])))
     same("sequence", told, subsets)
 
 
