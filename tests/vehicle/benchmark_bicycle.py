@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# benchmark_bicycle.py GICGEN GICRUN MODELS WORK: eigenvalues of the benchmark bicycle (../data/bicycle/benchmark.veh) as
-# published, with 14 decimals, at 1 to 10 m/s: weave, capsize and castering. Prints `good NAME` or `bad NAME: why` for
-# each check.
+# benchmark_bicycle.py GICGEN GICRUN MODELS WORK: eigenvalues of the benchmark bicycle (../data/bicycle/benchmark.veh)
+# as published, with 14 decimals, at 1 to 10 m/s: weave, capsize and castering. Prints `good NAME` or `bad NAME: why`
+# for each check.
 #
 # The published bicycle rolls on knife edges without slip, a constraint on velocities, which no model can state. It is
 # the limit of tires whose lateral stiffness C by slip angle grows: slip is Fy / C, so that what it changes is a series
@@ -72,7 +72,8 @@ def eigenvalues(gicrun, work, stiffness, speed):
     with open(scene, 'w') as file:
         file.write('gicscene: 1\nduration: 1\nstep: 0.001\ninitial: {speed: %d}\n' % speed)
     model = os.path.join(work, 'benchmark.veh')
-    done = subprocess.run([gicrun, '--linearize', '--at', '0', '-q', model, scene, '-o', out], capture_output=True, text=True)
+    done = subprocess.run([gicrun, '--linearize', '--at', '0', '-q', model, scene, '-o', out], capture_output=True,
+                          text=True)
     if done.returncode:
         sys.exit(done.stderr)
     found = np.linalg.eigvals(np.load(out)['A'])
