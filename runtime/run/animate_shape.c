@@ -88,7 +88,10 @@ static double reach(const Shape *shape, const double x[3])
 }
 
 /* Half the diagonal of the solid box that stands for a body without points away from a hinge. */
-static double half_diagonal(const Shape *shape) { return norm3(shape->box) / 2; }
+static double half_diagonal(const Shape *shape)
+{
+    return norm3(shape->box) / 2;
+}
 
 /* A hinge is drawn as wide as a third of the smaller body at it: an arm between a hinge and a ball joint becomes a
  * triangle. A body all of whose points are at its hinges keeps them, and is as large as its inertia says. */
