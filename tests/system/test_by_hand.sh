@@ -21,6 +21,7 @@ by_hand() {
 }
 by_hand formula_student
 by_hand semitrailer
+by_hand motorcycle
 by_hand benchmark_bicycle
 
 echo "$passed passed, $failed failed"

@@ -127,6 +127,7 @@ hmmwv_tires tires_brake tires_coast tires_jump tires_park tires_rough
 hmmwv_tmeasy tires_brake tires_coast tires_jump tires_park tires_rough
 hmmwv paper_run rough_road suspension_rig spin field_track
 formula_student formula_student_acceleration formula_student_skid_pad
+motorcycle motorcycle_circle motorcycle_lane_change
 semitrailer semitrailer_braking semitrailer_lane_change semitrailer_turn
 hmmwv_full hmmwv_full
 hmmwv14 hmmwv14

@@ -130,11 +130,11 @@ class Vehicle:
         return {name.split(' [')[0]: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
 
 
-def energy_orders(vehicle, scene, step, ratio, until):
+def energy_orders(vehicle, scene, step, ratio, until, edits=()):
     """The energy's change against the integral of the power over all steps, by a quadrature of order 4: what is left
     is the integrator's, of an order of 2.7 at least, in two rates and in one."""
     def gap(h, n):
-        d = vehicle.run(scene, [('^step: .*', 'step: %.10g' % h), ('^ratio: .*', 'ratio: %d' % n), ('^duration: .*', 'duration: %g' % until),
+        d = vehicle.run(scene, [*edits, ('^step: .*', 'step: %.10g' % h), ('^ratio: .*', 'ratio: %d' % n), ('^duration: .*', 'duration: %g' % until),
                                 ('^output_step: .*', 'output_step: %.10g' % h), ('^plot:', 'outputs: [energy]\nplot:')])
         energy = [a + b for a, b in zip(d['energy.kinetic'], d['energy.potential'])]
         p, done, worst = d['energy.power'], 0, 0
