@@ -31,7 +31,7 @@ least = {by_python: 1.0, by_c: 1.0}
 for _ in range(int(rounds)):
     for steps in least:
         batch.reset()
-        batch.step(step, 3)
+        by_python()
         begin = time.thread_time()
         steps()
         least[steps] = min(least[steps], (time.thread_time() - begin) / MANY)

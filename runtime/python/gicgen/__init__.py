@@ -379,7 +379,7 @@ class Batch:
         call("batch_new", model._handle, _bytes(scene), vehicles, lanes, ctypes.byref(handle))
         self._owned, self.vehicles = _library.Owned(handle), vehicles
         self.status = numpy.zeros(vehicles, dtype=numpy.int32)
-        self._status_at = self.status.ctypes.data
+        self._prepared = (None,) * 6
         self._views = {}
         for name, (kind, word) in _KINDS.items():
             data, count, stride = ctypes.c_void_p(), ctypes.c_int(), ctypes.c_size_t()
@@ -394,7 +394,11 @@ class Batch:
                 array = view(self._owned, data.value, shape, (8 * stride.value, 8, 8 * lanes))
                 self._views[name] = Lanes(array, names, units, word, changed, vehicles)
 
-    close = Instance.close
+    def close(self):
+        """Arrays taken from it stay valid."""
+        self._prepared = (None,) * 6
+        Instance.close(self)
+
     _handle = Instance._handle
     _view = Instance._view
     states, rates, inputs = Instance.states, Instance.rates, Instance.inputs
@@ -415,16 +419,22 @@ class Batch:
     def step(self, step, steps=1, method="ab3", ratio=1, check=True):
         """Steps of all. A vehicle that fails keeps its last state and disturbs no other; then RunError is raised about the
         first, or with check=False nothing: see `status`."""
-        # short, since between two steps of many vehicles the processor has forgotten all of it
-        if type(step) is not float or step - step != 0:
-            step = _number(step, "step")
-        if type(steps) is not int or type(ratio) is not int or steps >> 63 or ratio >> 31 or not ratio:
-            steps, ratio = _steps(steps), _ratio(ratio)
-        number = 0 if method == "ab3" else _method(method)
-        status = _library.batch_step(_library.library, self._handle, step, number, ratio, steps, self._status_at,
-                                     _library.said.list)
+        # short, since between two steps of many vehicles the processor has forgotten all of it: what the step before
+        # had is taken again
+        a = self._prepared
+        if not (step == a[0] and steps is a[1] and method is a[2] and ratio is a[3] and _library.said.list is a[4]):
+            a = self._prepare(step, steps, method, ratio)
+        status = _library.batch_step(*a[5])
         if status and (check or status > 0):
             _library.raise_status(status)
+
+    def _prepare(self, step, steps, method, ratio):
+        """Checked arguments of the library's step, after those that they are made from."""
+        said, number = _library.said.list, _number(step, "step")
+        arguments = _library.batch_arguments(self._handle, number, _method(method), _ratio(ratio), _steps(steps),
+                                             self.status.ctypes.data, said)
+        self._prepared = number, steps, method, ratio, said, arguments
+        return self._prepared
 
     def _checked(self, name, check, *arguments):
         try:

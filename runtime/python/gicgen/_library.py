@@ -196,8 +196,15 @@ def raise_status(status):
     raise (WrongCall if status == WRONG else RunError if status < 0 else Error)(messages(), status)
 
 
-# of a step of a batch, which is called often: the function, the library, and where messages of a thread are
-batch_step, library, said = _c.gicl_batch_step, ctypes.c_void_p(_library), _said
+# of a step of a batch, which is called often: where messages of a thread are; the function, which takes its arguments as
+# batch_arguments() prepares them, since their conversion takes longer than the call
+said = _said
+batch_step = _c["gicl_batch_step"]
+
+
+def batch_arguments(*arguments):
+    return tuple(kind.from_param(value) for kind, value in
+                 zip([_P] + _ARGUMENTS["batch_step"] + [_P], (_library,) + arguments, strict=True))
 
 
 class Owned:
