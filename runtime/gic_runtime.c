@@ -306,6 +306,7 @@ static void copy_discrete(const gic_model *model, int32_t *to, const int32_t *fr
 typedef struct Rest {
     gic_real end, length; /* s */
     const gic_real *from, *rate, *to, *rate_there;
+    int64_t behind; /* evaluations that the step needs after `end` */
     int32_t discrete[MOST_DISCRETE];
 } Rest;
 
@@ -313,10 +314,10 @@ typedef struct Rest {
 enum { LEAST_LOOKS = 8, MOST_LOOKS = 60 };
 
 /* Evaluations that head.most leaves for what is left of a step. */
-static int64_t work_left(const gic_head *head)
+static int64_t work_left(const gic_head *head, const Rest *rest)
 {
     const int64_t done = head->rhs_count + head->look_count - head->begun_count;
-    return head->most > 0 ? head->most - done : INT64_MAX / 2;
+    return head->most > 0 ? head->most - done - rest->behind : INT64_MAX / 2;
 }
 
 /* Put the instance at a share of the rest and look at its gears there: 1 if they change, 0 if not, or a status. */
@@ -352,7 +353,7 @@ static int locate_change(const gic_model *model, void *self, const Rest *rest, g
     int found = changes_at(model, self, rest, low);
     if (found == 1)
         high = low;
-    for (int i = 0; i < halvings && found >= 0 && low < high && work_left(head) > 4 * (int64_t)head->ratio + 1; ++i) {
+    for (int i = 0; i < halvings && found >= 0 && low < high && work_left(head, rest) > 4 * (int64_t)head->ratio + 1; ++i) {
         const gic_real middle = GIC_R(0.5) * (low + high);
         found = changes_at(model, self, rest, middle);
         if (found == 1)
@@ -402,7 +403,7 @@ static int change_gears(const gic_model *model, void *self)
     gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
     gic_real *from = scratch + n, *to = scratch + 3 * n, *rate_there = scratch + 4 * n, *end_state = scratch + 9 * n,
              share = GIC_R(0.0);
-    Rest rest = {gic_time(self), head->step, from, array_at(self, model->rate_offset), to, rate_there, {0}};
+    Rest rest = {gic_time(self), head->step, from, array_at(self, model->rate_offset), to, rate_there, 0, {0}};
     for (int32_t changes = 0; share < GIC_R(1.0); ++changes) {
         copy_discrete(model, rest.discrete, discrete_of(model, self));
         copy(end_state, state, n); /* to a row of its own: without a change the others keep what the step has there */
@@ -413,7 +414,7 @@ static int change_gears(const gic_model *model, void *self)
         if (changes == GIC_CHANGES)
             return GIC_ERROR_EVENTS;
         head->history = 0;
-        if (work_left(head) < least_gear_work(head)) { /* then it changes at the end of the step */
+        if (work_left(head, &rest) < least_gear_work(head)) { /* then it changes at the end of the step */
             head->event = 0;
             ++head->passed_count;
             return GIC_OK;
@@ -619,7 +620,7 @@ static int find_turns(const gic_model *model, void *self, const Rest *rest, cons
         const gic_real share = nearest(start, (side * soon.press[i] - start) / ahead, end);
         if (!(share > GIC_R(0.0)))
             continue;
-        if (work_left(head) < LEAST_LOOKS + least_work(head, rest->length, 1))
+        if (work_left(head, rest) < LEAST_LOOKS + least_work(head, rest->length, 1))
             break;
         if (!found->rated)
             status = evaluate(model, self, rest->end, rest->to, rate_there);
@@ -686,7 +687,7 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
     const int32_t n = model->slow_count + model->fast_count;
     const uint64_t before = touch->above;
     const int count = number_of(changed);
-    int64_t spare = work_left(head) - least_work(head, rest->length, 0) - (int64_t)count * LEAST_LOOKS;
+    int64_t spare = work_left(head, rest) - least_work(head, rest->length, 0) - (int64_t)count * LEAST_LOOKS;
     int32_t soonest = -1;
     int status = GIC_OK;
     for (int32_t i = 0; i < model->contact_count && status == GIC_OK; ++i) {
@@ -718,7 +719,7 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
         const gic_real off = -touch->press[soonest] / slope[soonest], next = *share + off;
         if (tries == 4 || !gic_finite(&off, 1) || absolute(off) < SAME_TIME || !(next > SAME_TIME) ||
             !(next < GIC_R(1.0)) ||
-            work_left(head) < 4 * ((int64_t)parts_of(head, next * rest->length) +
+            work_left(head, rest) < 4 * ((int64_t)parts_of(head, next * rest->length) +
                                    parts_of(head, (GIC_R(1.0) - next) * rest->length)) +
                                   3)
             break;
@@ -733,15 +734,52 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
     return status;
 }
 
-/* What the next step needs to know of this one. */
-static void note_contacts(const gic_model *model, void *self, const Touch *b)
+/* What the next step needs to know of this one. broken: its ends show two kinds of motion. */
+static void note_contacts(const gic_model *model, void *self, const Touch *b, int broken)
 {
     gic_head *head = (gic_head *)self;
     gic_real *past = array_at(self, model->contacts->past_offset);
     copy(past + model->contact_count, past, model->contact_count);
     copy(past, b->press, model->contact_count);
-    head->touched = head->touched < 1 ? 1 : 2;
+    head->touched = head->touched < 1 ? 1 : broken ? 3 : 2;
     head->touching = b->above;
+}
+
+/* ---- loads that bend (head.locate is 2) */
+
+/* The number of a contact may bend by this share of itself in a part of a step. What is less than LEAST_PRESS, m or
+ * rad, is a load that does not matter. */
+#define MOST_BEND GIC_R(0.015625)
+#define LEAST_PRESS GIC_R(1e-4)
+
+/* Parts of a step, and what each takes: RK4, and looks at its end and near its beginning. */
+enum { MOST_PARTS = 32, PART_WORK = 6 };
+
+/* The parts in which a step has to be made again, 1: it is good enough. made: parts that it has. The second difference
+ * of a number at the last three ends of steps, b the last, falls with the square of the parts. */
+static int32_t parts_wanted(const gic_model *model, void *self, const Touch *b, int32_t made)
+{
+    const gic_head *head = (const gic_head *)self;
+    const gic_real *start = array_at(self, model->contacts->past_offset), *before = start + model->contact_count;
+    int32_t parts = 1;
+    if (head->locate != 2 || head->touched < 2)
+        return 1;
+    for (int32_t i = 0; i < model->contact_count; ++i) {
+        const gic_real number[] = {b->press[i], start[i], before[i]};
+        gic_real size = LEAST_PRESS;
+        for (int k = 0; k < 3; ++k)
+            size = absolute(number[k]) > size ? absolute(number[k]) : size;
+        const gic_real bend = absolute(number[0] - GIC_R(2.0) * number[1] + number[2]);
+        while (parts < MOST_PARTS && bend > MOST_BEND * size * (gic_real)(parts * parts))
+            ++parts;
+    }
+    if (parts <= made)
+        return 1;
+    const Rest whole = {GIC_R(0.0), GIC_R(0.0), NULL, NULL, NULL, NULL, 1, {0}};
+    const int64_t room = work_left(head, &whole) / PART_WORK;
+    parts = parts < head->ratio ? head->ratio : parts;
+    parts = parts > room ? (int32_t)room : parts;
+    return parts < head->ratio || parts <= made ? 1 : parts;
 }
 
 /* Pieces of a step that end where a contact comes near. */
@@ -772,8 +810,9 @@ static int remake_piece(const gic_model *model, void *self, gic_real share, Rest
 }
 
 /* Contacts at the end of a step whose state at the start is in row 1 of the scratch array. Where they have changed,
- * also if they have changed back, the step is made again in pieces that end at the changes. staged: RK4 made the step,
- * whose stages may have met a contact that the motion only comes near; then a piece ends there. */
+ * also if they have changed back, the step is made again in pieces that end at the changes; and where their loads bend
+ * too much, in parts. staged: RK4 made the step, whose stages may have met a contact that the motion only comes near;
+ * then a piece ends there. */
 static int cross_contacts(const gic_model *model, void *self, int staged)
 {
     const int32_t n = model->slow_count + model->fast_count;
@@ -781,21 +820,32 @@ static int cross_contacts(const gic_model *model, void *self, int staged)
     gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
     gic_real *to = scratch + 9 * n, *rate_there = scratch + 11 * n;
     const gic_real end = gic_time(self);
-    Rest rest = {end, head->step, scratch + n, array_at(self, model->rate_offset), to, rate_there, {0}};
+    Rest rest = {end, head->step, scratch + n, array_at(self, model->rate_offset), to, rate_there, 0, {0}};
     uint64_t crossed = 0;
     Touch a, b;
-    int status = touch_at(model, self, end, state, &b), pieces = 0, splits = 0;
-    if (status == GIC_OK && b.above == head->touching && head->touched == 2 && !may_have_turned(model, self, &b)) {
-        note_contacts(model, self, &b);
+    int status = touch_at(model, self, end, state, &b), broken = 0, splits = 0;
+    const int32_t parts = status == GIC_OK ? parts_wanted(model, self, &b, staged ? head->ratio : 1) : 1;
+    int32_t part = 1; /* the present one, which ends at part_end */
+    gic_real part_end = end;
+    if (status == GIC_OK && parts == 1 && b.above == head->touching && head->touched == 2 &&
+        !may_have_turned(model, self, &b)) {
+        note_contacts(model, self, &b, 0);
         return GIC_OK;
     }
     if (status == GIC_OK)
         status = touch_at(model, self, end - rest.length, rest.from, &a);
+    if (status == GIC_OK && parts > 1) {
+        head->history = 0;
+        staged = 1;
+        status = remake_piece(model, self, GIC_R(1.0) / (gic_real)parts, &rest, &b);
+        part_end = rest.end;
+    }
     for (int32_t changes = 0; status == GIC_OK;) {
         Between within;
         gic_real share = GIC_R(1.0);
         const uint64_t before = a.above;
         uint64_t changed = before ^ b.above;
+        rest.behind = (int64_t)(parts - part) * PART_WORK;
         copy(to, state, n);
         status = find_turns(model, self, &rest, &a, &b, ~(changed | crossed), rate_there, &within);
         for (int32_t i = 0; i < model->contact_count; ++i)
@@ -811,15 +861,17 @@ static int cross_contacts(const gic_model *model, void *self, int staged)
             head->event = first_contact(changed);
             return GIC_ERROR_EVENTS;
         }
-        if (changed && work_left(head) < work) {
+        if (changed && work_left(head, &rest) < work) {
             head->passed_count += number_of(changed);
             changed = within.found = 0;
         }
         if (staged && within.near > GIC_R(0.0) && splits < MOST_SPLITS && head->most == 0) {
             ++splits;
+            broken = 1;
             status = remake_piece(model, self, within.near, &rest, &b);
         } else if (changed) {
             ++changes;
+            broken = 1;
             if (!within.rated)
                 status = evaluate(model, self, rest.end, to, rate_there);
             if (status == GIC_OK)
@@ -830,18 +882,20 @@ static int cross_contacts(const gic_model *model, void *self, int staged)
             if (status == GIC_OK && share < GIC_R(1.0))
                 status = make_piece(model, self, rest.end, &rest, &b);
         } else if (rest.end < end) {
+            if (rest.end >= part_end) {
+                ++part;
+                part_end = part < parts ? end - (gic_real)(parts - part) / (gic_real)parts * head->step : end;
+                crossed = 0;
+            }
             a = b;
-            rest.length = end - rest.end;
-            status = make_piece(model, self, end, &rest, &b);
+            rest.length = part_end - rest.end;
+            status = make_piece(model, self, part_end, &rest, &b);
         } else
             break;
         staged = 1;
-        ++pieces;
         head->history = 0;
     }
-    if (pieces > 0)
-        head->touched = 0; /* numbers of two kinds of motion */
-    note_contacts(model, self, &b);
+    note_contacts(model, self, &b, broken);
     set_inputs(model, self, end);
     return status;
 }
@@ -934,6 +988,8 @@ static int move_on(const gic_model *model, void *self, gic_real step, int32_t me
     gic_real *state = array_at(self, model->state_offset);
     const Kept kept = keep(model, self);
     if (!goes_on(head, step, method, ratio)) {
+        if (step != head->step && head->touched > 1)
+            head->touched = 1; /* numbers a step of another length apart */
         head->start_time = gic_time(self);
         head->steps = 0;
         head->step = step;

@@ -129,12 +129,14 @@ typedef struct gic_head {
     int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
     int32_t event;       /* what GIC_ERROR_EVENTS is about: 1 + the index of a contact, or 1 + contact_count + an index
                           * in discrete[]; 0: nothing; see gic_event_name */
-    int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them */
+    int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them; 2:
+                          * also where a contact's load bends too much within them */
     int32_t most;       /* for the caller: the most evaluations of a step, right-hand sides and looks; 0: no bound, else
                          * GIC_LEAST_MOST or more. What is left of a step in which they don't suffice for the next
                          * contact or change of gear goes over it, and passed_count counts it */
     uint64_t touching;  /* contacts under load at the end of the last step, a bit each; only a hint */
-    int32_t touched;    /* the last steps whose gic_contacts.past is known: 0, 1 or 2; only a hint */
+    int32_t touched;    /* the last steps whose gic_contacts.past is known: 0, 1 or 2, or 3: two, but contacts have
+                         * changed in the last one; only a hint */
     int32_t parted;     /* was the last step made in parts at samples of controllers? */
     int32_t unchecked;  /* evaluations until the next one that is checked (GIC_ERROR_RESIDUAL); 0: the next one */
     int64_t rhs_count;  /* right-hand sides evaluated */

@@ -497,6 +497,16 @@ static void read_most_work(Scene *scene, const Item *most, bool replaced)
     scene->most_work = (int)number;
 }
 
+/* What head.locate is. */
+static int locate_word(const Item *locate)
+{
+    static const char *const word[] = {"false", "true", "loads"};
+    for (int i = 0; i < 3; ++i)
+        if (locate->kind == ITEM_SCALAR && !locate->quoted && !strcmp(locate->text, word[i]))
+            return i;
+    diag_fail(locate->at, "write one of them, without quotes", "locate must be true, false or loads");
+}
+
 /* ---- what may be left out: SCENE.md section 9 ------------------------------------------------------------- */
 
 static void read_skips(Reader *reader, const Item *root, bool replaced)
@@ -509,8 +519,8 @@ static void read_skips(Reader *reader, const Item *root, bool replaced)
             diag_fail(steady->at, "add `ratio: 6`", "steady is about fast steps, of which there are none");
     }
     const Item *locate = doc_find(root, "locate");
-    const bool located = locate && doc_bool(locate, "locate");
-    scene->locate = located && scene->method < METHOD_ADAMS;
+    const int located = locate ? locate_word(locate) : 0;
+    scene->locate = scene->method < METHOD_ADAMS ? located : 0;
     if (locate && !located && scene->method >= METHOD_ADAMS)
         diag_fail(locate->at, "leave it out, or take constant steps", "variable steps always end at contacts");
     read_most_work(scene, doc_find(root, "most_work"), replaced);

@@ -43,7 +43,7 @@ typedef struct Scene {
     int32_t ratio;                      /* of AB3: fast steps in a step */
     double steady;                      /* of gic_step_steady; 0: always fast steps */
     int most_work;                      /* gic_head.most; 0: no bound */
-    bool locate;                        /* constant steps are made in parts at contacts */
+    int locate;                         /* gic_head.locate: constant steps are made in parts at contacts */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* the velocity is a `speed` along the base's x axis; start in static equilibrium */
     double speed;
