@@ -175,11 +175,11 @@ static int by_variable_steps(Mass *mass, double end, int32_t method)
     return status;
 }
 
-static int by_constant_steps(Mass *mass, double end, int32_t method, double most)
+static int by_constant_steps(Mass *mass, double end, int32_t method, int32_t locate, double most)
 {
     const double steps = ceil(end / most);
     int status = GIC_OK;
-    mass->head.locate = 1;
+    mass->head.locate = locate;
     for (double k = 0; k < steps && status == GIC_OK; ++k)
         status = gic_step(&mass_model, mass, end / steps, method);
     return status;
@@ -187,32 +187,32 @@ static int by_constant_steps(Mass *mass, double end, int32_t method, double most
 
 static void test_random(void **state)
 {
-    static const char *const name[] = {"adams", "rkck", "ab3", "rk4"};
+    static const char *const name[] = {"adams", "rkck", "ab3", "rk4", "ab3, loads", "rk4, loads"};
     long events = 0, skipped = 0;
     (void)state;
     for (long k = 0; k < sequences; ++k)
-        for (int way = 0; way < 4; ++way) {
+        for (int way = 0; way < 6; ++way) {
             Mass mass;
             draw_mass(&mass);
             const Exact exact = follow(&mass);
             const double end = (double)exact.time, speed = fabs(mass.state[1]) + sqrt(2 * fabs(mass.pull) * mass.high);
             const double omega = fmax(mass.omega[0], mass.omega[1]);
-            /* contacts that constant steps resolve, in some thousand of them */
-            const double step = fmin((double)exact.shortest / 8, 0.02 / omega);
+            /* contacts that constant steps resolve, in some thousand of them; parts of RK4 resolve more */
+            const double step = fmin((double)exact.shortest / 8, 0.02 / omega) * (way < 5 ? 1 : 4);
             const Mass start = mass;
             if (!isfinite(end) || end > 1000 || (way > 1 && end / step > 20000)) {
                 ++skipped;
                 continue;
             }
             const int status = way < 2 ? by_variable_steps(&mass, end, way ? METHOD_RKCK : METHOD_ADAMS)
-                                       : by_constant_steps(&mass, end, way == 2 ? GIC_AB3 : GIC_RK4, step);
+                                       : by_constant_steps(&mass, end, way % 2 ? GIC_RK4 : GIC_AB3, way / 2, step);
             const double off =
                 fmax(fabs(mass.state[0] - (double)exact.x) * omega, fabs(mass.state[1] - (double)exact.v));
             /* AB3: 3/8 (w h)^4 a step, over the phase of all contacts and the flights after them, and RK4 far below;
              * variable steps: some thousand errors of the tolerance in place and speed, which grow with the way */
-            const double limit = way == 2   ? 0.1 * speed
-                                 : way == 3 ? 1e-3 * speed
-                                            : 1e4 * 1e-10 * (1 + end) * (1 + omega);
+            const double limit = way < 2      ? 1e4 * 1e-10 * (1 + end) * (1 + omega)
+                                 : way % 2 ? 1e-3 * speed
+                                           : 0.1 * speed;
             const int changes = (int)mass.head.contact_count;
             if (status != GIC_OK || abs(changes - EVENTS) > 2 * exact.grazes || !(off <= limit)) {
                 printf("%s, seed %ld: status %d, %d changes, off %g of %g; gap %.17g, omega %.17g %.17g, pull %.17g, "
@@ -224,7 +224,7 @@ static void test_random(void **state)
             events += EVENTS;
         }
     printf("%ld events, %ld sequences left out\n", events, skipped);
-    assert_true(skipped < sequences);
+    assert_true(skipped < 3 * sequences / 2);
 }
 
 int main(int count, char **word)
