@@ -353,7 +353,8 @@ static int locate_change(const gic_model *model, void *self, const Rest *rest, g
     int found = changes_at(model, self, rest, low);
     if (found == 1)
         high = low;
-    for (int i = 0; i < halvings && found >= 0 && low < high && work_left(head, rest) > 4 * (int64_t)head->ratio + 1; ++i) {
+    for (int i = 0; i < halvings && found >= 0 && low < high && work_left(head, rest) > 4 * (int64_t)head->ratio + 1;
+         ++i) {
         const gic_real middle = GIC_R(0.5) * (low + high);
         found = changes_at(model, self, rest, middle);
         if (found == 1)
@@ -720,8 +721,8 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
         if (tries == 4 || !gic_finite(&off, 1) || absolute(off) < SAME_TIME || !(next > SAME_TIME) ||
             !(next < GIC_R(1.0)) ||
             work_left(head, rest) < 4 * ((int64_t)parts_of(head, next * rest->length) +
-                                   parts_of(head, (GIC_R(1.0) - next) * rest->length)) +
-                                  3)
+                                         parts_of(head, (GIC_R(1.0) - next) * rest->length)) +
+                                        3)
             break;
         *share = next;
     }

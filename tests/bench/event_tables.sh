@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: MIT
 # event_tables.sh [BUILD [PART...]]: tables of models/EVENTS.md. `work`: what a bound of work, `most_work`, does to the
 # error of scenes with events; `roads`: errors over roads that steps resolve more or less; `kinks`: errors with and
-# without kinks in formulas of forces. An error is the largest distance of chassis positions, m, from those of RK4 with
-# contacts located and a small part of the step.
+# without kinks in formulas of forces; `loads`: what parts of steps in which loads bend little cost and bring. An error
+# is the largest distance of chassis positions, m, from those of RK4 with contacts located and a small part of the step.
 set -e
 build=${1:-build}
 [ $# -eq 0 ] || shift
-[ $# -gt 0 ] || set -- work roads kinks
+[ $# -gt 0 ] || set -- work roads kinks loads
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -44,6 +44,28 @@ bounds() {
         echo "| \`$name\`, $step s, ratio $ratio | $bound | $(said 'work of a step') | $(said 'contacts located') |" \
             "$(said 'events gone over') | $(said 'right-hand sides') | $(apart) |"
     done
+}
+
+# loads MODEL SCENE STEP PARTS RATIO [TOLERANCE]: errors and right-hand sides of a step, its half and its quarter, and
+# of variable steps
+loads() {
+    scene "$2" "$(part_of "$3" "$4")" 'integrator: rk4' 'locate: true' >"$work/fine.scene"
+    "$build/gicrun" -q "models/$1.veh" "$work/fine.scene" -o "$work/fine.csv"
+    for way in "ratio: $5" 'integrator: rk4'; do
+        for located in false true loads; do
+            printf '| `%s`, %s s | %s, locate: %s |' "$2" "$3" "$way" $located
+            for part in 1 2 4; do
+                scene "$2" "$(part_of "$3" $part)" "$way" "locate: $located" >"$work/now.scene"
+                "$build/gicrun" "models/$1.veh" "$work/now.scene" -o "$work/now.csv" 2>"$work/said"
+                printf ' %s | %s |' "$(apart)" "$(said 'right-hand sides')"
+            done
+            echo
+        done
+    done
+    [ -n "$6" ] || return 0
+    scene "$2" "$3" 'integrator: rkck' "tolerance: $6" >"$work/now.scene"
+    "$build/gicrun" "models/$1.veh" "$work/now.scene" -o "$work/now.csv" 2>"$work/said"
+    echo "| \`$2\` | variable steps: rkck, tolerance: $6 | $(apart) | $(said 'right-hand sides') | | | | |"
 }
 
 # errors WHAT MODEL STEP PARTS LINE...: of a step, its half and its quarter, AB3 and RK4; `one_scene STEP
@@ -141,6 +163,14 @@ locate: true, integrator: rk4'
             all_errors "\`hmmwv\`, \`$road\`, 4 ms" models/hmmwv.veh 0.004 32
         done
         ;;
-    *) echo "event_tables.sh: no part '$part': work, roads or kinks" >&2; exit 1 ;;
+    loads)
+        echo '| scene | with | step | right-hand sides | half | right-hand sides | a quarter | right-hand sides |'
+        echo '|---|---|---|---|---|---|---|---|'
+        loads hmmwv_tires tires_jump 0.002 64 4 1e-4
+        loads hmmwv_tires tires_rough 0.004 64 4 1e-4
+        loads hmmwv_full rough_road 0.004 32 1 1e-4
+        loads hmmwv_tires tires_brake 0.004 32 4
+        ;;
+    *) echo "event_tables.sh: no part '$part': work, roads, kinks or loads" >&2; exit 1 ;;
     esac
 done

@@ -216,7 +216,8 @@ static double thrown_off(int32_t locate, int32_t method, double stays, double re
         assert_int_equal(gic_step(&masses_model, &m, step, method), GIC_OK);
         for (int i = 0; i < STOPS; ++i) {
             const Place due = thrown(&m, speed, (reach + 0.25 * i) * step, gic_time(&m));
-            const double place = fabs(m.state[i] - m.edge[i] - due.x) * m.omega, rate = fabs(m.state[STOPS + i] - due.v);
+            const double place = fabs(m.state[i] - m.edge[i] - due.x) * m.omega,
+                         rate = fabs(m.state[STOPS + i] - due.v);
             worst = fmax(worst, fmax(place, rate) / speed);
         }
     }
@@ -269,7 +270,8 @@ static void test_most(void **state)
             assert_true(most > 16 || m.head.contact_count == 0);
             assert_true(m.head.contact_count + m.head.passed_count > 0);
             /* parts of steps where loads bend take what they are given */
-            assert_true(way > 1 || most < 200 || (!m.head.passed_count && !memcmp(m.state, free.state, sizeof m.state)));
+            assert_true(way > 1 || most < 200 ||
+                        (!m.head.passed_count && !memcmp(m.state, free.state, sizeof m.state)));
             assert_true(gic_bounded(m.state, 2 * STOPS));
         }
     Masses m = {.omega = 1, .head = {.most = GIC_LEAST_MOST(1) - 1}};
@@ -356,6 +358,7 @@ static void test_bound(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_touch_and_leave), cmocka_unit_test(test_leave_and_touch),
-                                       cmocka_unit_test(test_loads), cmocka_unit_test(test_most), cmocka_unit_test(test_bound)};
+                                       cmocka_unit_test(test_loads), cmocka_unit_test(test_most),
+                                       cmocka_unit_test(test_bound)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

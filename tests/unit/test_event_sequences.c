@@ -210,9 +210,7 @@ static void test_random(void **state)
                 fmax(fabs(mass.state[0] - (double)exact.x) * omega, fabs(mass.state[1] - (double)exact.v));
             /* AB3: 3/8 (w h)^4 a step, over the phase of all contacts and the flights after them, and RK4 far below;
              * variable steps: some thousand errors of the tolerance in place and speed, which grow with the way */
-            const double limit = way < 2      ? 1e4 * 1e-10 * (1 + end) * (1 + omega)
-                                 : way % 2 ? 1e-3 * speed
-                                           : 0.1 * speed;
+            const double limit = way < 2 ? 1e4 * 1e-10 * (1 + end) * (1 + omega) : way % 2 ? 1e-3 * speed : 0.1 * speed;
             const int changes = (int)mass.head.contact_count;
             if (status != GIC_OK || abs(changes - EVENTS) > 2 * exact.grazes || !(off <= limit)) {
                 printf("%s, seed %ld: status %d, %d changes, off %g of %g; gap %.17g, omega %.17g %.17g, pull %.17g, "

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # ramp.py RESULTS: the largest distance, m, of z in results of ramp.veh from an integration of its own: RK4 in steps of
-# 20 us, none of which goes over a point of the road's table, the beginning or end of the contact or of its damper's fade,
-# or a change of sign of the load. The road is that of test_contact.sh, read from standard input: "x..." and "h...".
+# 20 us, none of which goes over a point of the road's table, the beginning or end of the contact or of its damper's
+# fade, or a change of sign of the load. Standard input has the road of test_contact.sh: places, then heights.
 import csv
 import sys
 
