@@ -447,6 +447,19 @@ static void stop_wheels(const Search *s)
         stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
 }
 
+/* Exchanges the gears of the vehicle with those in `other`. With locked wheels the gear is neutral: drive_body would take a
+ * torque that no wheel passes on to the road, for the wheels' own equations are left out. */
+static void exchange_gears(const Equilibrium *found, int32_t other[POWERTRAIN_DISCRETE])
+{
+    const gic_model *code = &found->linear->engine->code;
+    int32_t *gear = (int32_t *)(void *)((char *)found->self + code->discrete_offset) + code->free_base;
+    for (int i = 0; i < POWERTRAIN_DISCRETE && found->model->powertrain; ++i) {
+        const int32_t kept = gear[i];
+        gear[i] = other[i];
+        other[i] = kept;
+    }
+}
+
 static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool locked)
 {
     Equilibrium *found = pool_alloc(pool, sizeof *found);
@@ -469,7 +482,10 @@ static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scen
     if (!s.unknowns)
         diag_fail(at, "free a coordinate, or the base", "model '%s' has no freedom: there is no equilibrium to find",
                   model->name);
+    int32_t gears[POWERTRAIN_DISCRETE] = {0};
     int status = start(found, scene);
+    if (status == GIC_OK && locked)
+        exchange_gears(found, gears);
     if (status == GIC_OK)
         status = look(&s, found->self, found->f, found->A);
     if (status != GIC_OK)
@@ -492,6 +508,8 @@ static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scen
         diag_fail(at, NULL, "the equilibrium can't be evaluated: %s",
                   instance_status(pool, found->engine->code, &found->self->head, status));
     found->residual = fabs(found->f[largest(&s, found->f)]);
+    if (locked)
+        exchange_gears(found, gears);
     return found;
 }
 

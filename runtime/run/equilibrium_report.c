@@ -39,8 +39,8 @@ static double residual_by(Pool *pool, const Engine *engine, const Scene *scene, 
     double rate[engine->standard_count + 1], worst = 0;
     int status = code->setup_with(self, instance_array(from, own->parameter_offset));
     self->road = scene ? scene->road : NULL;
-    for (int i = code->free_base; i < code->discrete_count; ++i) /* gears are copied; Euler parameters are found anew */
-        discrete_states(self, code)[i] = discrete_states(from, own)[i];
+    for (int i = code->free_base; i < code->discrete_count; ++i) /* Euler parameters are found anew; locked: neutral */
+        discrete_states(self, code)[i] = found->locked ? 0 : discrete_states(from, own)[i];
     memcpy(instance_array(self, code->input_offset), instance_array(from, own->input_offset),
            (size_t)code->input_count * sizeof(double));
     if (status == GIC_OK)

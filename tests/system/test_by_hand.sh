@@ -23,6 +23,7 @@ by_hand formula_student
 by_hand semitrailer
 by_hand motorcycle
 by_hand benchmark_bicycle
+by_hand hatchback
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

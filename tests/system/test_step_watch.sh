@@ -129,6 +129,7 @@ hmmwv paper_run rough_road suspension_rig spin field_track
 formula_student formula_student_acceleration formula_student_skid_pad
 motorcycle motorcycle_circle motorcycle_lane_change
 semitrailer semitrailer_braking semitrailer_lane_change semitrailer_turn
+hatchback hatchback_braking hatchback_lane_change hatchback_rough_road
 hmmwv_full hmmwv_full
 hmmwv14 hmmwv14
 five_link five_link
