@@ -226,6 +226,18 @@ static int ascending(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
+/* One of the six coordinates of a body that force elements alone hold: it gives way, and does not steer. */
+static bool is_mount(const Model *model, int c)
+{
+    const Coordinate *one = &model->coordinate[c];
+    int alike = 0;
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Coordinate *other = &model->coordinate[i];
+        alike += other->body[0] == one->body[0] && other->body[1] == one->body[1] && !other->driven;
+    }
+    return alike == 6;
+}
+
 /* How much a coordinate steers while the heights of the wheels are held: the sum of the wheels' turning about z; 0
  * where a wheel's axis of turning is more than 60 degrees from the vertical. */
 static double steering_of(const KcAxle *axle, const Effects *effects, int all, int c)
@@ -257,7 +269,7 @@ static int find_steer(const Kc *kc, const KcAxle *axle, const Effects *effects)
     int best = -1;
     double most = 0;
     for (int c = 0; c < kc->model->coordinates; ++c) {
-        const double much = steering_of(axle, effects, kc->model->coordinates, c);
+        const double much = is_mount(kc->model, c) ? 0 : steering_of(axle, effects, kc->model->coordinates, c);
         const double worth = much > 0 && kc->model->coordinate[c].driven ? much + 1e6 : much;
         if (worth > most) {
             most = worth;

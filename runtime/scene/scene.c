@@ -269,6 +269,20 @@ static void read_coordinates(Reader *reader, const Item *map, const char *what, 
     }
 }
 
+/* Is it the number of a controller's next sample or of a rule's next effect? They follow from the time. */
+static bool counts_instants(const Model *model, int fast)
+{
+    for (int i = 0; i < model->controllers; ++i) {
+        const Controller *controller = &model->controller[i];
+        if (model->state[controller->samples].fast == fast)
+            return true;
+        for (int k = 0; k < controller->rules; ++k)
+            if (controller->rule[k].effects >= 0 && model->state[controller->rule[k].effects].fast == fast)
+                return true;
+    }
+    return false;
+}
+
 /* A map from fast states to numbers. */
 static void read_states(Reader *reader, const Item *map, double *out)
 {
@@ -282,6 +296,9 @@ static void read_states(Reader *reader, const Item *map, double *out)
     for (int k = 0; k < map->count; ++k) {
         const Item *key = map->key[k];
         const int i = scene_name_index(reader->pool, key, key->text, "fast state", name, count);
+        if (counts_instants(reader->model, i))
+            diag_fail(key->at, "remove it: the controller's `offset` says when it samples first",
+                      "'%s' follows from the time at which the run begins", name[i]);
         out[i] = doc_number(map->value[k], pool_print(reader->pool, "initial value of '%s'", name[i]));
     }
 }

@@ -260,5 +260,15 @@ printf 'gicgen: 1\nmodel: m\nbase: car\nbodies: {car: {mass: 1, com: [0, 0, 0], 
 "$gicgen" idle.veh -o idle.c 2>said && grep -q "warning: nothing in the model reads rule 'c.a'" said
 verdict $? "a rule that nothing reads: $(head -n 1 said)"
 
+# numbers of samples and effects follow from the time: a scene can not give them
+sed 's/{a: 1}/{a: {value: 1, delay: 0.4}}/' idle.veh >late.veh
+for state in c.samples c.a.effects; do
+    printf 'gicscene: 1\nduration: 1\nstep: 0.1\ninitial: {states: {%s: 3}}\n' "$state" >bad.scene
+    "$gicrun" -q late.veh bad.scene -o bad.csv >out 2>said
+    [ $? -eq 1 ] && [ ! -e bad.csv ] && [ "$(grep -c error: said)" -eq 1 ] &&
+        grep -qF "bad.scene:4:20: error: '$state' follows from the time at which the run begins" said && grep -q '  remedy: remove it' said
+    verdict $? "a scene that gives $state: $(grep error: said)"
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -279,6 +279,7 @@ near('kingpin inclination', row['front_l.kingpin_inclination'], math.atan2(-axis
 near('caster', row['front_l.caster'], math.atan2(-axis[0], axis[2]), 1e-6)
 both = motion({'front_l': 0, 'front_r': 0, 'rear_l': 1, 'rear_r': 1})
 row = car.kc['rear']
+check('the beam gives way, but does not steer', 'steering_ratio' not in row and 'steering_ratio' in car.kc['front'])
 near('motion ratio of springs behind, both wheels together', row['rear_l.ratio.rear_spring_l'] + row['rear_r.ratio.rear_spring_l'],
      rear_spring('l') @ both, 1e-6)
 near('the same of dampers', row['rear_l.ratio.rear_damper_l'] + row['rear_r.ratio.rear_damper_l'], rear_damper('l') @ both, 1e-6)
