@@ -447,8 +447,8 @@ static void stop_wheels(const Search *s)
         stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
 }
 
-/* Exchanges the gears of the vehicle with those in `other`. With locked wheels the gear is neutral: drive_body would take a
- * torque that no wheel passes on to the road, for the wheels' own equations are left out. */
+/* Exchanges the gears of the vehicle with those in `other`. With locked wheels the gear is neutral: drive_body would
+ * take a torque that no wheel passes on to the road, for the wheels' own equations are left out. */
 static void exchange_gears(const Equilibrium *found, int32_t other[POWERTRAIN_DISCRETE])
 {
     const gic_model *code = &found->linear->engine->code;
