@@ -48,7 +48,7 @@ other_builds := $(patsubst %,-path $(BUILD)/% -prune -o,debug fuzz coverage)
 models := $(basename $(notdir $(wildcard models/*.veh)))
 # programs are generator/*.c and runtime/gicrun/gicrun.c; all other files stand in folders, whose order is that of
 # tests/layers.txt, and go into one archive, from which a program takes what it uses
-programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/gicsweep/*.c runtime/bench/*.c \
+programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/gicsweep/*.c runtime/gicbench/*.c \
     runtime/plugin/*.c)
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
@@ -80,7 +80,7 @@ $(BUILD)/gicrun: $(BUILD)/runtime/gicrun/gicrun.o $(archive)
 $(BUILD)/gicsweep: $(BUILD)/runtime/gicsweep/gicsweep.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
-$(BUILD)/gicbench: $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/bench/*.c)) $(archive)
+$(BUILD)/gicbench: $(BUILD)/runtime/gicbench/gicbench.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 # the library: runtime/host/gic.h alone is seen of it. All of the archive that it needs becomes one object

@@ -108,7 +108,8 @@ static Batched open_way(const Bench *bench, const Way *w, int vehicles)
         b.engine = engine_cc(bench->pool, bench->model, &options);
     }
     if (!b.engine) {
-        fprintf(stderr, "gicbench: note: no times for %s: %s\n", w->name, why);
+        diag_note(
+            pool_print(bench->pool, "%s: note: no times for %s: %s\n", program_place().source->path, w->name, why));
         return b;
     }
     if (b.many) {

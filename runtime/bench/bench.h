@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * gicbench: speed and error of engines and integrators. Its parts, file by file, in the order of their use;
+ * What gicbench does: speed and error of engines and integrators. Its parts, file by file, in the order of their use;
  * conventions as in vehicle/vehicle.h. */
 #ifndef BENCH_BENCH_H
 #define BENCH_BENCH_H
@@ -11,9 +11,7 @@
 #include "run/engines.h"
 #include "scene/scene.h"
 
-#include <stdio.h>
-
-/* ---- gicbench.c: the command line ----------------------------------------------------------------------- */
+/* ---- what is asked for ------------------------------------------------------------------------------- */
 
 /* How long a benchmark takes. */
 typedef struct Progress {
@@ -40,7 +38,7 @@ typedef struct Bench {
     bool precision;          /* run time against error of complete vehicles, printed on standard output */
     int files;               /* number of files of --scenes, models and scenes alternating, and of --precision, models
                               * each with its scenes; 0: another benchmark */
-    char *const *file;       /* [files] */
+    const char *const *file; /* [files] */
     const char *engine_name; /* the engine of --scenes and --precision */
     const char *rows;        /* the CSV file of --precision; NULL: none */
     const char *picture;     /* its picture; NULL: none */
@@ -173,7 +171,7 @@ void chart_write(Pool *pool, const Chart *chart, const char *path);
 /* Several with points side by side, SVG or PNG by the ending of `path`. */
 void charts_write(Pool *pool, const Chart *const *chart, int count, const char *path);
 /* All but pictures, as text. */
-void report_tell(const Report *report, FILE *file);
+void report_tell(const Report *report);
 /* index.html, bench.txt, a CSV file a table, a picture a chart. */
 void report_write(const Report *report, const char *folder);
 
@@ -211,6 +209,9 @@ void bench_scenes(const Bench *bench);
 void bench_precision(const Bench *bench);
 /* rhs.c: one right-hand side of every variant of the code, against the limit. scene: NULL for none. */
 void bench_rhs(const Bench *bench);
+/* measure.c: the benchmark that `asked` is, with these engines, ended by NULL; NULL: all that are here. The members
+ * after `picture`, the model, scenes, engines and repetitions are its own. */
+void bench_all(const Bench *asked, const char *const *name);
 /* True if this compiler can be started. */
 bool bench_installed(Pool *pool, const char *compiler);
 

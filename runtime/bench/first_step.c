@@ -2,10 +2,12 @@
  * Generated against interpreted: the time until the first step, the time of a step from then on, and the number of
  * steps after which generated code has taken less in all. Each start is a process of its own, so that nothing is
  * loaded, allocated or compiled there yet. */
+#include "base/catch.h"
 #include "base/text.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
+#include "host/host.h"
 #include "model/model.h"
 #include "read/read.h"
 #include "run/engines.h"
@@ -13,6 +15,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -114,6 +117,30 @@ static Start start_here(const Bench *bench, const Way *way)
     return start;
 }
 
+typedef struct Apart {
+    const Bench *bench;
+    const Way *way;
+    Start start;
+} Apart;
+
+static void start_caught(void *context)
+{
+    Apart *apart = context;
+    apart->start = start_here(apart->bench, apart->way);
+}
+
+/* In a process of its own, which a failure ends, whoever called, with its message. */
+static _Noreturn void start_and_send(const Bench *bench, const Way *way, int pipe)
+{
+    Apart apart = {.bench = bench, .way = way};
+    const Listener ours = {.program = program_place().source, .signals = true};
+    Messages said = {NULL, NULL, &ours};
+    const bool good = caught(&said, start_caught, &apart);
+    for (const Message *message = said.first; message; message = message->next)
+        fputs(message->printed, stderr);
+    _exit(!good || write(pipe, &apart.start, sizeof apart.start) != sizeof apart.start);
+}
+
 /* The same in a process of its own, which sends the result through a pipe. */
 static Start start_apart(const Bench *bench, const Way *way)
 {
@@ -123,10 +150,8 @@ static Start start_apart(const Bench *bench, const Way *way)
         return start;
     fflush(NULL); /* else the child would write it too */
     const pid_t child = fork();
-    if (child == 0) {
-        start = start_here(bench, way);
-        _exit(write(ends[1], &start, sizeof start) != sizeof start);
-    }
+    if (child == 0)
+        start_and_send(bench, way, ends[1]);
     close(ends[1]);
     if (child < 0 || read(ends[0], &start, sizeof start) != sizeof start)
         start.good = false;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The estimated time of a benchmark, and its progress. */
+#include "base/message.h"
 #include "bench/bench.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -8,7 +9,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <unistd.h>
 
 /* A time in minutes and seconds. */
 static const char *minutes(Pool *pool, double seconds)
@@ -19,18 +19,17 @@ static const char *minutes(Pool *pool, double seconds)
 
 void bench_progress(const Bench *bench, const char *format, ...)
 {
-    const bool terminal = isatty(STDERR_FILENO);
     const Progress *progress = bench->progress;
     const double elapsed = clock_seconds(CLOCK_MONOTONIC) - progress->begun;
     va_list arguments;
     va_start(arguments, format);
-    fputs(terminal ? "\r" : "", stderr);
     Pool *pool = pool_new();
+    const char *text = pool_vprint(pool, format, arguments);
     if (progress->expected > 0)
-        fprintf(stderr, "%s of about %s: ", minutes(pool, elapsed), minutes(pool, fmax(progress->expected, elapsed)));
+        text = pool_print(pool, "%s of about %s: %s", minutes(pool, elapsed),
+                          minutes(pool, fmax(progress->expected, elapsed)), text);
+    diag_progress(text);
     pool_free(pool);
-    vfprintf(stderr, format, arguments);
-    fputs(terminal ? "\x1b[K" : "\n", stderr);
     va_end(arguments);
 }
 
@@ -38,8 +37,10 @@ void bench_expect(const Bench *bench, double seconds)
 {
     Pool *pool = pool_new();
     const double elapsed = clock_seconds(CLOCK_MONOTONIC) - bench->progress->begun;
-    if (!(bench->progress->expected > 0))
-        fprintf(stderr, "%sthis will take about %s\n", isatty(STDERR_FILENO) ? "\r\x1b[K" : "", minutes(pool, seconds));
+    if (!(bench->progress->expected > 0)) {
+        diag_progress("");
+        diag_note(pool_print(pool, "this will take about %s\n", minutes(pool, seconds)));
+    }
     bench->progress->expected = elapsed + seconds;
     pool_free(pool);
 }

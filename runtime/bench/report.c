@@ -339,11 +339,11 @@ static void link_back(Pool *pool, const char *folder)
     }
 }
 
-void report_tell(const Report *report, FILE *file)
+void report_tell(const Report *report)
 {
     Text text = {.pool = report->pool};
     page_text(&text, report);
-    fwrite(text.s, 1, text.size, file);
+    diag_text(text.s);
 }
 
 /* Remove the files of an earlier report, which would seem part of this one. Files that its index does not name are not

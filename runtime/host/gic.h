@@ -294,6 +294,30 @@ typedef struct gicl_sweep {
 GICL_API int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *sweep, gicl_handle *result,
                             gicl_messages *said);
 
+/* ---- what gicbench does -------------------------------------------------------------------------------------- */
+
+enum { GICL_BENCH_ENGINES = 64, GICL_BENCH_VEHICLES = 65536 }; /* the most of them */
+
+/* Engines and integrators, measured. Members are gicbench's options; NULL and 0: not given. */
+typedef struct gicl_bench {
+    size_t size;             /* sizeof(gicl_bench) */
+    const char *kind;        /* "compare" (gicbench without such an option), "rhs", "drive", "batch", "scenes",
+                              * "precision" */
+    const char *const *file; /* [files] a model and its scenes, of "scenes" and "precision" several */
+    int files;
+    const char *folder;         /* to be written; "compare" needs it */
+    const char *rows, *picture; /* of "precision": CSV, SVG or PNG */
+    const char *const *engine;  /* [engines] 0: all that are here */
+    int engines;
+    const char *compiler, *flags;
+    int vehicles; /* of "batch" */
+    int quick;    /* 1: few repetitions, few settings */
+} gicl_bench;
+
+/* The text that gicbench prints is a message, GICL_TEXT. Takes minutes, and measures well where nothing else is at work.
+ * Loaded code stays until the program ends. */
+GICL_API int gicl_measure(gicl_library *library, const gicl_bench *bench, gicl_messages *said);
+
 #ifdef __cplusplus
 }
 #endif

@@ -427,6 +427,44 @@ static void test_sweep(void **state)
     assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &wrong[1], &result, lib->said), GICL_FAILED);
 }
 
+static void test_wrong_benchmarks(void **state)
+{
+    const Lib *lib = *state;
+    const char *const file[] = {quarter, scene, scene, NULL}, *const engine[] = {"tcc", "nothing"};
+    const gicl_bench wrong[] = {
+        {.size = 3, .kind = "rhs", .file = file, .files = 1},
+        {.size = sizeof *wrong, .file = file, .files = 1},
+        {.size = sizeof *wrong, .kind = "speed", .file = file, .files = 1},
+        {.size = sizeof *wrong, .kind = "rhs", .files = 1},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 3},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = -1},
+        {.size = sizeof *wrong, .kind = "scenes", .file = file, .files = 3},
+        {.size = sizeof *wrong, .kind = "scenes", .file = file, .files = 4},
+        {.size = sizeof *wrong, .kind = "compare", .file = file, .files = 2},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 1, .rows = "x.csv"},
+        {.size = sizeof *wrong, .kind = "precision", .file = file, .files = 2, .picture = "x.gif"},
+        {.size = sizeof *wrong, .kind = "batch", .file = file, .files = 2},
+        {.size = sizeof *wrong, .kind = "batch", .file = file, .files = 2, .vehicles = GICL_BENCH_VEHICLES + 1},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 1, .vehicles = 3},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 1, .engines = 1},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 1, .engines = -1},
+        {.size = sizeof *wrong, .kind = "rhs", .file = file, .files = 1, .engines = 2, .engine = engine}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        if (gicl_measure(lib->lib, &wrong[i], lib->said) != GICL_WRONG)
+            fail_msg("benchmark %zu is taken: %s", i, last(lib->said).text);
+        assert_true(strlen(last(lib->said).text) > 10);
+    }
+    assert_int_equal(gicl_measure(lib->lib, NULL, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_measure(NULL, &wrong[1], lib->said), GICL_WRONG);
+    /* a file that is none is an error of it */
+    const char *const none[] = {"no.veh", scene};
+    const gicl_bench bench = {
+        .size = sizeof bench, .kind = "drive", .file = none, .files = 2, .engine = engine, .engines = 1};
+    assert_int_equal(gicl_measure(lib->lib, &bench, lib->said), GICL_FAILED);
+    assert_string_equal(last(lib->said).file, "no.veh");
+}
+
 /* ---- threads -------------------------------------------------------------------------------------------------- */
 
 enum { THREADS = 8 };
@@ -485,6 +523,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_wrong_studies, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_no_memory, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_sweep, open_lib, close_lib),
+        cmocka_unit_test_setup_teardown(test_wrong_benchmarks, open_lib, close_lib),
         cmocka_unit_test_setup_teardown(test_threads, open_lib, close_lib),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
