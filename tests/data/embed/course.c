@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A model (MODEL: its descriptor), pushed a little, over some steps: prints every bit of state, rate and outputs, and
- * its self-test, for comparison with other code for the same model; then what ends it when a coordinate goes far out.
+ * A model (MODEL: its descriptor), pushed a little, over some steps: prints every bit of state, rate and outputs
+ * (forces and torques as such), and its self-test, for comparison with other code for the same model; then what ends it
+ * when a coordinate goes far out.
  */
 #include "gic_runtime.h"
 
@@ -43,7 +44,9 @@ int main(void)
     status = MODEL.outputs(self);
     print("state", state, states);
     print("rate", rate, states);
-    print("output", array(self, MODEL.output_offset), MODEL.output_count);
+    for (int i = 0; i < MODEL.output_count; ++i)
+        printf("%s %d %.17g\n", MODEL.output[i].unit[0] == 'N' ? "force" : "output", i,
+               (double)array(self, MODEL.output_offset)[i]);
     status = status == GIC_OK ? MODEL.self_test(self, &test) : status;
     printf("self-test %d %.17g\n", status, status == GIC_OK ? (double)test.constraint : 0);
     const gic_head *const head = self;
