@@ -15,32 +15,37 @@ static const char help[] =
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
+    "       gicrun --gradient FORMULA MODEL.veh SCENE [NAME ...] [-o gradient.csv]\n"
+    "       gicrun --identify measured.csv MODEL.veh SCENE NAME ... [-o found.csv]\n"
+    "       gicrun --trim [--linearize] MODEL.veh [SCENE] key=value ... [-o results.csv|.scene]\n"
     "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
     "       gicrun --manoeuvre NAME MODEL.veh [key=value ...] [-o results.csv] [--trace FILE]\n"
     "              [--report page.html]\n"
     "\n"
-    "Generates C for a vehicle model, compiles it and runs a scene; or studies the model.\n"
+    "Runs a scene with a vehicle model, or studies the model.\n"
     "\n"
-    "  -o, --output FILE  results as CSV; - is standard output (the default, unless a\n"
-    "                     picture or a page is asked for)\n"
+    "  -o, --output FILE  results as CSV; - is standard output (default without a picture or page)\n"
     "      --plot FILE    draw the scene's `plot`, with gnuplot\n"
     "      --with FILE    draw other results too, in dots\n"
-    "      --animate FILE write a page for a browser in which the model moves along its road\n"
+    "      --animate FILE write a page for a browser in which the model moves\n"
     "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
     "      --replay FILE  repeat what it recorded\n"
-    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input;\n"
-    "                     a scene gives the road only\n"
-    "      --equilibrium  find the static equilibrium near the scene's initial state, with its\n"
-    "                     inputs and road at time 0, or near the model's: coordinates, forces,\n"
-    "                     wheel loads; -o: the state as a row that --eval reads\n"
+    "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input\n"
+    "      --equilibrium  static equilibrium near the initial state; -o: as a row that --eval reads\n"
     "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
-    "                     the scene's velocities; -o: the same as CSV\n"
+    "                     the scene's velocities\n"
     "      --linearize    the linear model about the same state: A, B, C, D and derivatives by\n"
-    "                     tunable parameters, with names and units; -o: as CSV, or for NumPy\n"
-    "                     or MATLAB\n"
-    "      --at TIME      with --linearize: about the state of a run of the scene at TIME, s\n"
-    "      --kc           kinematics of axles over travel and steering, models/KC.md; -o: as CSV\n"
+    "                     tunable parameters; -o: as CSV, or for NumPy or MATLAB\n"
+    "      --at TIME      with --linearize: about a run of the scene at TIME, s\n"
+    "      --trim         steady driving at speed=20, straight ahead, or at lateral=4 or\n"
+    "                     curvature=0.01: state, steering and pedals; -o: as a row, as a scene\n"
+    "      --gradient FORMULA\n"
+    "                     derivatives of its value at the end, of integral(FORMULA) or of\n"
+    "                     maximum(FORMULA) by initial state, parameters, inputs\n"
+    "      --identify FILE\n"
+    "                     parameters from measurements\n"
+    "      --kc           kinematics of axles over travel and steering, models/KC.md\n"
     "      --axle NAME, --travel M\n"
     "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
     "      --loads        with --kc: compliance instead\n"
@@ -51,33 +56,27 @@ static const char help[] =
     "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
     "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
     "      --integrator NAME\n"
-    "                     ab3, rk4 (constant steps), adams or rkck (variable steps) instead\n"
-    "                     of the scene's\n"
+    "                     ab3, rk4 (constant steps), adams or rkck (variable) instead of the scene's\n"
     "      --tolerance NUMBER of these\n"
     "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
-    "                     long run by the C compiler too (cc); tape: formulas interpreted;\n"
-    "                     gic, gcp1, gcp2\n"
-    "      --solve FORM   of the equations of motion: auto (default), reduced, articulated or augmented\n"
-    "      --recovery WAY of dependent coordinates: newton; closed, wherever there is a closed\n"
-    "                     form; auto (default), whichever takes less\n"
-    "      --general      code for any scene; else it leaves out what its scene doesn't need\n"
-    "      --lanes W      with --engine cc: alike parts in vectors of 2, 4, 8 or 16 numbers\n"
-    "      --cc COMMAND   C compiler of cc and auto, perhaps with options; default: $CC or cc\n"
-    "      --cflags FLAGS more options for it, after ours, in one word\n"
+    "                     long run by the C compiler too (cc); tape, gic, gcp1, gcp2\n"
+    "      --solve FORM   of the equations of motion: auto, reduced, articulated or augmented\n"
+    "      --recovery WAY of dependent coordinates: newton, closed or auto (default)\n"
+    "      --general      code for any scene, not for this one alone\n"
+    "      --lanes W      with --engine cc: vectors of 2, 4, 8 or 16 numbers\n"
+    "      --cc COMMAND   C compiler of cc and auto; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, in one word\n"
     "  -q, --quiet        neither progress nor summary\n"
-    "  -h, --help         this text\n"
-    "      --version      version\n"
+    "  -h, --help, --version\n"
     "\n"
     "gicrun(1): $CC, $GICGEN_CACHE, $GICGEN_CACHE_SIZE, $XDG_CACHE_HOME and $TMPDIR.\n"
-    "\n"
     "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
-    "Exit status: 0 good, 1 error in a file or during the run, or a run that was unstable,\n"
-    "2 wrong usage.\n";
+    "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
 
 /* What is asked for. */
 typedef struct Asked {
     const char *model;
-    bool rests, modes, linear, kinematics, sheet, loads, general, quiet;
+    bool rests, modes, linear, trim, kinematics, sheet, loads, general, quiet;
     const char *animated, *driven, *report; /* --animate, --drive, --report */
     double at;                              /* --at; NAN: not given */
     gicl_options options;
@@ -181,6 +180,9 @@ static Asked read_command_line(int count, char **word)
         {"modes", .on = &asked.modes},
         {"linearize", .on = &asked.linear},
         {"at", .read = read_at},
+        {"trim", .on = &asked.trim},
+        {"gradient", .text = &study->formula},
+        {"identify", .text = &study->measured},
         {"kc", .on = &asked.kinematics},
         {"sheet", .on = &asked.sheet},
         {"manoeuvre", .text = &study->manoeuvre},
@@ -206,11 +208,15 @@ static Asked read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    if (asked.rests + asked.modes + asked.linear + asked.kinematics + asked.sheet + (study->states != NULL) +
-            (study->manoeuvre != NULL) >
+    const bool derives = asked.linear || asked.trim || study->formula || study->measured;
+    if (asked.rests + asked.modes + (asked.linear || asked.trim) + asked.kinematics + asked.sheet +
+            (study->states != NULL) + (study->manoeuvre != NULL) + (study->formula != NULL) +
+            (study->measured != NULL) >
         1)
         usage_fail("gicrun",
-                   "one of --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre, please", NULL);
+                   "one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --kc, --sheet "
+                   "and --manoeuvre, please",
+                   NULL);
     if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads))
         usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
     if (asked.report && !asked.kinematics && !study->manoeuvre)
@@ -226,32 +232,45 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.report);
-    const bool runs = !study->states && !asked.rests && !asked.modes && !asked.linear && !asked.kinematics &&
-                      !asked.sheet && !study->manoeuvre;
+    const bool runs = !study->states && !asked.rests && !asked.modes && !derives && !asked.kinematics && !asked.sheet &&
+                      !study->manoeuvre;
     const bool at = !isnan(asked.at);
     if (at && !asked.linear)
         usage_fail("gicrun", "--at goes with --linearize", NULL);
-    if (files < 2 && (runs || at))
+    if (at && asked.trim)
+        usage_fail("gicrun", "the operating point is that of --at or that of --trim, not both", NULL);
+    if (files < 2 && (runs || at || study->formula || study->measured))
         usage_fail("gicrun", "no scene given", NULL);
-    study->key = (const char *const *)word + first + 1;
-    study->keys = study->manoeuvre ? files - 1 : 0;
-    if (files > 2 && !study->manoeuvre)
+    const bool keyed = study->manoeuvre || asked.trim || study->formula || study->measured;
+    const bool keys_first = study->manoeuvre || (asked.trim && files > 1 && strchr(word[first + 1], '='));
+    const int scenes = files > 1 && !keys_first;
+    study->key = (const char *const *)word + first + 1 + scenes;
+    study->keys = keyed ? files - 1 - scenes : 0;
+    if (asked.trim && study->keys == 0)
+        usage_fail("gicrun", "--trim needs a speed, m/s: gicrun --trim MODEL.veh speed=20 lateral=4", NULL);
+    if (files > 2 && !keyed)
         usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
     asked.model = word[first];
-    study->scene = files > 1 && !study->manoeuvre ? word[first + 1] : NULL;
+    study->scene = scenes ? word[first + 1] : NULL;
     if (!strcmp(asked.model, "-"))
         usage_fail("gicrun", "the model must be a file", NULL);
     if (asked.options.lanes && strcmp(asked.options.engine, "cc") != 0)
         usage_fail("gicrun", "--lanes goes with --engine cc, not with", asked.options.engine);
-    if (asked.linear && strcmp(asked.options.engine, gicl_word("engine", 0)) != 0 &&
+    if (derives && strcmp(asked.options.engine, gicl_word("engine", 0)) != 0 &&
         strcmp(asked.options.engine, "tape") != 0)
-        usage_fail("gicrun", "derivatives are those of the engine tape: --linearize does not go with --engine",
+        usage_fail("gicrun",
+                   asked.linear     ? "derivatives are those of the engine tape: --linearize does not go with --engine"
+                   : asked.trim     ? "derivatives are those of the engine tape: --trim does not go with --engine"
+                   : study->formula ? "derivatives are those of the engine tape: --gradient does not go with --engine"
+                                    : "derivatives are those of the engine tape: --identify does not go with --engine",
                    asked.options.engine);
     if (asked.options.integrator && !known("integrator", asked.options.integrator))
         usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", asked.options.integrator);
     if (study->plot && !runs)
         usage_fail("gicrun",
-                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, "
+                   "--identify, --kc, "
+                   "--sheet or "
                    "--manoeuvre",
                    NULL);
     if (study->plot && !plot_known(study->plot))
@@ -260,7 +279,9 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--with goes with --plot or --animate, which draw the other run beside this one", NULL);
     if (asked.animated && !runs)
         usage_fail("gicrun",
-                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "
+                   "--gradient, --identify, --kc, "
+                   "--sheet or "
                    "--manoeuvre",
                    NULL);
     if (asked.animated && !path_ends(asked.animated, ".html"))
@@ -268,23 +289,32 @@ static Asked read_command_line(int count, char **word)
     if (asked.driven && (!runs || study->results || study->plot || asked.animated || study->replay))
         usage_fail("gicrun",
                    "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                   "nor with --eval, --equilibrium, --modes, --linearize, --kc, --sheet and --manoeuvre",
+                   "nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --kc, "
+                   "--sheet and --manoeuvre",
                    NULL);
     if (asked.driven && !path_ends(asked.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.driven);
     if (study->replay && !runs)
         usage_fail("gicrun",
-                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --kc, --sheet or "
+                   "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "
+                   "--gradient, --identify, --kc, "
+                   "--sheet or "
                    "--manoeuvre",
                    NULL);
     if (asked.linear && study->results && !linear_file_known(study->results))
         usage_fail("gicrun", "the linear model must end in .csv, .npz or .mat, unlike", study->results);
+    if (asked.trim && !asked.linear && study->results && strcmp(study->results, "-") != 0 &&
+        !path_ends(study->results, ".csv") && !path_ends(study->results, ".scene"))
+        usage_fail("gicrun", "the motion must end in .csv or .scene, unlike", study->results);
     if (!study->results && !study->plot && !asked.animated && !asked.driven && (runs || study->states || asked.linear))
         study->results = "-";
     study->kind = study->states      ? "eval"
                   : asked.rests      ? "equilibrium"
                   : asked.modes      ? "modes"
                   : asked.linear     ? "linearize"
+                  : asked.trim       ? "trim"
+                  : study->formula   ? "gradient"
+                  : study->measured  ? "identify"
                   : asked.kinematics ? "kc"
                   : asked.sheet      ? "sheet"
                   : study->manoeuvre ? "manoeuvre"

@@ -250,8 +250,9 @@ GICL_API int gicl_array_get(gicl_library *library, gicl_handle result, int index
  * standard output, where gicrun's may. */
 typedef struct gicl_study {
     size_t size;         /* sizeof(gicl_study) */
-    const char *kind;    /* "run", "drive", "eval", "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre" */
-    const char *scene;   /* a path; "run" and "drive" need one, "manoeuvre" has none */
+    const char *kind;    /* "run", "drive", "eval", "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre",
+                          * "trim", "gradient", "identify" */
+    const char *scene;   /* a path; "run", "drive", "gradient" and "identify" need one, "manoeuvre" has none */
     const char *results; /* -o: "eval" and "linearize" need it, "drive" writes none */
     const char *page;    /* of "run" --animate, of "drive" its page, of "kc" and "manoeuvre" --report */
     const char *plot, *with, *replay; /* of "run" */
@@ -262,7 +263,9 @@ typedef struct gicl_study {
     int loads;                        /* of "kc": 1: compliance */
     const char *compare;              /* of "kc", "sheet" and "manoeuvre" */
     const char *manoeuvre;            /* its name */
-    const char *const *key;           /* [keys] its words key=value */
+    const char *formula, *measured;   /* of "gradient"; of "identify": a file */
+    const char *const *key; /* [keys] words key=value of "manoeuvre" and "trim"; with them "linearize" is about
+                             * the motion of "trim"; names of "gradient" and "identify" */
     int keys;
     const char *trace; /* of "manoeuvre" */
     int quiet;         /* 1: neither progress nor notes */

@@ -9,12 +9,15 @@
 #include "model/model.h"
 #include "read/read.h"
 #include "run/engines.h"
+#include "run/gradient.h"
+#include "run/identify.h"
 #include "run/kc.h"
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/manoeuvre.h"
 #include "run/run.h"
 #include "run/sheet.h"
+#include "run/trim.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
 #include "vehicle/vehicle.h"
@@ -24,10 +27,24 @@
 #include <stddef.h>
 #include <string.h>
 
-typedef enum Kind { RUN, DRIVE, EVAL, EQUILIBRIUM, MODES, LINEARIZE, KC, SHEET, MANOEUVRE, KINDS } Kind;
+typedef enum Kind {
+    RUN,
+    DRIVE,
+    EVAL,
+    EQUILIBRIUM,
+    MODES,
+    LINEARIZE,
+    KC,
+    SHEET,
+    MANOEUVRE,
+    TRIM,
+    GRADIENT,
+    IDENTIFY,
+    KINDS
+} Kind;
 
-static const char *const kind_name[KINDS] = {"run",       "drive", "eval",  "equilibrium", "modes",
-                                             "linearize", "kc",    "sheet", "manoeuvre"};
+static const char *const kind_name[KINDS] = {"run", "drive", "eval",      "equilibrium", "modes",    "linearize",
+                                             "kc",  "sheet", "manoeuvre", "trim",        "gradient", "identify"};
 
 /* ---- the call -------------------------------------------------------------------------------------------------- */
 
@@ -40,7 +57,7 @@ static const struct {
     size_t offset;
     int takes, needs;
 } word_of[] = {
-    {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE), IN(RUN) | IN(DRIVE)},
+    {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE), IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY)},
     {"results", offsetof(gicl_study, results), ALL & ~IN(DRIVE), IN(EVAL) | IN(LINEARIZE)},
     {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(MANOEUVRE), IN(DRIVE)},
     {"plot", offsetof(gicl_study, plot), IN(RUN), 0},
@@ -50,6 +67,8 @@ static const struct {
     {"axle", offsetof(gicl_study, axle), IN(KC), 0},
     {"compare", offsetof(gicl_study, compare), IN(KC) | IN(SHEET) | IN(MANOEUVRE), 0},
     {"manoeuvre", offsetof(gicl_study, manoeuvre), IN(MANOEUVRE), IN(MANOEUVRE)},
+    {"formula", offsetof(gicl_study, formula), IN(GRADIENT), IN(GRADIENT)},
+    {"measured", offsetof(gicl_study, measured), IN(IDENTIFY), IN(IDENTIFY)},
     {"trace", offsetof(gicl_study, trace), IN(MANOEUVRE), 0},
 };
 
@@ -76,8 +95,15 @@ static int check_words(const gicl_study *study, Kind kind, gicl_messages *said)
         return call_wrong(said, "leave them 0", "'travel' and 'loads' go with kc");
     if (study->travel != 0 && !(study->travel > 0 && study->travel <= 10))
         return call_wrong(said, NULL, "'travel' must be above 0 and at most 10 m");
-    if (study->keys < 0 || (study->keys && (kind != MANOEUVRE || !study->key)))
-        return call_wrong(said, NULL, "'keys' is the number of words in 'key', which go with manoeuvre");
+    const int keyed = IN(MANOEUVRE) | IN(TRIM) | IN(GRADIENT) | IN(IDENTIFY) | IN(LINEARIZE);
+    if (study->keys < 0 || (study->keys && (!(keyed & IN(kind)) || !study->key)))
+        return call_wrong(
+            said, NULL,
+            "'keys' is the number of words in 'key', which go with manoeuvre, trim, linearize, gradient and identify");
+    if (study->keys && study->at)
+        return call_wrong(said, "leave it NULL", "'at' is one operating point, and 'key' another one");
+    if (kind == TRIM && study->results && !trim_file_known(study->results))
+        return call_wrong(said, NULL, "'results' of trim must end in .csv or .scene, or be -");
     if (study->with && !study->plot && !study->page)
         return call_wrong(said, NULL, "'with' goes with 'plot' or 'page'");
     if (study->plot && !plot_known(study->plot))
@@ -139,6 +165,8 @@ static Request request_of(const Writing *w)
                      .compare = s->compare,
                      .manoeuvre = s->manoeuvre,
                      .trace = s->trace,
+                     .formula = s->formula,
+                     .measured = s->measured,
                      .keys = s->keys,
                      .key = s->key,
                      .results = s->results,
@@ -229,9 +257,16 @@ static void write_study(void *context)
         model = scene_rig(pool, model, &scene);
         if (w->kind == LINEARIZE) {
             const OperatingPoint point =
-                operating_point(pool, model, scene, request.solve, w->study->at ? *w->study->at : NAN);
+                request.keys ? operating_point_trim(pool, model, scene, &request)
+                             : operating_point(pool, model, scene, request.solve, w->study->at ? *w->study->at : NAN);
             linear_report(pool, model, &point, &request);
-        } else
+        } else if (w->kind == TRIM)
+            trim_report(pool, model, scene, &request);
+        else if (w->kind == GRADIENT)
+            gradient_report(pool, model, scene, &request);
+        else if (w->kind == IDENTIFY)
+            identify_report(pool, model, scene, &request);
+        else
             compute(w, model, scene, &request);
     }
 }
@@ -249,9 +284,12 @@ int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study
     while (w.kind < KINDS && (!study->kind || strcmp(study->kind, kind_name[w.kind]) != 0))
         ++w.kind;
     if (w.kind == KINDS)
-        return use_end(&use,
-                       call_wrong(said, "one of run, drive, eval, equilibrium, modes, linearize, kc, sheet, manoeuvre",
-                                  "there is no study '%s'", study->kind ? study->kind : ""));
+        return use_end(
+            &use,
+            call_wrong(said,
+                       "one of run, drive, eval, equilibrium, modes, linearize, kc, sheet, manoeuvre, trim, gradient, "
+                       "identify",
+                       "there is no study '%s'", study->kind ? study->kind : ""));
     int status = check_words(study, w.kind, said);
     if (status != GICL_OK)
         return use_end(&use, status);

@@ -225,18 +225,32 @@ static const Scene *start_at(Pool *pool, const Equilibrium *found, const double 
     return scene_even(pool, found->model, start);
 }
 
-/* The `initial` of a scene that starts there. */
-static void print_initial(Text *out, const Equilibrium *found, const double *state)
+/* [%.17g, ...] */
+static void print_numbers(Text *out, const char *key, const double *number, int count)
+{
+    text_print(out, "  %s: [", key);
+    for (int i = 0; i < count; ++i)
+        text_print(out, "%s%.17g", i ? ", " : "", number[i]);
+    text_print(out, "]\n");
+}
+
+void equilibrium_initial(Text *out, const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
+    const double *state = tape_array(found->self, code->state_offset);
     const Scene *start = start_at(out->pool, found, state);
     const double *at = start->position, *euler = start->euler;
     bool begun = false;
-    text_print(out, "\ninitial:\n");
+    text_print(out, "initial:\n");
     if (code->free_base) {
-        text_print(out, "  position: [%.17g, %.17g, %.17g]\n", at[0], at[1], at[2]);
+        print_numbers(out, "position", at, 3);
         text_print(out, "  orientation: {euler: [%.17g, %.17g, %.17g, %.17g]}\n", euler[0], euler[1], euler[2],
                    euler[3]);
+        const double *velocity = state + found->linear->places + 1;
+        if (norm3(velocity) > 0)
+            print_numbers(out, "velocity", velocity, 3);
+        if (norm3(velocity + 3) > 0)
+            print_numbers(out, "angular_velocity", velocity + 3, 3);
     }
     for (int c = 0; c < code->coordinate_count; ++c) {
         if (code->coordinate_state[c] < 0)
@@ -252,32 +266,37 @@ static void print_initial(Text *out, const Equilibrium *found, const double *sta
                    state[code->slow_count + i]);
 }
 
-/* The whole table. */
-static void print_table(Text *out, const Engine *engine, const Equilibrium *found, double residual)
+void equilibrium_tables(Text *out, const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
     const double *state = tape_array(found->self, code->state_offset);
     const double *input = tape_array(found->self, code->input_offset);
     const double *output = tape_array(found->self, code->output_offset);
-    text_print(out, "%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
-    text_print(out, "%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
-    if (found->locked && found->linear->of_wheels)
-        text_print(out, "%-24s  locked, for the scene starts in motion; they roll from there\n", "wheels");
-    if (found->neutral)
-        text_print(out, "%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
     if (code->free_base)
         print_base(out, found, state);
     print_coordinates(out, found, state, input);
     print_forces(out, found, output);
     print_wheels(out, found, output);
     print_fast_states(out, found, state);
-    print_initial(out, found, state);
+    text_print(out, "\n");
+    equilibrium_initial(out, found);
+}
+
+/* The whole table. */
+static void print_table(Text *out, const Engine *engine, const Equilibrium *found, double residual)
+{
+    text_print(out, "%s: static equilibrium, found in %d steps\n", found->model->name, found->steps);
+    text_print(out, "%-24s  %.2g m/s^2 or rad/s^2 (engine %s)\n", "largest acceleration", residual, engine->name);
+    if (found->locked && found->linear->of_wheels)
+        text_print(out, "%-24s  locked, for the scene starts in motion; they roll from there\n", "wheels");
+    if (found->neutral)
+        text_print(out, "%-24s  %s: moved along these it rests as well\n", "neutral", found->neutral);
+    equilibrium_tables(out, found);
 }
 
 /* ---- for programs --------------------------------------------------------------------------------------- */
 
-/* A row for --eval, which gives the numbers found here. */
-static void write_state(Pool *pool, const Equilibrium *found, const char *path)
+void equilibrium_row(Pool *pool, const Equilibrium *found, const char *path)
 {
     const gic_model *code = found->engine->code;
     gic_head *self = &found->self->head;
@@ -365,7 +384,7 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
 {
     const double residual = equilibrium_settle(pool, engine, scene, request->quiet, found);
     if (request->results && !strcmp(request->results, "-")) {
-        write_state(pool, found, request->results);
+        equilibrium_row(pool, found, request->results);
         return;
     }
     Text table = {.pool = pool};
@@ -373,5 +392,5 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
     diag_text(table.s);
     /* last, so that a file is there only where nothing failed */
     if (request->results)
-        write_state(pool, found, request->results);
+        equilibrium_row(pool, found, request->results);
 }

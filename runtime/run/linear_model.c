@@ -55,13 +55,18 @@ static const char *state_unit(const Linear *linear, int i)
     return "1";
 }
 
+const char *linear_unit(Pool *pool, const Linear *linear, int i)
+{
+    const bool is_rate = i >= linear->places && i < 2 * linear->places;
+    return is_rate ? per_second(pool, state_unit(linear, i)) : state_unit(linear, i);
+}
+
 static void name_states(Pool *pool, LinearModel *m, const Linear *linear)
 {
     for (int i = 0; i < m->states; ++i) {
         const bool is_rate = i >= linear->places && i < 2 * linear->places;
-        const char *unit = state_unit(linear, i);
         m->state[i] = (gic_signal){is_rate ? pool_print(pool, "%s.rate", linear->name[i]) : linear->name[i],
-                                   is_rate ? per_second(pool, unit) : unit};
+                                   linear_unit(pool, linear, i)};
         m->rate[i] = (gic_signal){m->state[i].name, per_second(pool, m->state[i].unit)};
     }
 }

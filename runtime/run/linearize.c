@@ -358,6 +358,18 @@ static double point_along(const Linear *linear, Instance *self, LinearKind kind,
     return at_kink * (kind == LINEAR_MOTION ? linear->reach[j] : value != 0 ? fabs(value) : 1);
 }
 
+void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j)
+{
+    double z[linear->count + 1];
+    (void)point_along(linear, self, kind, j, z);
+}
+
+int linear_slope(const Linear *linear, const Instance *self, int outputs)
+{
+    int kinks = 0;
+    return rate_to_side(linear, self, 0, outputs, &kinks);
+}
+
 int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
                   bool *jump)
 {

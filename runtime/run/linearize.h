@@ -6,6 +6,7 @@
 #define RUN_LINEARIZE_H
 
 #include "base/message.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "model/model.h"
 #include "run/run.h"
@@ -50,6 +51,14 @@ typedef enum LinearKind { LINEAR_MOTION, LINEAR_INPUT, LINEAR_PORT, LINEAR_PARAM
 int linear_start(const Linear *linear, Instance *self, double *f);
 int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
                   bool *jump);
+/* Set linear->along to the direction of one number; of a small motion at the state of the instance. */
+void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j);
+/* linear->drate: derivatives along linear->along, in Euler parameters, of the rate of the state at which the instance
+ * has just been evaluated, and behind it of the first outputs. At kinks those of the side to which it goes. Returns a
+ * status. */
+int linear_slope(const Linear *linear, const Instance *self, int outputs);
+/* linear_model.c: the unit of one of the small motions. */
+const char *linear_unit(Pool *pool, const Linear *linear, int i);
 /* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:
  * [count][count]; where the state is at a kink but for 1e-9 of the reach, the mean of both sides. Returns a status,
  * which the instance then has. */
@@ -100,6 +109,12 @@ bool equilibrium_set_in_motion(Pool *pool, const Scene *scene, const Equilibrium
  * which must respect the limit, and unless `quiet` warn of ranges and instability. Returns that residual; ends in
  * diag_fail. */
 double equilibrium_settle(Pool *pool, const Engine *engine, const Scene *scene, bool quiet, const Equilibrium *found);
+/* Base, coordinates, forces, loads and fast states of a state whose outputs are computed, and equilibrium_initial(). */
+void equilibrium_tables(Text *out, const Equilibrium *found);
+/* The `initial` of a scene that starts there. */
+void equilibrium_initial(Text *out, const Equilibrium *found);
+/* A row for --eval, which gives the numbers found here. */
+void equilibrium_row(Pool *pool, const Equilibrium *found, const char *path);
 /* --equilibrium: tables, and with -o the state as a row that --eval reads. */
 void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, const Request *request,
                         const Equilibrium *found);

@@ -31,7 +31,9 @@ typedef struct Request {
     const char *compare;   /* of them and sheet_report(): the file of another model; NULL: none */
     const char *manoeuvre; /* its name */
     const char *trace;     /* of manoeuvre_report(): a file of all trials; NULL: none */
-    int keys;              /* its words key=value */
+    const char *formula;   /* of gradient_report() */
+    const char *measured;  /* of identify_report(): a file */
+    int keys;              /* words key=value of manoeuvres and steady driving; names of the two before */
     const char *const *key;
     const char *results;          /* "-": standard output; NULL: none */
     RunColumns *columns;          /* of simulate(): the same in memory; NULL: not wanted */

@@ -114,8 +114,7 @@ static bool stays_neutral(Pool *pool, const Model *model, const Scene *scene, co
 /* ---- road -----------------------------------------------------------------------------------------------------------
  */
 
-/* NULL: not a plane with the same friction everywhere. */
-static const Plane *plane_of(Pool *pool, const gic_road *road)
+const Plane *scene_plane(Pool *pool, const gic_road *road)
 {
     Plane *plane = pool_alloc(pool, sizeof *plane);
     plane->friction = 1;
@@ -228,7 +227,7 @@ const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, con
     facts->wanted = wanted_outputs(pool, model, scene, drawn);
     facts->parameter = scene->parameter;
     facts->idle = true; /* scenes can not use ports */
-    facts->plane = plane_of(pool, scene->road);
+    facts->plane = scene_plane(pool, scene->road);
     fix_inputs(pool, model, scene, facts);
     facts->across = !facts->plane && is_across(scene->road);
     facts->asymmetry = asymmetry_of(model, scene, is_across(scene->road), 0);

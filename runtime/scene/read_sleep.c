@@ -37,8 +37,7 @@ static bool powertrain_reads_time(const Model *model, const Powertrain *powertra
     return false;
 }
 
-/* A part of the model that changes with time by itself, "force 'shake'"; NULL: none. */
-static const char *restless(Pool *pool, const Model *model)
+const char *scene_restless(Pool *pool, const Model *model)
 {
     for (int i = 0; i < model->forces; ++i)
         if (any_reads_time(model, model->force[i].law, sizeof model->force[i].law / sizeof *model->force[i].law))
@@ -64,7 +63,7 @@ Sleep *sleep_read(Pool *pool, const Item *item, const Model *model)
     rest->pool = pool;
     rest->within = doc_find(item, "within") ? scene_positive(doc_find(item, "within"), "within") : within;
     rest->after = doc_find(item, "after") ? scene_positive(doc_find(item, "after"), "after") : after;
-    const char *moves = restless(pool, model);
+    const char *moves = scene_restless(pool, model);
     if (moves)
         diag_fail(item->at, "remove it", "%s of '%s' changes with time by itself, so that nothing rests", moves,
                   model->name);

@@ -10,8 +10,9 @@
 typedef struct Item Item;   /* base/yaml.h */
 typedef struct Model Model; /* model/model.h */
 typedef struct Coordinate Coordinate;
-typedef struct Engine Engine;   /* engine/engine.h */
-typedef struct Facts Facts;     /* vehicle/vehicle.h */
+typedef struct Engine Engine; /* engine/engine.h */
+typedef struct Facts Facts;   /* vehicle/vehicle.h */
+typedef struct Plane Plane;
 typedef struct Profile Profile; /* profile.h */
 
 /* ---- scene.c, scene_*.c: what the vehicle does and where; models/SCENE.md */
@@ -114,6 +115,10 @@ double scene_quiet_until(const Scene *scene, double time);
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* facts.c: facts about a run of the scene. path: of the scene; drawn: a picture is asked for. */
 const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn);
+/* facts.c: the plane that a road is, NULL: it is none, or its friction is not the same everywhere. */
+const Plane *scene_plane(Pool *pool, const gic_road *road);
+/* read_sleep.c: a part of the model that changes with time by itself, "force 'shake'"; NULL: none. */
+const char *scene_restless(Pool *pool, const Model *model);
 /* facts.c: states that the scene can have, for formulation_validate(). */
 const struct Validation *scene_validation(Pool *pool, const Model *model, const Scene *scene);
 /* The scene with an initial state that is exactly symmetric if it is symmetric to rounding, as after a search for

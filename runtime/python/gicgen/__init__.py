@@ -219,15 +219,19 @@ class Model:
         return Table(data, names, units)
 
     def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
-              axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None):
+              axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
+              measured=None):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
-        "equilibrium", "modes", "linearize", "kc", "sheet" or "manoeuvre"; others are gicrun's options (page: of --animate,
-        --drive or --report). keys: of a manoeuvre, {name: number}."""
-        words = [_bytes(f"{name}={_number(value, name)!r}") for name, value in (keys or {}).items()]
+        "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient" or "identify"; others are gicrun's
+        options (page: of --animate, --drive or --report; formula: of --gradient; measured: of --identify). keys: of a
+        manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names."""
+        words = ([_bytes(f"{name}=" + (value if isinstance(value, str) else repr(_number(value, name))))
+                  for name, value in keys.items()] if isinstance(keys, dict) else [_bytes(name) for name in keys or ()])
         time = None if at is None else ctypes.pointer(ctypes.c_double(_number(at, "at")))
         study = _library.Study(ctypes.sizeof(_library.Study), _bytes(kind), _bytes(scene), _bytes(results), _bytes(page),
                                _bytes(plot), _bytes(with_), _bytes(replay), _bytes(states), time, _bytes(axle),
-                               _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre),
+                               _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
+                               _bytes(measured),
                                (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace), True)
         call("write", self._handle, ctypes.byref(study))
         self.warnings = _library.texts(_library.WARNING, _library.NOTE)

@@ -29,6 +29,7 @@ class Study(ctypes.Structure):
                 ("with_", ctypes.c_char_p), ("replay", ctypes.c_char_p), ("states", ctypes.c_char_p),
                 ("at", ctypes.POINTER(ctypes.c_double)), ("axle", ctypes.c_char_p), ("travel", ctypes.c_double),
                 ("loads", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
+                ("formula", ctypes.c_char_p), ("measured", ctypes.c_char_p),
                 ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
                 ("quiet", ctypes.c_int)]
 

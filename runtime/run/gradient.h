@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gradient: derivatives of a number of a whole run by its initial state, tunable parameters and inputs (gicrun
+ * --gradient), by the definitions of models/SCENE.md section 8. */
+#ifndef RUN_GRADIENT_H
+#define RUN_GRADIENT_H
+
+#include "base/pool.h"
+#include "model/model.h"
+#include "run/run.h"
+#include "run/tangent_run.h"
+#include "scene/scene.h"
+
+/* ---- gradient_formula.c: what is asked for */
+
+typedef enum ScalarKind { SCALAR_END, SCALAR_INTEGRAL, SCALAR_MAXIMUM } ScalarKind;
+
+/* A number of a run: the value of a formula at its end, its integral, or its largest value. */
+typedef struct Scalar {
+    ScalarKind kind;
+    const Model *model; /* whose only output is the formula */
+} Scalar;
+
+/* text: a formula of FORMAT.md section 6, alone or as integral(...) or maximum(...), which reads outputs, too. Ends in
+ * diag_fail. */
+Scalar scalar_read(Pool *pool, const Model *model, const char *text);
+
+/* ---- gradient.c: the run */
+
+typedef struct Gradient {
+    double value, time; /* time: of the end, or of the maximum, s */
+    int variables;
+    const RunVariable *variable;
+    double *derivative; /* [variables] */
+} Gradient;
+
+/* wanted, count: as in tangent_open(), which ends the program where it must. */
+const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
+                              const char *const *wanted, int count);
+
+/* ---- gradient_report.c */
+
+/* --gradient: a table, or CSV by the ending of the file. */
+void gradient_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+
+#endif

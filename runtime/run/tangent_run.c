@@ -1,0 +1,432 @@
+/* SPDX-License-Identifier: MIT
+ * A run with derivatives, forwards: the state y and its derivatives dy by all variables are one state, whose
+ * rate is that of y and its derivatives along each dy. The integrators of the runtime core make steps of it as of any
+ * other. Since steps are sums of rates, what comes out is the derivative of the steps themselves, not that of the
+ * motion that they approximate.
+ *
+ * Derivatives are those of the branches that the run takes. What changes the branch within a step as a jump, a gear for
+ * one, is refused. */
+#include "run/tangent_run.h"
+#include "base/message.h"
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "run/engines.h"
+#include "run/knot.h"
+#include "scene/profile.h"
+#include "tape/engine_tape.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The instance of both: a head, then the arrays of the descriptor. */
+typedef struct Both {
+    gic_head head;
+    const TangentRun *run;
+} Both;
+
+struct TangentRun {
+    Pool *pool;
+    const Engine *engine; /* tape */
+    const Scene *scene;
+    const Linear *linear;
+    const gic_model *code; /* of the vehicle */
+    Instance *self, *copy; /* the vehicle at the state and time that were evaluated last; for looks */
+    gic_model model;       /* of both */
+    Both *both;
+    int variables;
+    RunVariable *variable;
+    bool shifted;                /* the run ended where a gear changes */
+    int states, inputs, outputs; /* of the vehicle */
+};
+
+static double *array_of(Both *both, size_t offset)
+{
+    return (double *)(void *)((char *)both + offset);
+}
+
+/* ---- variables ------------------------------------------------------------------------------------------- */
+
+static bool is_wanted(const RunVariable *v, const char *const *wanted, int count)
+{
+    static const char *const kind[] = {[BY_INITIAL] = "initial", [BY_PARAMETER] = "parameter", [BY_INPUT] = "input"};
+    for (int i = 0; i < count; ++i)
+        if (!strcmp(wanted[i], v->name) || !strcmp(wanted[i], kind[v->kind]))
+            return true;
+    return count == 0;
+}
+
+static void add(TangentRun *run, RunVariable variable, const char *const *wanted, int count)
+{
+    if (is_wanted(&variable, wanted, count))
+        *POOL_PUSH(run->pool, run->variable, run->variables) = variable;
+}
+
+/* A unit of number k of a profile: values enter linearly. NULL: there is no such number. */
+static const Profile *unit_of(Pool *pool, const Profile *profile, int k)
+{
+    Profile *unit = pool_alloc(pool, sizeof *unit);
+    *unit = *profile;
+    if (profile->form == PROFILE_SINE || profile->form == PROFILE_CHIRP) {
+        unit->amplitude = k == 0;
+        unit->offset = k == 1;
+        return k < 2 ? unit : NULL;
+    }
+    if (profile->form != PROFILE_KNOTS || k >= profile->count)
+        return NULL;
+    unit->value = pool_alloc(pool, (size_t)profile->count * sizeof(double));
+    memset(unit->value, 0, (size_t)profile->count * sizeof(double));
+    unit->value[k] = 1;
+    return unit;
+}
+
+static double number_of(const Profile *profile, int k)
+{
+    return profile->form == PROFILE_KNOTS ? profile->value[k] : k ? profile->offset : profile->amplitude;
+}
+
+/* Numbers of an input: those of its profile, or its constant value. */
+static void add_input(TangentRun *run, int input, const char *const *wanted, int count)
+{
+    static const char *const wave[] = {"amplitude", "offset"};
+    const gic_signal *signal = &run->code->input[input];
+    const Profile *profile = NULL;
+    for (int i = 0; i < run->scene->profiles; ++i)
+        profile = run->scene->profile[i].input == input ? &run->scene->profile[i] : profile;
+    const bool knots = profile && profile->form == PROFILE_KNOTS;
+    if (!profile || (knots && profile->count == 1)) {
+        add(run,
+            (RunVariable){.name = pool_print(run->pool, "input/%s", signal->name),
+                          .unit = signal->unit,
+                          .kind = BY_INPUT,
+                          .index = input,
+                          .value = tape_array(run->self, run->code->input_offset)[input]},
+            wanted, count);
+        return;
+    }
+    const Profile *unit;
+    for (int k = 0; (unit = unit_of(run->pool, profile, k)); ++k)
+        add(run,
+            (RunVariable){.name = knots ? pool_print(run->pool, "input/%s[%d]", signal->name, k)
+                                        : pool_print(run->pool, "input/%s.%s", signal->name, wave[k]),
+                          .unit = signal->unit,
+                          .kind = BY_INPUT,
+                          .index = input,
+                          .profile = unit,
+                          .value = number_of(profile, k)},
+            wanted, count);
+}
+
+/* Small motions at time 0, with values as linear models have them. */
+static void add_initial(TangentRun *run, const double *f, const char *const *wanted, int count)
+{
+    const Linear *linear = run->linear;
+    const int places = linear->places, base = run->code->free_base ? 6 : 0;
+    const double *y = tape_array(run->self, run->code->state_offset);
+    for (int i = 0; i < linear->count; ++i) {
+        const bool rate = i >= places && i < 2 * places;
+        const double value = i < base     ? 0
+                             : i < places ? y[i + run->code->free_base]
+                             : rate       ? f[i - places]
+                                          : y[i + run->code->free_base];
+        add(run,
+            (RunVariable){.name = pool_print(run->pool, "initial/%s%s", linear->name[i], rate ? ".rate" : ""),
+                          .unit = linear_unit(run->pool, linear, i),
+                          .kind = BY_INITIAL,
+                          .index = i,
+                          .value = value},
+            wanted, count);
+    }
+}
+
+static void add_variables(TangentRun *run, const double *f, const char *const *wanted, int count)
+{
+    const gic_model *code = run->code;
+    add_initial(run, f, wanted, count);
+    for (int i = 0; i < code->parameter_count; ++i)
+        add(run,
+            (RunVariable){.name = pool_print(run->pool, "parameter/%s", code->parameter[i].name),
+                          .unit = code->parameter[i].unit,
+                          .kind = BY_PARAMETER,
+                          .index = i,
+                          .value = tape_array(run->self, code->parameter_offset)[i]},
+            wanted, count);
+    for (int i = 0; i < code->input_count; ++i) {
+        bool is_rate = false;
+        for (int k = 0; k < code->coordinate_count; ++k)
+            is_rate = is_rate || (code->coordinate_input[k] >= 0 &&
+                                  (i == code->coordinate_input[k] + 1 || i == code->coordinate_input[k] + 2));
+        if (!is_rate)
+            add_input(run, i, wanted, count);
+    }
+}
+
+/* ---- the model of both ------------------------------------------------------------------------------------ */
+
+/* Inputs at a time, and how they change by each variable. A gic_input_function. */
+static void inputs_of_both(void *user, int32_t lane, double time, double *input)
+{
+    const TangentRun *run = user;
+    scene_inputs((void *)(uintptr_t)run->scene, lane, time, input);
+    for (int k = 0; k < run->variables; ++k) {
+        const RunVariable *v = &run->variable[k];
+        double *change = input + run->inputs * (1 + k), at[3] = {1, 0, 0};
+        memset(change, 0, (size_t)run->inputs * sizeof *change);
+        if (v->kind != BY_INPUT)
+            continue;
+        if (v->profile)
+            profile_at(v->profile, time, at);
+        memcpy(change + v->index, at, (v->profile && v->profile->driven ? 3 : 1) * sizeof *at);
+    }
+}
+
+/* The vehicle at a state of both, with the inputs of both. */
+static void take_state(const TangentRun *run, double time, const double *state)
+{
+    gic_head *head = &run->self->head;
+    head->start_time = time;
+    head->steps = 0;
+    head->ahead = run->both->head.ahead;
+    memcpy(tape_array(run->self, run->code->state_offset), state, (size_t)run->states * sizeof *state);
+    memcpy(tape_array(run->self, run->code->input_offset), array_of(run->both, run->model.input_offset),
+           (size_t)run->inputs * sizeof *state);
+}
+
+/* Derivatives along variable k, into linear->drate, of a vehicle that has just been evaluated. */
+static int slope_along(const TangentRun *run, const double *state, int k, int outputs)
+{
+    const Direction *along = &run->linear->along;
+    const RunVariable *v = &run->variable[k];
+    memcpy(along->y, state + run->states * (1 + k), (size_t)run->states * sizeof *state);
+    memcpy(along->u, array_of(run->both, run->model.input_offset) + run->inputs * (1 + k),
+           (size_t)run->inputs * sizeof *state);
+    memset(along->port, 0, (size_t)run->code->port_count * sizeof *along->port);
+    memset(along->p, 0, (size_t)run->code->parameter_count * sizeof *along->p);
+    if (v->kind == BY_PARAMETER)
+        along->p[v->index] = 1;
+    return linear_slope(run->linear, run->self, outputs);
+}
+
+static int rate_of_both(void *self, double time, const double *state, double *rate)
+{
+    const TangentRun *run = ((Both *)self)->run;
+    double *own = tape_array(run->self, run->code->state_offset);
+    take_state(run, time, state);
+    int status = run->code->rhs(run->self, time, own, rate);
+    for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
+        status = slope_along(run, state, k, 0);
+        memcpy(rate + run->states * (1 + k), run->linear->drate, (size_t)run->states * sizeof *rate);
+    }
+    return status;
+}
+
+/* The dependent Euler parameter follows from the others, and so does its change. */
+static int settle_both(void *self, double *state)
+{
+    const TangentRun *run = ((Both *)self)->run;
+    const int status = run->code->settle(run->self, state);
+    if (status != GIC_OK || !run->code->free_base)
+        return status;
+    const int dependent = *(const int32_t *)(const void *)((const char *)run->self + run->code->discrete_offset);
+    for (int k = 0; k < run->variables; ++k) {
+        double *change = state + run->states * (1 + k) + 3, sum = 0;
+        for (int i = 0; i < 4; ++i)
+            sum += i == dependent ? 0 : state[3 + i] * change[i];
+        change[dependent] = -sum / state[3 + dependent];
+    }
+    return GIC_OK;
+}
+
+static void make_both(TangentRun *run)
+{
+    const size_t all = (size_t)(run->states * (1 + run->variables));
+    const size_t inputs = (size_t)(run->inputs * (1 + run->variables));
+    size_t at = sizeof(Both);
+    gic_model *model = &run->model;
+    *model = (gic_model){.abi_version = GIC_ABI_VERSION,
+                         .real_size = sizeof(double),
+                         .name = run->code->name,
+                         .slow_count = (int32_t)all,
+                         .input_count = (int32_t)inputs,
+                         .rhs = rate_of_both,
+                         .settle = settle_both};
+    const struct {
+        size_t *offset, count;
+    } array[] = {{&model->state_offset, all},
+                 {&model->rate_offset, all},
+                 {&model->history_offset, GIC_HISTORY(all, 0)},
+                 {&model->scratch_offset, GIC_SCRATCH(all, inputs)},
+                 {&model->input_offset, inputs},
+                 {&model->discrete_offset, 1}};
+    for (size_t i = 0; i < sizeof array / sizeof *array; ++i) {
+        *array[i].offset = at;
+        at += (array[i].count + 1) * sizeof(double);
+    }
+    model->size = at;
+    run->both = pool_alloc(run->pool, at);
+    memset(run->both, 0, at);
+    run->both->run = run;
+    run->both->head.subset = run->both->head.condition = run->both->head.grown = -1;
+    run->both->head.hold = -1;
+    run->both->head.input_function = inputs_of_both;
+    run->both->head.user = run;
+}
+
+/* ---- the run ------------------------------------------------------------------------------------------------ */
+
+/* Refuse what steps alone do not make. */
+static void check_scene(Pool *pool, const Model *model, const Scene *scene)
+{
+    const Place at = {scene->source, 0, 0};
+    const struct {
+        bool is;
+        const char *what, *remedy;
+    } refused[] = {
+        {scene->method >= METHOD_ADAMS, "steps vary", "choose `integrator: rk4` or `ab3` and a `step`"},
+        {scene->ratio > 1 && model->fast_states, "fast states take steps of their own",
+         "`ratio: 1`, and a shorter `step`"},
+        {scene->driver, "a driver drives", "give inputs over time"},
+        {scene->actions, "conditions change the run", "leave `until` and `when` out"},
+        {scene->rest, "the vehicle may sleep", "leave `sleep` out"},
+        {scene->locate, "steps end where contacts begin and end", "`locate: false`"},
+        {model->controllers > 0, "controllers hold what they sampled", "leave them out"},
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
+        if (refused[i].is)
+            diag_fail(at, refused[i].remedy, "no gradient of a run in which %s",
+                      pool_print(pool, "%s", refused[i].what));
+}
+
+/* Names that are no variables. */
+static void check_names(const TangentRun *run, const char *const *wanted, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        bool found = false;
+        for (int k = 0; k < run->variables; ++k)
+            found = found || is_wanted(&run->variable[k], wanted + i, 1);
+        if (!found)
+            diag_fail_call(program_place(),
+                           "there are initial/NAME, parameter/NAME and input/NAME, as --gradient lists them without "
+                           "names, or `initial`, `parameter` and `input`",
+                           "there is no '%s'", wanted[i]);
+    }
+}
+
+void tangent_fail(const TangentRun *run, int status)
+{
+    if (run->shifted)
+        diag_fail((Place){run->scene->source, 0, 0}, "end the run before, or keep the gear by its selector",
+                  "a gear changes at t = %.6g s: gradients through changes of gear are not found", tangent_time(run));
+    diag_fail((Place){run->scene->source, 0, 0}, "run the scene by itself: the message at its end says more",
+              "the run with its derivatives ends at t = %.6g s: %s", tangent_time(run),
+              instance_status(run->pool, run->code, &run->self->head, status));
+}
+
+TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
+                         int count)
+{
+    check_scene(pool, model, scene);
+    TangentRun *run = pool_alloc(pool, sizeof *run);
+    const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .quiet = true});
+    *run = (TangentRun){.pool = pool,
+                        .engine = engine,
+                        .scene = scene,
+                        .linear = linear_open(pool, engine),
+                        .code = engine->code,
+                        .self = (Instance *)(void *)instance_new(pool, engine),
+                        .copy = (Instance *)(void *)instance_new(pool, engine),
+                        .outputs = model->output_components,
+                        .states = engine->code->slow_count + engine->code->fast_count,
+                        .inputs = engine->code->input_count};
+    double f[run->linear->count + 1];
+    int status = scene_start(engine, scene, &run->self->head);
+    run->self->head.input_function = NULL;
+    if (status == GIC_OK)
+        status = linear_start(run->linear, run->self, f);
+    if (status != GIC_OK)
+        tangent_fail(run, status);
+    add_variables(run, f, wanted, count);
+    check_names(run, wanted, count);
+    make_both(run);
+    return run;
+}
+
+int tangent_variables(const TangentRun *run, const RunVariable **variable)
+{
+    *variable = run->variable;
+    return run->variables;
+}
+
+double tangent_time(const TangentRun *run)
+{
+    return run->both ? gic_time(run->both) : 0;
+}
+
+int tangent_begin(TangentRun *run, const Scene *scene)
+{
+    double *state = array_of(run->both, run->model.state_offset);
+    double *input = array_of(run->both, run->model.input_offset);
+    run->scene = scene;
+    run->shifted = false;
+    gic_restart(run->both, 0);
+    memset(state, 0, (size_t)run->model.slow_count * sizeof *state);
+    int status = scene_start(run->engine, scene, &run->self->head);
+    run->self->head.input_function = NULL;
+    if (status != GIC_OK)
+        return status;
+    memcpy(state, tape_array(run->self, run->code->state_offset), (size_t)run->states * sizeof *state);
+    for (int k = 0; k < run->variables; ++k)
+        if (run->variable[k].kind == BY_INITIAL) {
+            linear_direction(run->linear, run->self, LINEAR_MOTION, run->variable[k].index);
+            memcpy(state + run->states * (1 + k), run->linear->along.y, (size_t)run->states * sizeof *state);
+        }
+    status = settle_both(run->both, state);
+    memcpy(input, tape_array(run->self, run->code->input_offset),
+           (size_t)run->inputs * sizeof *input); /* profiles set those that they are of */
+    inputs_of_both(run, 0, 0, input);
+    return status;
+}
+
+int tangent_look(TangentRun *run, double *value, double *slope)
+{
+    const double *state = array_of(run->both, run->model.state_offset);
+    take_state(run, gic_time(run->both), state);
+    int status = run->code->outputs(run->self);
+    memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
+    for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
+        status = slope_along(run, state, k, run->outputs);
+        for (int i = 0; i < run->outputs; ++i)
+            slope[i * run->variables + k] = run->linear->drate[run->states + i];
+    }
+    if (status == GIC_OK && !gic_finite(slope, run->outputs * run->variables))
+        status = GIC_ERROR_RESULT;
+    return status;
+}
+
+/* True where a gear changes: the run goes on in another way, from a time that the variables change. */
+static bool gear_changes(const TangentRun *run)
+{
+    memcpy(run->copy, run->self, run->code->size);
+    memcpy(tape_array(run->copy, run->code->state_offset), array_of(run->both, run->model.state_offset),
+           (size_t)run->states * sizeof(double));
+    run->copy->head.start_time = gic_time(run->both);
+    run->copy->head.steps = 0;
+    memcpy(tape_array(run->copy, run->code->input_offset), array_of(run->both, run->model.input_offset),
+           (size_t)run->inputs * sizeof(double));
+    return run->code->shift && run->code->shift(run->copy);
+}
+
+int tangent_step(TangentRun *run)
+{
+    gic_head *head = &run->both->head;
+    const double start = gic_time(head);
+    const int history = head->history;
+    int status = gic_step(&run->model, run->both, run->scene->step, run->scene->method);
+    if (status == GIC_OK)
+        status = knots_cross(&run->model, run->scene, head, start, history);
+    if (status == GIC_OK && gear_changes(run)) {
+        run->shifted = true;
+        return GIC_ERROR_EVENTS;
+    }
+    return status;
+}

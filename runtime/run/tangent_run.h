@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * tangent_run: a run of a scene in constant steps, with the derivatives of its state and outputs by its initial state,
+ * tunable parameters and inputs. */
+#ifndef RUN_TANGENT_RUN_H
+#define RUN_TANGENT_RUN_H
+
+#include "base/pool.h"
+#include "model/model.h"
+#include "run/linearize.h"
+#include "scene/scene.h"
+
+/* A number by which is differentiated: one of the small motions (linearize.h) at time 0, a parameter, a number of an
+ * input's profile. */
+typedef enum VariableKind { BY_INITIAL, BY_PARAMETER, BY_INPUT } VariableKind;
+
+typedef struct RunVariable {
+    const char *name, *unit; /* "parameter/k" */
+    VariableKind kind;
+    int index;              /* small motion, parameter, input */
+    const Profile *profile; /* of an input: what it changes by for a unit of the number; NULL: by 1 at all times */
+    double value;           /* in the scene */
+} RunVariable;
+
+typedef struct TangentRun TangentRun;
+
+/* wanted, count: names of variables, or `initial`, `parameter`, `input` for all of a kind; 0: all. The scene starts as
+ * it says, not in equilibrium. Ends in diag_fail for scenes that can not be differentiated, or in diag_fail_call for
+ * names that are none. */
+TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
+                         int count);
+int tangent_variables(const TangentRun *run, const RunVariable **variable);
+/* Time 0 of the scene that it was opened for, which may have other initial values and parameters now. */
+int tangent_begin(TangentRun *run, const Scene *scene);
+/* A step of it. All of these return a status. */
+int tangent_step(TangentRun *run);
+/* The model's outputs now, and their derivatives [outputs][variables]. */
+int tangent_look(TangentRun *run, double *value, double *slope);
+double tangent_time(const TangentRun *run);
+/* End with the message of a status. */
+_Noreturn void tangent_fail(const TangentRun *run, int status);
+
+#endif

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: MIT
+"""gradient.py GICRUN MODELS WORK: what `gicrun --gradient` finds. A mass on a spring in closed form; a pendulum and the same
+mass by the steps of AB3 and RK4 written again here in 50 digits and differentiated by differences of 1e-20, so that it is the
+derivative of the very steps; whole runs of vehicles by Taylor remainders, which shrink with the square of the change."""
+import csv
+import math
+import re
+import subprocess
+import sys
+from decimal import Decimal, getcontext
+from pathlib import Path
+
+gicrun, models, work = sys.argv[1:4]
+getcontext().prec = 50
+failed = passed = 0
+
+
+def check(what, good):
+    global failed, passed
+    passed += bool(good)
+    failed += not good
+    if not good:
+        print("FAILED:", what)
+
+
+def near(what, value, wanted, tolerance):
+    check(f"{what}: {value!r}, wanted {wanted!r}", abs(value - wanted) <= tolerance)
+
+
+def gic(*words):
+    done = subprocess.run([gicrun, *words], capture_output=True, text=True)
+    assert done.returncode == 0, (words, done.stderr)
+    return done.stdout
+
+
+def gradient(formula, model, scene, *names):
+    rows = list(csv.DictReader(gic("--gradient", formula, model, scene, *names, "-o", "-").splitlines()))
+    return float(rows[0]["value"]), {r["variable"]: float(r["derivative"]) for r in rows[1:]}
+
+
+# ---- a mass on a spring -------------------------------------------------------------------------------------------------------
+
+spring = f"{work}/spring.veh"
+Path(spring).write_text("""gicgen: 1
+model: spring
+gravity: [0, 0, 0]
+base: ground
+parameters:
+  k: {value: 36, unit: N/m, tunable: true}
+  c: {value: 0, unit: N s/m, tunable: true}
+  m: {value: 4, unit: kg, tunable: true}
+inputs:
+  push: {unit: N}
+bodies:
+  cart: {mass: m, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, cart], axis: [1, 0, 0], range: [-10, 10]}
+forces:
+  spring: {type: force, coordinate: x, value: "-k * x - c * rate(x) + push"}
+outputs:
+  cart: {type: position, body: cart}
+""")
+
+
+def spring_scene(method, step, more=""):
+    path = f"{work}/spring.scene"
+    Path(path).write_text(f"gicscene: 1\nduration: 2\nstep: {step}\nintegrator: {method}\n"
+                          f"initial: {{coordinates: {{x: 1}}, rates: {{x: 0.5}}}}\n{more}")
+    return path
+
+
+k, m, T, x0, v0 = 36.0, 4.0, 2.0, 1.0, 0.5
+w = math.sqrt(k / m)
+
+
+def motion(t, w):
+    return x0 * math.cos(w * t) + v0 / w * math.sin(w * t)
+
+
+by_w = -x0 * T * math.sin(w * T) + v0 * (T / w * math.cos(w * T) - math.sin(w * T) / w**2)
+value, d = gradient("cart.x", spring, spring_scene("rk4", 0.001))
+closed = {"initial/x": math.cos(w * T), "initial/x.rate": math.sin(w * T) / w, "parameter/k": by_w / (2 * w * m),
+          "parameter/m": -by_w * w / (2 * m), "input/push": (1 - math.cos(w * T)) / k,
+          "parameter/c": -(T * motion(T, w) - x0 * math.sin(w * T) / w) / (2 * m)}  # of c = 0, to which -x' / m responds
+near("end", value, motion(T, w), 1e-11)
+for name, wanted in closed.items():
+    near(f"end by {name}", d[name], wanted, 1e-10)
+value, d = gradient("integral(x)", spring, spring_scene("rk4", 0.001), "initial", "input/push")
+near("integral", value, x0 * math.sin(w * T) / w + v0 * (1 - math.cos(w * T)) / w**2, 2e-6)
+near("integral by x", d["initial/x"], math.sin(w * T) / w, 2e-6)
+near("integral by push", d["input/push"], (T - math.sin(w * T) / w) / k, 2e-6)
+check("no others than asked for", set(d) == {"initial/x", "initial/x.rate", "input/push"})
+value, d = gradient("maximum(x)", spring, spring_scene("rk4", 0.001))
+amplitude = math.hypot(x0, v0 / w)
+near("maximum", value, amplitude, 1e-5)
+near("maximum by x", d["initial/x"], x0 / amplitude, 1e-3)
+near("maximum by rate", d["initial/x.rate"], v0 / w**2 / amplitude, 1e-3)
+
+# ---- the very steps -------------------------------------------------------------------------------------------------------------
+
+
+def steps(rate, y, h, count, method):
+    """y after the steps of the runtime core: RK4, or AB3 that begins with two steps of RK4."""
+    h = Decimal(str(h))
+    past = []
+    for i in range(count):
+        t = h * i
+        f = rate(t, y)
+        if method == "ab3" and len(past) == 2:
+            y = [a + h / 12 * (23 * b - 16 * c + 5 * e) for a, b, c, e in zip(y, f, past[0], past[1])]
+        else:
+            total, slope = list(f), f
+            for reach, weight in ((h / 2, 2), (h / 2, 2), (h, 1)):
+                slope = rate(t + reach, [a + reach * b for a, b in zip(y, slope)])
+                total = [a + weight * b for a, b in zip(total, slope)]
+            y = [a + h / 6 * b for a, b in zip(y, total)]
+        past = ([f] + past)[:2]
+    return y
+
+
+def sine(x):
+    term = total = x
+    n = 1
+    while abs(term) > Decimal(10) ** -48:
+        term *= -x * x / ((n + 1) * (n + 2))
+        n += 2
+        total += term
+    return total
+
+
+def difference(function, number):
+    h = Decimal(10) ** -20
+    return float((function(number + h) - function(number - h)) / (2 * h))
+
+
+def cart(method, h, x=1, v=Decimal("0.5"), k=36, m=4, c=0, push=(2, -1)):
+    def quintic(t):  # from 0.5 s on for 1 s
+        s = min(max((t - Decimal("0.5")) / 1, Decimal(0)), Decimal(1))
+        share = s**3 * (10 + s * (6 * s - 15))
+        return push[0] + (push[1] - push[0]) * share
+
+    return steps(lambda t, y: [y[1], (quintic(t) - k * y[0] - c * y[1]) / m], [Decimal(x), Decimal(v)], h, round(2 / h),
+                 method)[0]
+
+
+pushed = "inputs: {push: {step: {from: 2, to: -1, start: 0.5, rise: 1}}}\n"
+for method, h in (("rk4", 0.1), ("ab3", 0.05)):
+    value, d = gradient("cart.x", spring, spring_scene(method, h, pushed))
+    near(f"{method}: the end", value, float(cart(method, h)), 1e-13)
+    one = Decimal(1)
+    wanted = {"initial/x": difference(lambda p: cart(method, h, x=p), one),
+              "initial/x.rate": difference(lambda p: cart(method, h, v=p), one / 2),
+              "parameter/k": difference(lambda p: cart(method, h, k=p), 36 * one),
+              "parameter/c": difference(lambda p: cart(method, h, c=p), 0 * one),
+              "parameter/m": difference(lambda p: cart(method, h, m=p), 4 * one),
+              "input/push[0]": difference(lambda p: cart(method, h, push=(p, -1)), 2 * one),
+              "input/push[1]": difference(lambda p: cart(method, h, push=(2, p)), -one)}
+    check(f"{method}: variables {set(d) ^ set(wanted)}", set(d) == set(wanted))
+    for name, number in wanted.items():
+        near(f"{method}: the steps' derivative by {name}", d[name], number, 1e-13)
+
+pendulum = f"{work}/swing.veh"
+Path(pendulum).write_text("""gicgen: 1
+model: swing
+gravity: [0, 0, -10]
+base: ground
+parameters:
+  l: {value: 2, unit: m, tunable: true}
+  m: {value: 4, unit: kg, tunable: true}
+bodies:
+  bob: {mass: m, position: [0, 0, 0], com: [0, 0, "-l"], inertia: [3, 3, 3]}
+joints:
+  hinge: {type: revolute, bodies: [ground, bob], point: [0, 0, 0], axis: [0, 1, 0]}
+coordinates:
+  angle: {type: angle, bodies: [ground, bob], axis: [0, 1, 0], range: [-3, 3]}
+outputs:
+  angle: {type: coordinate, coordinate: angle}
+""")
+
+
+def swing(method, h, angle=1, rate=0, l=2, m=4):
+    return steps(lambda t, y: [y[1], -m * 10 * l * sine(y[0]) / (m * l * l + 3)], [Decimal(angle), Decimal(rate)], h,
+                 round(3 / h), method)[0]
+
+
+for method, h in (("rk4", 0.1), ("ab3", 0.05)):
+    Path(f"{work}/swing.scene").write_text(f"gicscene: 1\nduration: 3\nstep: {h}\nintegrator: {method}\n"
+                                           "initial: {coordinates: {angle: 1}}\n")
+    value, d = gradient("angle", pendulum, f"{work}/swing.scene")
+    near(f"pendulum, {method}: the end", value, float(swing(method, h)), 1e-12)
+    one = Decimal(1)
+    wanted = {"initial/angle": difference(lambda p: swing(method, h, angle=p), one),
+              "initial/angle.rate": difference(lambda p: swing(method, h, rate=p), 0 * one),
+              "parameter/l": difference(lambda p: swing(method, h, l=p), 2 * one),
+              "parameter/m": difference(lambda p: swing(method, h, m=p), 4 * one)}
+    for name, number in wanted.items():
+        near(f"pendulum, {method}: by {name}", d[name], number, 1e-12 * max(1, abs(number)))
+
+# ---- vehicles: Taylor remainders ------------------------------------------------------------------------------------------------
+
+
+def taylor(what, formula, model, scene, variables, change):
+    """variables: name to (text in the scene that is replaced, its value); change: of all at once, relative to 1."""
+    def run(e):
+        text = scene
+        for name, (mark, value, unit) in variables.items():
+            text = text.replace(mark, repr(value + e * unit))
+        path = f"{work}/taylor.scene"
+        Path(path).write_text(text)
+        return gradient(formula, model, path, *variables)
+
+    value, d = run(0)
+    slope = sum(d[name] * unit for name, (mark, at, unit) in variables.items())
+    rest = [run(e)[0] - value - e * slope for e in (change, change / 2, -change, -change / 2)]
+    order = [math.log2(abs(rest[i] / rest[i + 1])) for i in (0, 2)]
+    # a maximum is that of steps, which may be another one
+    least = 1.5 if formula.startswith("maximum") else 1.8
+    check(f"{what}: remainders {rest} of order {order}, slope {slope}", all(least < o < 2.2 for o in order))
+    # what is even is no derivative: the odd part of both has to be it
+    odd = (run(change / 2)[0] - run(-change / 2)[0]) / change
+    near(f"{what}: slope", slope, odd, 4 * change**2 * max(1, abs(slope)))
+
+
+start = """gicscene: 1
+duration: 1.5
+step: 0.002
+integrator: METHOD
+initial:
+  position: [0, 0, 0.4825]
+  velocity: [VX, VY, 0]
+  angular_velocity: [0, 0, YAW]
+  coordinates: {spring_f_l: FRONT}
+  states: {STATES}
+inputs:
+  drive_torque: {step: {to: TORQUE, rise: 0.5, start: 0.2}}
+  rack: {step: {to: RACK, rise: 0.3, start: 0.2}}
+  brake: {knots: {times: [0.8, 1.0], values: [0, BRAKE]}}
+"""
+states = ", ".join(f"tire_{a}_{b}.{c}: {v}" for a in "fr" for b in "lr"
+                   for c, v in (("spin", "SPIN" if a + b == "fl" else 22), ("slip_x", 0.01), ("slip_y", 0.02), ("brake", 0.1)))
+numbers = {"initial/x.rate": ("VX", 10.0, 1), "initial/y.rate": ("VY", 0.5, 1), "initial/yaw.rate": ("YAW", 0.1, 0.1),
+           "initial/spring_f_l": ("FRONT", 0.25, 0.01), "initial/tire_f_l.spin": ("SPIN", 22.5, 1),
+           "input/drive_torque[1]": ("TORQUE", 600.0, 200), "input/rack[1]": ("RACK", -0.01, 0.003),
+           "input/brake[1]": ("BRAKE", 0.3, 0.1)}
+for method in ("ab3", "rk4"):
+    scene = start.replace("METHOD", method).replace("STATES", states)
+    for formula in ("chassis.y", "integral(chassis.x * chassis.y)", "maximum(chassis_attitude.roll)"):
+        if method == "rk4" and formula != "chassis.y":
+            continue
+        taylor(f"tires, {method}, {formula}", formula, f"{models}/hmmwv_tires.veh", scene, numbers, 0.01)
+
+# tunable geometry on a road of waves; the state at time 0 is held
+car = str(Path(__file__).resolve().parent.parent / "data/tuning/car.veh")
+plain = f"{work}/plain.scene"
+Path(plain).write_text("gicscene: 1\nduration: 0.01\nstep: 0.01\n")
+rows = [r for r in csv.DictReader(gic("--gradient", "time", car, plain, "-o", "-").splitlines()) if r["variable"]]
+at = {r["variable"]: float(r["value"]) for r in rows}
+held = ", ".join(f"{name.split('/')[1]}: {value!r}" for name, value in at.items()
+                 if re.match(r"initial/(spring_.._.|spring_._.|rack)$", name))
+scene = f"""gicscene: 1
+duration: 0.6
+step: 0.002
+initial: {{position: [0, 0, 0.49], velocity: [8, 0, 0], coordinates: {{{held}}}}}
+road: {{type: sine, amplitude: 0.02, wavelength: 5, start: 1, phase_per_y: 0.3}}
+parameters:
+"""
+chosen = {}
+for i, name in enumerate(name for name in at if name.startswith("parameter/")):
+    chosen[name] = (f"P{i}P", at[name], 0.02 * abs(at[name]) if at[name] else 0.001)
+    scene += f"  {name.split('/')[1]}: P{i}P\n"
+check("parameters that are geometric", len(chosen) >= 15)
+taylor("tunable geometry", "chassis.z", car, scene, chosen, 0.02)
+
+# ---- a run of gicrun ends there -------------------------------------------------------------------------------------------------
+
+vehicle = f"{models}/hmmwv_vehicle.veh"
+gic("--trim", "-q", vehicle, "speed=10", "lateral=2", "-o", f"{work}/circle.scene")
+text = Path(f"{work}/circle.scene").read_text().replace("integrator: rkck\ntolerance: 1e-9\noutput_step: 0.01",
+                                                       "step: 0.001\noutput_step: 0.01").replace("duration: 10", "duration: 1")
+Path(f"{work}/circle.scene").write_text(text)
+value, d = gradient("chassis.y", vehicle, f"{work}/circle.scene")
+last = gic("-q", "--general", vehicle, f"{work}/circle.scene", "-o", "-").splitlines()
+names = [name.split(" [")[0] for name in last[0].split(",")]
+near("the value is that of the run", value, float(last[-1].split(",")[names.index("chassis.y")]), 1e-11)
+roll = float(last[1].split(",")[names.index("chassis_attitude.roll")])
+aside = d["initial/y"] * math.cos(roll) - d["initial/z"] * math.sin(roll)  # the axes are those of a base that leans
+near("a circle moved aside", aside, 1, 1e-9)
+turn = gradient("chassis.x", vehicle, f"{work}/circle.scene", "initial/yaw")[1]["initial/yaw"]
+check("a circle turned moves backwards on the left", turn < 0)
+
+hmmwv = f"{models}/hmmwv.veh"
+Path(f"{work}/rest.scene").write_text("gicscene: 1\nduration: 0.5\nstep: 0.005\ninitial: {equilibrium: true, speed: 5}\n")
+value = gradient("chassis.z", hmmwv, f"{work}/rest.scene", "initial/z")[0]
+last = gic("-q", "--general", hmmwv, f"{work}/rest.scene", "-o", "-").splitlines()
+names = [name.split(" [")[0] for name in last[0].split(",")]
+near("a start in equilibrium", value, float(last[-1].split(",")[names.index("chassis.z")]), 1e-12)
+
+print(f"{passed} passed, {failed} failed")
+sys.exit(failed != 0)
