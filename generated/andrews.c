@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xbbe6c7e3
+#if ANDREWS_H != 0x3245f2af
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -4010,5 +4010,6 @@ const gic_model andrews_model = {
     0,
     NULL,
     0,
+    NULL,
     NULL,
 };

@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x58a18f5b
+#if FIVE_LINK_H != 0xc9f98857
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8049,5 +8049,6 @@ const gic_model five_link_model = {
     FIVE_LINK_CONTACTS,
     &five_link_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0x5513e94f
+#if FORMULA_STUDENT_H != 0x27f11755
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -15327,4 +15327,5 @@ const gic_model formula_student_model = {
     &formula_student_contacts,
     2,
     formula_student_controller,
+    NULL,
 };

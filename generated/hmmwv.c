@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0xdde69c3f
+#if HMMWV_H != 0x88d430ab
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6869,5 +6869,6 @@ const gic_model hmmwv_model = {
     HMMWV_CONTACTS,
     &hmmwv_contacts,
     0,
+    NULL,
     NULL,
 };

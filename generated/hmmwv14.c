@@ -88,7 +88,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x601b7deb
+#if HMMWV14_H != 0x7c2e3c19
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -10173,5 +10173,6 @@ const gic_model hmmwv14_model = {
     HMMWV14_CONTACTS,
     &hmmwv14_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -86,7 +86,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0x78e263d9
+#if HMMWV_FULL_H != 0xe409be75
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7999,5 +7999,6 @@ const gic_model hmmwv_full_model = {
     HMMWV_FULL_CONTACTS,
     &hmmwv_full_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0xa78b8977
+#if HMMWV_TIRES_H != 0x52c84385
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8501,5 +8501,6 @@ const gic_model hmmwv_tires_model = {
     HMMWV_TIRES_CONTACTS,
     &hmmwv_tires_contacts,
     0,
+    NULL,
     NULL,
 };

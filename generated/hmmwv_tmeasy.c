@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0x2f90b489
+#if HMMWV_TMEASY_H != 0xa7837203
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8551,5 +8551,6 @@ const gic_model hmmwv_tmeasy_model = {
     HMMWV_TMEASY_CONTACTS,
     &hmmwv_tmeasy_contacts,
     0,
+    NULL,
     NULL,
 };

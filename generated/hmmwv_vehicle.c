@@ -91,7 +91,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0xb2bdb925
+#if HMMWV_VEHICLE_H != 0xb3053c61
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -9186,5 +9186,6 @@ const gic_model hmmwv_vehicle_model = {
     HMMWV_VEHICLE_CONTACTS,
     &hmmwv_vehicle_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x21f32587
+#if PENDULUM_H != 0x340bdc1b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1239,5 +1239,6 @@ const gic_model pendulum_model = {
     0,
     NULL,
     0,
+    NULL,
     NULL,
 };

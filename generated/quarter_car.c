@@ -56,7 +56,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x68bae185
+#if QUARTER_CAR_H != 0x3252e9c1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -2590,5 +2590,6 @@ const gic_model quarter_car_model = {
     QUARTER_CAR_CONTACTS,
     &quarter_car_contacts,
     0,
+    NULL,
     NULL,
 };

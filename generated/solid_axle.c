@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x271f773d
+#if SOLID_AXLE_H != 0x36966f6f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7611,5 +7611,6 @@ const gic_model solid_axle_model = {
     SOLID_AXLE_CONTACTS,
     &solid_axle_contacts,
     0,
+    NULL,
     NULL,
 };

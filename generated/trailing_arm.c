@@ -78,7 +78,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0x2c9cd80f
+#if TRAILING_ARM_H != 0x3ae5991b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6969,5 +6969,6 @@ const gic_model trailing_arm_model = {
     TRAILING_ARM_CONTACTS,
     &trailing_arm_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -45,6 +45,8 @@ static const char usage[] =
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
     "  --derivatives    code with functions for derivatives of rates and outputs too; units of FMI with directional\n"
     "                   derivatives\n"
+    "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md), with all of "
+    "--derivatives\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -74,7 +76,7 @@ typedef struct Options {
     int fmi;                                               /* version of an FMU */
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
-    bool derivatives;
+    bool derivatives, implicit;
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -155,6 +157,7 @@ static Options read_options(int count, char **word)
         {"recovery", .read = read_recovery},
         {"scene", .text = &options.scene},
         {"derivatives", .on = &options.derivatives},
+        {"implicit", .on = &options.implicit},
         {"templates", .text = &options.templates},
         {"main", .on = &main_program},
         {"sequence", .on = &sequence},
@@ -203,6 +206,9 @@ static Options read_options(int count, char **word)
     if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);
+    if (options.implicit && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
+        usage_error("--implicit is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
+                    NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
@@ -231,7 +237,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     Style style = style_readable;
-    style.derivatives = options->derivatives;
+    style.derivatives = options->derivatives || options->implicit;
+    style.implicit = options->implicit;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))

@@ -209,10 +209,268 @@ int gic_blame(const gic_model *model, gic_real step, const gic_real *rate, int s
     return farthest > GIC_R(1.0) ? GIC_ERROR_UNSTABLE : status;
 }
 
+/* ---- implicit steps: models/STIFF.md ---------------------------------------------------------------------- */
+
+enum { MOST_STAGES = 4 };
+
+/* A Rosenbrock method whose order does not depend on the matrix A (a W-method). With h the step and A and B near the
+ * derivatives of the rates f by states and inputs, which change by du within the step, its stages are
+ *
+ *     Y_i = y + sum_j place_ij u_j,   (1 - gamma h A) u_i = gamma h (f(t + at_i h, Y_i) + drift_i B du) + sum_j less_ij
+ * u_j
+ *
+ * over j < i, and y + sum_i end_i u_i is the state after it. tests/unit/test_rosenbrock.c has the conditions of order.
+ */
+typedef struct Rosenbrock {
+    int32_t stages;
+    gic_real gamma, at[MOST_STAGES], drift[MOST_STAGES], end[MOST_STAGES];
+    gic_real place[MOST_STAGES][MOST_STAGES], less[MOST_STAGES][MOST_STAGES];
+} Rosenbrock;
+
+/* ROS2 of Verwer, Spee, Blom and Hundsdorfer 1999 with gamma = 1 - 1 / sqrt(2). */
+static const Rosenbrock ros2 = {
+    2,
+    GIC_R(0.29289321881345248),
+    {GIC_R(0.0), GIC_R(1.0)},
+    {GIC_R(0.29289321881345248), GIC_R(-0.29289321881345248)},
+    {GIC_R(5.1213203435596426), GIC_R(1.7071067811865475)},
+    {{GIC_R(0.0)}, {GIC_R(3.4142135623730950)}},
+    {{GIC_R(0.0)}, {GIC_R(-2.0)}},
+};
+
+/* ROS34PW2 of Rang and Angermann 2005. */
+static const Rosenbrock ros3 = {
+    4,
+    GIC_R(0.43586652150845900),
+    {GIC_R(0.0), GIC_R(0.87173304301691801), GIC_R(0.73157995778885238), GIC_R(1.0)},
+    {GIC_R(0.43586652150845900), GIC_R(-0.43586652150845900), GIC_R(-0.41333337623388649), GIC_R(0.0)},
+    {GIC_R(4.1847604823191601), GIC_R(-0.28519201735549587), GIC_R(2.2942803602790414), GIC_R(1.0)},
+    {{GIC_R(0.0)},
+     {GIC_R(2.0)},
+     {GIC_R(1.4192173174557647), GIC_R(-0.25923221167296971)},
+     {GIC_R(4.1847604823191607), GIC_R(-0.28519201735549591), GIC_R(2.2942803602790417)}},
+    {{GIC_R(0.0)},
+     {GIC_R(-2.0)},
+     {GIC_R(-1.8239969947745137), GIC_R(0.12430565256672007)},
+     {GIC_R(-2.7756761163024681), GIC_R(-2.9619836625547887), GIC_R(1.2509798950560604)}},
+};
+
+/* Its numbers in an instance. */
+typedef struct Implicit {
+    const gic_implicit *how;
+    gic_implicit_head *head;
+    int32_t n, m; /* states, unknowns */
+    int32_t *pivot;
+    gic_real *jacobian;          /* [n][columns] */
+    gic_real *factor;            /* [m][m] */
+    gic_real *increment;         /* [MOST_STAGES][n] u_i */
+    gic_real *stage, *b, *drift; /* [n] */
+    gic_real *change;            /* [columns] of inputs */
+} Implicit;
+
+static Implicit implicit_of(const gic_model *model, void *self)
+{
+    const gic_implicit *how = model->implicit;
+    Implicit w;
+    w.how = how;
+    w.head = (gic_implicit_head *)(void *)((char *)self + how->head_offset);
+    w.n = model->slow_count + model->fast_count;
+    w.m = how->unknown_count;
+    w.pivot = (int32_t *)(void *)((char *)self + how->pivot_offset);
+    w.jacobian = array_at(self, how->number_offset);
+    w.factor = w.jacobian + w.n * how->columns;
+    w.increment = w.factor + w.n * w.n;
+    w.stage = w.increment + MOST_STAGES * w.n;
+    w.b = w.stage + w.n;
+    w.drift = w.b + w.n;
+    w.change = w.drift + w.n;
+    return w;
+}
+
+/* True for a method that this model can take. */
+static int is_method(const gic_model *model, int32_t method)
+{
+    return method == GIC_AB3 || method == GIC_RK4 || (model->implicit && (method == GIC_ROS2 || method == GIC_ROS3));
+}
+
+/* The matrix 1 - reach A of the unknowns, in factor[]. The number x whose rate is the unknown v has the row
+ * u_x = b_x + reach u_v, which is put into the others. */
+static void implicit_matrix(const Implicit *w, gic_real reach)
+{
+    for (int32_t i = 0; i < w->m; ++i) {
+        const gic_real *row = w->jacobian + w->how->columns * w->how->unknown[i];
+        for (int32_t k = 0; k < w->m; ++k) {
+            const int32_t position = w->how->position[k];
+            const gic_real far = position < 0 ? GIC_R(0.0) : reach * row[position];
+            w->factor[w->m * i + k] = (i == k ? GIC_R(1.0) : GIC_R(0.0)) - reach * (row[w->how->unknown[k]] + far);
+        }
+    }
+}
+
+/* Its triangular factors, rows exchanged by their largest numbers relative to their rows. Returns the index in state[]
+ * of an unknown that the rows do not determine; -1: there is none. */
+static int32_t implicit_factorize(const Implicit *w)
+{
+    const gic_real least = sizeof(gic_real) < sizeof(double) ? GIC_R(1e-6) : GIC_R(1e-13);
+    const int32_t m = w->m;
+    gic_real *const f = w->factor, *const size = w->stage;
+    for (int32_t i = 0; i < m; ++i) {
+        size[i] = GIC_R(0.0);
+        for (int32_t k = 0; k < m; ++k)
+            size[i] = absolute(f[m * i + k]) > size[i] ? absolute(f[m * i + k]) : size[i];
+    }
+    for (int32_t k = 0; k < m; ++k) {
+        int32_t best = k;
+        for (int32_t i = k + 1; i < m; ++i)
+            if (absolute(f[m * i + k]) * size[best] > absolute(f[m * best + k]) * size[i])
+                best = i;
+        if (!(absolute(f[m * best + k]) > least * size[best]))
+            return w->how->unknown[k];
+        w->pivot[k] = best;
+        for (int32_t j = 0; j < m && best != k; ++j) {
+            const gic_real upper = f[m * k + j];
+            f[m * k + j] = f[m * best + j];
+            f[m * best + j] = upper;
+        }
+        size[best] = size[k];
+        f[m * k + k] = GIC_R(1.0) / f[m * k + k];
+        for (int32_t i = k + 1; i < m; ++i) {
+            const gic_real multiplier = f[m * i + k] *= f[m * k + k];
+            for (int32_t j = k + 1; j < m && (multiplier > GIC_R(0.0) || multiplier < GIC_R(0.0)); ++j)
+                f[m * i + j] -= multiplier * f[m * k + j];
+        }
+    }
+    return -1;
+}
+
+/* (1 - reach A) u = b; b and stage[] are lost. */
+static void implicit_solve(const Implicit *w, gic_real reach, gic_real *u)
+{
+    const int32_t m = w->m;
+    const gic_real *const f = w->factor, *const b = w->b;
+    if (!w->head->exchanged) {
+        w->how->solve(w->jacobian, reach, f, b, u);
+        return;
+    }
+    gic_real *const x = w->stage;
+    for (int32_t i = 0; i < m; ++i) {
+        const gic_real *row = w->jacobian + w->how->columns * w->how->unknown[i];
+        x[i] = b[w->how->unknown[i]];
+        for (int32_t k = 0; k < m; ++k)
+            if (w->how->position[k] >= 0)
+                x[i] += reach * row[w->how->position[k]] * b[w->how->position[k]];
+    }
+    for (int32_t k = 0; k < m; ++k) {
+        const gic_real upper = x[w->pivot[k]];
+        x[w->pivot[k]] = x[k];
+        x[k] = upper;
+    }
+    for (int32_t i = 1; i < m; ++i)
+        for (int32_t j = 0; j < i; ++j)
+            x[i] -= f[m * i + j] * x[j];
+    for (int32_t i = m - 1; i >= 0; --i) {
+        for (int32_t j = i + 1; j < m; ++j)
+            x[i] -= f[m * i + j] * x[j];
+        x[i] *= f[m * i + i];
+        u[w->how->unknown[i]] = x[i];
+        if (w->how->position[i] >= 0)
+            u[w->how->position[i]] = b[w->how->position[i]] + reach * x[i];
+    }
+}
+
+/* Jacobian and factors for a step from this state, those that are kept or new ones. */
+static int implicit_prepare(const Implicit *w, void *self, gic_real time, int32_t method, const gic_real *from,
+                            gic_real reach)
+{
+    gic_head *head = (gic_head *)self;
+    if (w->head->used > 0 && w->head->used < w->head->keep && w->head->reach == reach && head->method == method &&
+        head->steps > 0) {
+        ++w->head->used;
+        return GIC_OK;
+    }
+    w->head->used = 0;
+    ++w->head->jacobian_count;
+    const int status = w->how->jacobian(self, time, from, w->jacobian);
+    if (status != GIC_OK)
+        return status;
+    w->head->exchanged = !w->how->factorize || !w->how->factorize(w->jacobian, reach, w->factor);
+    if (w->head->exchanged) {
+        implicit_matrix(w, reach);
+        const int32_t lost = implicit_factorize(w);
+        if (lost >= 0) {
+            head->grown = lost;
+            return GIC_ERROR_PIVOT;
+        }
+    }
+    w->head->reach = reach;
+    w->head->used = 1;
+    return GIC_OK;
+}
+
+/* What the inputs change within a step, in drift[]: B du. Inputs are those of `time` afterwards. */
+static void implicit_drift(const gic_model *model, void *self, const Implicit *w, gic_real time, gic_real step)
+{
+    const gic_head *head = (const gic_head *)self;
+    const gic_real *input = array_at(self, model->input_offset);
+    for (int32_t i = 0; i < w->n; ++i)
+        w->drift[i] = GIC_R(0.0);
+    if (!head->input_function)
+        return;
+    set_inputs(model, self, time + step);
+    copy(w->change, input, model->input_count);
+    set_inputs(model, self, time);
+    for (int32_t i = 0; i < w->n; ++i)
+        for (int32_t k = 0; k < model->input_count; ++k)
+            w->drift[i] += w->jacobian[w->how->columns * i + w->n + k] * (w->change[k] - input[k]);
+}
+
+/* ROS2 or ROS3 for the whole state, with its rate at `from`. */
+static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
+                      const gic_real *from, const gic_real *rate, gic_real *next)
+{
+    const Rosenbrock *r = method == GIC_ROS2 ? &ros2 : &ros3;
+    const Implicit w = implicit_of(model, self);
+    const gic_real reach = r->gamma * step;
+    int status = implicit_prepare(&w, self, time, method, from, reach);
+    if (status != GIC_OK)
+        return status;
+    implicit_drift(model, self, &w, time, step);
+    copy(w.b, rate, w.n);
+    for (int32_t k = 0; k < r->stages; ++k) {
+        if (k > 0) {
+            for (int32_t i = 0; i < w.n; ++i) {
+                w.stage[i] = from[i];
+                for (int32_t j = 0; j < k; ++j)
+                    w.stage[i] += r->place[k][j] * w.increment[w.n * j + i];
+            }
+            status = evaluate(model, self, time + r->at[k] * step, w.stage, w.b);
+            if (status == GIC_ERROR_INPUT)
+                (void)out_of_bounds(self, w.stage, 0, w.n);
+            if (status != GIC_OK)
+                return status;
+        }
+        for (int32_t i = 0; i < w.n; ++i) {
+            w.b[i] = reach * (w.b[i] + r->drift[k] * w.drift[i]);
+            for (int32_t j = 0; j < k; ++j)
+                w.b[i] += r->less[k][j] * w.increment[w.n * j + i];
+        }
+        implicit_solve(&w, reach, w.increment + w.n * k);
+    }
+    for (int32_t i = 0; i < w.n; ++i) {
+        next[i] = from[i];
+        for (int32_t k = 0; k < r->stages; ++k)
+            next[i] += r->end[k] * w.increment[w.n * k + i];
+    }
+    return GIC_OK;
+}
+
+/* ---- a step ------------------------------------------------------------------------------------------------ */
+
 /* One step from `from` to `next`; the rate at the start goes to `rate`, and *newest points to it as soon as it is
- * known. `past` has the two rates before the step; NULL: RK4. */
-static int advance(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
-                   const gic_real *past, gic_real *rate, gic_real *next, gic_real *work, const gic_real **newest)
+ * known. `past` has the two rates before the step; NULL: RK4, or an implicit `method`. */
+static int advance(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
+                   const gic_real *from, const gic_real *past, gic_real *rate, gic_real *next, gic_real *work,
+                   const gic_real **newest)
 {
     const int32_t n = model->slow_count + model->fast_count;
     int status = evaluate(model, self, time, from, rate);
@@ -221,6 +479,8 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
     *newest = rate;
     if (past)
         adams_bashforth(n, step, from, rate, past, past + n, next);
+    else if (method == GIC_ROS2 || method == GIC_ROS3)
+        status = rosenbrock(model, self, time, step, method, from, rate, next);
     else
         status = runge_kutta(model, self, time, step, from, rate, next, work);
     return status == GIC_OK ? settle(model, self, next) : status;
@@ -265,6 +525,8 @@ static int give_up(const gic_model *model, void *self, gic_real step, int status
     gic_real *rate = array_at(self, model->scratch_offset);
     if (newest != rate)
         copy(rate, newest, n);
+    if (model->implicit)
+        implicit_of(model, self).head->used = 0;
     /* coordinates are reset too: they follow from the state */
     for (int32_t c = 0; c < model->coordinate_count; ++c) {
         const int32_t at = model->coordinate_state[c];
@@ -368,7 +630,8 @@ static int locate_change(const gic_model *model, void *self, const Rest *rest, g
     return found == 1 ? GIC_OK : found == 0 ? GIC_ERROR_EVENTS : found;
 }
 
-/* The rest of a step by RK4, in `parts` parts. The rate at its start goes to `first`; work: 4 rows of a state. */
+/* The rest of a step by RK4 or the implicit method that made it, in `parts` parts. The rate at its start goes to
+ * `first`; work: 4 rows of a state. */
 static int finish_step(const gic_model *model, void *self, const Rest *rest, int32_t parts, gic_real *first,
                        gic_real *work)
 {
@@ -378,7 +641,8 @@ static int finish_step(const gic_model *model, void *self, const Rest *rest, int
     int status = GIC_OK;
     for (int32_t k = 0; k < parts && status == GIC_OK; ++k) {
         const gic_real time = rest->end - (gic_real)(parts - k) * part;
-        status = advance(model, self, time, part, state, NULL, k == 0 ? first : work, work + n, work + 2 * n, &newest);
+        status = advance(model, self, time, part, ((const gic_head *)self)->method, state, NULL, k == 0 ? first : work,
+                         work + n, work + 2 * n, &newest);
         if (status == GIC_OK)
             copy(state, work + n, n);
     }
@@ -1069,7 +1333,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     int status = check_step(model, self, step, step);
     if (status != GIC_OK)
         return status;
-    if ((method != GIC_AB3 && method != GIC_RK4) || !has_room(head, 1))
+    if (!is_method(model, method) || !has_room(head, 1) || (method > GIC_RK4 && head->most > 0))
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
@@ -1080,12 +1344,12 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     const gic_real *newest = array_at(self, model->rate_offset);
     copy(input_before, array_at(self, model->input_offset), model->input_count);
     head->hold = head->flip;
-    status = head->status = advance(model, self, gic_time(self), step, array_at(self, model->state_offset),
+    status = head->status = advance(model, self, gic_time(self), step, method, array_at(self, model->state_offset),
                                     known == 2 ? history : NULL, rate, next, work, &newest);
     if (status != GIC_OK)
         return give_up(model, self, step, status, newest, input_before);
     status = move_on(model, self, step, method, 1,
-                     method == GIC_RK4 ? 0
+                     method != GIC_AB3 ? 0
                      : known < 2       ? known + 1
                                        : 2,
                      next, rate, known < 2);
@@ -1162,8 +1426,8 @@ static int start_dual(Dual *dual, int32_t known)
     int status = known == 0 ? link_at(dual, 0, from, link + 4 * model->link_count) : GIC_OK;
     for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
         gic_real *rate = row(dual, k == 0 ? 0 : 5 + k % 2), *next = row(dual, 1 + k % 2);
-        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, from, NULL, rate, next,
-                         row(dual, 3), &dual->newest);
+        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, GIC_RK4, from, NULL,
+                         rate, next, row(dual, 3), &dual->newest);
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = rate + model->slow_count;
         from = next;
@@ -1542,14 +1806,14 @@ int gic_sample(const gic_model *model, void *self, gic_real *next)
     return head->status = status;
 }
 
-/* To `end` by RK4, in parts about as long as fast steps. */
-static int part_to(const gic_model *model, void *self, gic_real end, gic_real fast_step)
+/* To `end` by RK4 or an implicit method, in parts about as long as fast steps. */
+static int part_to(const gic_model *model, void *self, gic_real end, gic_real fast_step, int32_t method)
 {
     const gic_real length = end - gic_time(self);
     const int32_t parts = 1 + (int32_t)(GIC_R(0.999) * length / fast_step);
     int status = GIC_OK;
     for (int32_t i = 0; i < parts && status == GIC_OK; ++i)
-        status = plain_step(model, self, length / (gic_real)parts, GIC_RK4);
+        status = plain_step(model, self, length / (gic_real)parts, method == GIC_AB3 ? GIC_RK4 : method);
     if (status == GIC_OK) {
         gic_restart(self, end); /* the time as a product, not as a sum */
         set_inputs(model, self, end);
@@ -1565,7 +1829,7 @@ static int sampled_step(const gic_model *model, void *self, gic_real step, int32
     gic_head *head = (gic_head *)self;
     const int usable = ratio > 0 && ratio <= GIC_RATIOS;
     int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
-    if (status == GIC_OK && (!usable || (method != GIC_AB3 && method != GIC_RK4) || !(steady >= GIC_R(0.0))))
+    if (status == GIC_OK && (!usable || !is_method(model, method) || !(steady >= GIC_R(0.0))))
         status = head->status = GIC_ERROR_ARGUMENT;
     if (status == GIC_OK && model->discrete_count > MOST_DISCRETE)
         status = head->status = GIC_ERROR_ABI;
@@ -1581,12 +1845,13 @@ static int sampled_step(const gic_model *model, void *self, gic_real step, int32
     int32_t samples = 0;
     for (gic_real next; status == GIC_OK && (next = next_instant(model, state, end)) < end;) {
         head->parted = 1;
-        status = samples++ < GIC_SAMPLES ? part_to(model, self, next, step / (gic_real)ratio) : GIC_ERROR_EVENTS;
+        status =
+            samples++ < GIC_SAMPLES ? part_to(model, self, next, step / (gic_real)ratio, method) : GIC_ERROR_EVENTS;
         if (status == GIC_OK)
             status = sample_now(model, self);
     }
     if (status == GIC_OK && head->parted) {
-        status = part_to(model, self, end, step / (gic_real)ratio);
+        status = part_to(model, self, end, step / (gic_real)ratio, method);
         head->start_time = start;
         head->steps = steps + 1;
         head->step = step;

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 9
+#define GIC_ABI_VERSION 10
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -64,13 +64,14 @@ typedef double gic_real;
     X(GIC_ERROR_RESIDUAL, -15, \
       "constraints, their derivatives or the equations of motion are not fulfilled: the code has an error") \
     X(GIC_ERROR_EVENTS, -16, \
-      "gears or contacts change, or controllers sample, more often within a step than a step can follow")
+      "gears or contacts change, or controllers sample, more often within a step than a step can follow") \
+    X(GIC_ERROR_PIVOT, -17, "the matrix of an implicit step is singular: a motion grows too fast for a step so long")
 
 typedef enum gic_status {
 #define GIC_STATUS_ENUM(name, code, text) name = code,
     GIC_STATUS_LIST(GIC_STATUS_ENUM)
 #undef GIC_STATUS_ENUM
-        GIC_STATUS_LAST = -16
+        GIC_STATUS_LAST = -17
 } gic_status;
 
 /* The text of a status, one line; never NULL. */
@@ -96,7 +97,8 @@ typedef struct gic_road {
 
 /* ---- the instance ------------------------------------------------------------------------------- */
 
-typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1 } gic_method;
+/* GIC_ROS2 and GIC_ROS3 are implicit, of order 2 and 3: for models with gic_model.implicit alone. */
+typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1, GIC_ROS2 = 2, GIC_ROS3 = 3 } gic_method;
 
 /* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
@@ -126,11 +128,11 @@ typedef struct gic_head {
     int32_t subset;      /* the subset that the status is about, -1: none; see the descriptor's subset_name */
     int32_t condition;   /* the condition that GIC_ERROR_GEOMETRY or _ASSUMPTION is about, -1: none; see condition_text
                           */
-    int32_t grown;       /* index in state[] of the number that GIC_ERROR_UNSTABLE or _MASS is about, -1: none */
-    int32_t event;       /* what GIC_ERROR_EVENTS is about: 1 + the index of a contact, or 1 + contact_count + an index
-                          * in discrete[]; 0: nothing; see gic_event_name */
-    int32_t locate;      /* for the caller: 1: steps are made in parts where a contact is made or lost within them; 2:
-                          * also where a contact's load bends too much within them */
+    int32_t grown;      /* index in state[] of the number that GIC_ERROR_UNSTABLE, _MASS or _PIVOT is about, -1: none */
+    int32_t event;      /* what GIC_ERROR_EVENTS is about: 1 + the index of a contact, or 1 + contact_count + an index
+                         * in discrete[]; 0: nothing; see gic_event_name */
+    int32_t locate;     /* for the caller: 1: steps are made in parts where a contact is made or lost within them; 2:
+                         * also where a contact's load bends too much within them */
     int32_t most;       /* for the caller: the most evaluations of a step, right-hand sides and looks; 0: no bound, else
                          * GIC_LEAST_MOST or more. What is left of a step in which they don't suffice for the next
                          * contact or change of gear goes over it, and passed_count counts it */
@@ -208,6 +210,36 @@ typedef struct gic_self_test {
     gic_real energy;         /* rate of kinetic and potential energy against the power of dampers, tires and drives */
 } gic_self_test;
 
+/* In an instance with implicit steps. */
+typedef struct gic_implicit_head {
+    int32_t keep;      /* for the caller: the most steps that are made with one Jacobian; 0 or 1: each has its own */
+    int32_t used;      /* steps made with the present factors; 0: there are none */
+    int32_t exchanged; /* the present factors are the runtime's own, with rows exchanged */
+    gic_real reach;    /* gamma * step, s, of the factors */
+    int64_t jacobian_count; /* Jacobians evaluated and factorized */
+} gic_implicit_head;
+
+/* What implicit steps need of a model: code of gicgen --implicit. The unknowns of their linear systems are the states
+ * but for positions and coordinates whose rates are states. */
+typedef struct gic_implicit {
+    int32_t columns; /* numbers of a row of the Jacobian: states, inputs, others */
+    int32_t unknown_count;
+    const int32_t *unknown;  /* [unknown_count] indices in state[] */
+    const int32_t *position; /* [unknown_count] index in state[] of the number whose rate it is, -1: of none */
+    size_t head_offset;      /* of a gic_implicit_head in the instance, bytes */
+    size_t pivot_offset;     /* of unknown_count int32_t */
+    size_t number_offset;    /* of GIC_IMPLICIT(n, columns) numbers: work space, and the Jacobian that is kept */
+    /* jacobian[columns * row + column]: derivatives of the rates by states and inputs at least */
+    int (*jacobian)(void *self, gic_real time, const gic_real *state, gic_real *jacobian);
+    /* Factors of 1 - reach A, A the columns of states, in an order that is known beforehand: 1, or 0 where a pivot is
+     * too small for that, and the runtime factorizes with rows exchanged. factor: unknown_count^2 numbers. NULL: it
+     * always does. And the solution of (1 - reach A) u = b, n numbers each. */
+    int (*factorize)(const gic_real *jacobian, gic_real reach, gic_real *factor);
+    void (*solve)(const gic_real *jacobian, gic_real reach, const gic_real *factor, const gic_real *b, gic_real *u);
+} gic_implicit;
+
+#define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))
+
 typedef struct gic_model {
     uint32_t abi_version; /* GIC_ABI_VERSION of the generated code */
     uint32_t real_size;   /* sizeof(gic_real) of the generated code */
@@ -268,6 +300,7 @@ typedef struct gic_model {
     /* Controllers: step functions sample them, and gic_sample. */
     int32_t controller_count;
     const gic_controller *controller;
+    const gic_implicit *implicit; /* NULL: no implicit steps */
 } gic_model;
 
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
@@ -292,10 +325,11 @@ typedef struct gic_model {
 /* The most contacts that head.locate looks at. */
 #define GIC_CONTACTS 64
 
-/* One step of `step` seconds with AB3 or RK4. AB3 starts with two steps of RK4, which keeps its order. With head.locate
- * a step in which contacts change, or with 2 a load bends, is made again in parts, and AB3 starts again after it. On
- * GIC_OK state, time and, where there is an input function, input[] have moved by one step; otherwise they are
- * untouched. A new step size or method restarts the history. */
+/* One step of `step` seconds with AB3 or RK4, or where the model has gic_model.implicit with ROS2 or ROS3, which is not
+ * for head.most (models/STIFF.md). AB3 starts with two steps of RK4, which keeps its order. With head.locate a step in
+ * which contacts change, or with 2 a load bends, is made again in parts, and AB3 starts again after it. On GIC_OK
+ * state, time and, where there is an input function, input[] have moved by one step; otherwise they are untouched. A
+ * new step size or method restarts the history. */
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 

@@ -145,6 +145,8 @@ const Block *whole_tangent(const Generation *g, const Block *block);
 int jacobian_columns(const Generation *g);
 /* [columns] those of parameters that change the geometry. */
 const bool *columns_apart(Generation *g);
+/* [states][states] rates that may follow a state. */
+const bool *jacobian_pattern(Generation *g);
 void write_jacobian_sizes(void *context, Text *out, int indent);
 void write_jacobian_picture(void *context, Text *out, int indent);
 void write_jacobian_rows(void *context, Text *out, int indent);
@@ -159,6 +161,18 @@ void write_jacobian_columns(void *context, Text *out, int indent);
 /* wheel_columns.c: the same through wheels; nothing for models without fast states. */
 extern const Insertions columns_wheels_points, columns_wheel_points;
 void write_wheel_columns(Generation *g, Text *out);
+
+/* eliminate.c: factors and solutions of the linear systems of implicit steps. unknown: [unknowns] states; position:
+ * [unknowns] the state whose rate each is, -1: none. */
+void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
+void write_elimination_solution(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
+
+/* implicit.c: what Style.implicit adds: sizes, members of the instance, functions and tables, the descriptor's end. */
+extern const Insertions implicit_points;
+void write_implicit_sizes(const Generation *g, Text *out, int indent);
+void write_implicit_members(void *context, Text *out, int indent);
+void write_implicit_code(void *context, Text *out, int indent);
+void write_implicit(void *context, Text *out, int indent);
 
 /* tables.c: the tables that the descriptor points to. */
 void write_tables(void *context, Text *out, int indent);

@@ -277,6 +277,17 @@ static bool may_change(const Pattern *p, int row, int column)
     return row < rates ? p->of[ARRAY_rate][row][column] : p->of[ARRAY_out][row - rates][column];
 }
 
+const bool *jacobian_pattern(Generation *g)
+{
+    const Pattern *p = pattern_new(g);
+    const int n = states(g);
+    bool *pattern = pool_alloc(g->pool, (size_t)(n * n) + 1);
+    for (int r = 0; r < n; ++r)
+        for (int c = 0; c < n; ++c)
+            pattern[n * r + c] = may_change(p, r, c);
+    return pattern;
+}
+
 static int rows_of(const Generation *g)
 {
     return states(g) + g->model->output_components;

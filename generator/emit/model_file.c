@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 9 };
+enum { ABI_VERSION = 10 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 
@@ -182,6 +182,7 @@ static void write_sizes(void *context, Text *out, int indent)
                 {"DEPENDENCE_ROOM", room(g->formulation->dependence_most)}};
     size_t count = sizeof size / sizeof *size;
     write_wheel_sizes(g, out, indent);
+    write_implicit_sizes(g, out, indent);
     if (g->formulation->contacts)
         line(out, indent, "%s_CONTACTS = %d,", g->upper, g->formulation->contacts->stores);
     for (size_t i = 0; i < count; ++i)
@@ -343,6 +344,7 @@ static const Insertion header_point[] = {{"banner", write_banner},
                                          {"wheels", write_wheel_members},
                                          {"derived", write_derived},
                                          {"contacts", write_contact_member},
+                                         {"implicit", write_implicit_members},
                                          {"places", write_places},
                                          {"tangent", write_tangent_header},
                                          {NULL, NULL}};
@@ -704,6 +706,8 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {"contacts", write_contacts},
                                        {"controllers", write_controllers},
                                        {"tangent", write_tangent_code},
+                                       {"implicit code", write_implicit_code},
+                                       {"implicit", write_implicit},
                                        {NULL, NULL}};
 
 const Insertions code_points = {(const char *const[]){"model.c.in", "independent.c.in", "reactions.c.in", "bounds.c.in",
@@ -717,31 +721,19 @@ const Insertions code_points = {(const char *const[]){"model.c.in", "independent
 /* All templates of the code are checked, those too that this model does not need. */
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {&code_points,
-                                        &header_points,
-                                        &derive_points,
-                                        &subset_points,
-                                        &lane_class_points,
-                                        &lane_width_points,
-                                        &lane_fold_points,
-                                        &assumption_points,
-                                        &road_points,
-                                        &wheels_points,
-                                        &wheel_points,
-                                        &wheel_lanes_points,
-                                        &wheel_vector_points,
-                                        &dual_rate_points,
-                                        &powertrain_points,
-                                        &states_points,
-                                        &states_rate_points,
-                                        &tangent_points,
-                                        &tangent_class_points,
-                                        &tangent_header_points,
-                                        &columns_points,
-                                        &columns_class_points,
-                                        &columns_wheels_points,
-                                        &columns_wheel_points,
-                                        NULL};
+    const Insertions *const points[] = {&code_points,           &header_points,
+                                        &derive_points,         &subset_points,
+                                        &lane_class_points,     &lane_width_points,
+                                        &lane_fold_points,      &assumption_points,
+                                        &road_points,           &wheels_points,
+                                        &wheel_points,          &wheel_lanes_points,
+                                        &wheel_vector_points,   &dual_rate_points,
+                                        &powertrain_points,     &states_points,
+                                        &states_rate_points,    &tangent_points,
+                                        &tangent_class_points,  &tangent_header_points,
+                                        &columns_points,        &columns_class_points,
+                                        &columns_wheels_points, &columns_wheel_points,
+                                        &implicit_points,       NULL};
     templates_check(pool, templates, points);
 }
 

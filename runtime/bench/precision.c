@@ -73,6 +73,7 @@ static const Scene *read_one(const Bench *bench, const Model *model, const char 
     const Scene *scene = scene_read(bench->pool, path, model, NULL, 0);
     const Place at = {scene->source, 0, 0};
     scene_no_rig(scene);
+    scene_no_implicit(scene, "gicbench");
     if (!(scene->step > 0))
         diag_fail(at, "write a step: constant steps are tried with it, its half, its quarter and its eighth",
                   "the scene has no step");

@@ -56,7 +56,7 @@ static const char help[] =
     "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
     "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
     "      --integrator NAME\n"
-    "                     ab3, rk4 (constant steps), adams or rkck (variable) instead of the scene's\n"
+    "                     instead of the scene's: ab3, rk4, ros2, ros3, adams, rkck\n"
     "      --tolerance NUMBER of these\n"
     "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
     "                     long run by the C compiler too (cc); tape, gic, gcp1, gcp2\n"
@@ -265,7 +265,8 @@ static Asked read_command_line(int count, char **word)
                                     : "derivatives are those of the engine tape: --identify does not go with --engine",
                    asked.options.engine);
     if (asked.options.integrator && !known("integrator", asked.options.integrator))
-        usage_fail("gicrun", "there are ab3, rk4, adams and rkck; there is no integrator", asked.options.integrator);
+        usage_fail("gicrun", "there are ab3, rk4, ros2, ros3, adams and rkck; there is no integrator",
+                   asked.options.integrator);
     if (study->plot && !runs)
         usage_fail("gicrun",
                    "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, "

@@ -375,6 +375,7 @@ void drive_scene(Text *out, const Model *model, const Scene *scene)
     if (scene->method >= METHOD_ADAMS)
         diag_fail((Place){scene->source, 0, 0}, "write `integrator: ab3` and a step",
                   "a page takes constant steps, and this scene has variable ones");
+    scene_no_implicit(scene, "a page of --drive");
     put_road(out, scene);
     put_state(out, model, scene);
     put_profiles(out, scene);

@@ -112,7 +112,7 @@ static double exercise(const gic_model *code, gic_head *self)
         if (code->fast_count && i >= STEPS / 2)
             gic_step_dual(code, self, 0.001, 2);
         else
-            gic_step(code, self, 0.001, GIC_RK4);
+            gic_step(code, self, 0.001, code->implicit && i % 2 ? GIC_ROS3 : GIC_RK4);
         code->outputs(self);
         code->self_test(self, &test);
         constraint += test.constraint;

@@ -90,7 +90,9 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
     const Formulation *formulation = formulate_narrow(pool, model_assemble(pool, model, sequence), sequence,
                                                       options->solve, options->recovery, options->facts);
     formulation_validate(pool, formulation, options->validation);
-    generate(pool, formulation, &style_direct, NULL, NULL, &c, &h);
+    Style style = style_direct;
+    style.derivatives = style.implicit = options->implicit;
+    generate(pool, formulation, &style, NULL, NULL, &c, &h);
     templates_check(pool, NULL, (const Insertions *const[]){&jit_points, NULL});
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, &jit_points, &sources);
     return text.s;

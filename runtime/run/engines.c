@@ -47,11 +47,23 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
     return engine_opener[engine_index(name)](pool, model, options);
 }
 
+/* Implicit steps need derivatives, which the code of some engines has. */
+static void check_implicit(Pool *pool, const char *name, const Scene *scene, const EngineOptions *options)
+{
+    if (!engine_generates(name) || engine_opener[engine_index(name)] == engine_tape)
+        scene_no_implicit(scene, pool_print(pool, "the engine '%s'", name));
+    if (options->lanes)
+        scene_no_implicit(scene, "code in lanes");
+}
+
 const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
                               bool drawn, const EngineOptions *options)
 {
     EngineOptions own = *options;
-    own.facts = path ? scene_facts(pool, model, scene, path, drawn) : NULL;
+    own.implicit = scene_implicit(scene);
+    if (own.implicit)
+        check_implicit(pool, name, scene, options);
+    own.facts = path && !own.implicit ? scene_facts(pool, model, scene, path, drawn) : NULL;
     own.validation = scene_validation(pool, model, scene);
     return engine_open(pool, name, model, &own);
 }

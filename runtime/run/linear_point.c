@@ -89,6 +89,7 @@ OperatingPoint operating_point_run(Pool *pool, const Model *model, const Scene *
     if (!(time <= scene->duration))
         diag_fail(at, pool_print(pool, "--at takes a time from 0 to %.9g", scene->duration),
                   "the run ends at t = %.9g s, before the operating point at %.9g s", scene->duration, time);
+    scene_no_implicit(scene, "the run to an operating point");
     scene = equilibrium_start(pool, model, scene, solve);
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .quiet = true});
     Way way = {.pool = pool, .engine = engine, .scene = scene, .self = instance_new(pool, engine)};

@@ -373,6 +373,11 @@ static void summary(const Run *run, double total)
                : strcmp(results, "-") ? results
                                       : "standard output");
     text_print(out, "  right-hand sides     %lld\n", (long long)head->rhs_count);
+    if (run->model->implicit)
+        text_print(out, "  Jacobians            %lld\n",
+                   (long long)((const gic_implicit_head *)(const void *)((const char *)head +
+                                                                         run->model->implicit->head_offset))
+                       ->jacobian_count);
     if (head->fast_count)
         text_print(out, "  fast rates           %lld\n", (long long)head->fast_count);
     text_print(out, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
@@ -411,6 +416,9 @@ static const char *remedy_of(int status)
     case GIC_ERROR_UNSTABLE:
         return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
                "itself is unstable: gicrun --modes shows its eigenvalues";
+    case GIC_ERROR_PIVOT:
+        return "try a shorter step; where that changes nothing, the model itself is unstable: gicrun --modes shows its "
+               "eigenvalues";
     case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
     case GIC_ERROR_EVENTS:
         return "try a shorter step, or a longer `duration` of the transmission's shifts; `locate: false` with "
@@ -446,6 +454,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     self->road = scene->road;
     self->locate = scene->locate;
     self->most = scene->most_work;
+    if (model->implicit)
+        ((gic_implicit_head *)(void *)((char *)self + model->implicit->head_offset))->keep = scene->keep;
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     if (scene->driver)
@@ -540,7 +550,7 @@ static int piece_of_step(void *caller, gic_head *self, double end)
     while (part.variable && status == GIC_OK && gic_time(self) < end)
         status = any_step(&part, self);
     for (int i = 0; !part.variable && i < parts && status == GIC_OK; ++i)
-        status = gic_step(part.model, self, length / parts, GIC_RK4);
+        status = gic_step(part.model, self, length / parts, scene_implicit(part.scene) ? part.scene->method : GIC_RK4);
     if (status == GIC_OK && !part.variable) {
         gic_restart(self, end); /* the time as it is, not as a sum */
         if (self->input_function)

@@ -81,7 +81,8 @@ int scene_name_index(Pool *pool, const Item *item, const char *word, const char 
 static const struct {
     const char *name;
     int32_t method;
-} integrators[] = {{"ab3", GIC_AB3}, {"rk4", GIC_RK4}, {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}};
+} integrators[] = {{"ab3", GIC_AB3},   {"rk4", GIC_RK4},        {"ros2", GIC_ROS2},
+                   {"ros3", GIC_ROS3}, {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}};
 
 enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
 
@@ -106,6 +107,18 @@ const char *integrator_name(int32_t method)
     return integrators[i].name;
 }
 
+bool scene_implicit(const Scene *scene)
+{
+    return scene->method == GIC_ROS2 || scene->method == GIC_ROS3;
+}
+
+void scene_no_implicit(const Scene *scene, const char *what)
+{
+    if (scene && scene_implicit(scene))
+        diag_fail((Place){scene->source, 0, 0}, "write `integrator: ab3` or `rk4`, with a shorter step",
+                  "%s does not take implicit steps (%s) yet", what, integrator_name(scene->method));
+}
+
 /* Smaller tolerances are below rounding, larger ones give useless results. */
 bool tolerance_known(double tolerance)
 {
@@ -119,7 +132,7 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
     const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
     const char *word = method ? doc_word(method, "integrator") : "ab3";
     if (integrator_method(word) < 0)
-        diag_fail(method->at, "write ab3, rk4, adams or rkck", "there is no integrator '%s'", word);
+        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams or rkck", "there is no integrator '%s'", word);
     scene->method = integrator_method(integrator ? integrator : word);
     scene->tolerance = limit ? doc_number(limit, "tolerance") : 1e-6;
     if (!tolerance_known(scene->tolerance))
@@ -160,6 +173,18 @@ static void read_ratio(Reader *reader, const Item *item, bool replaced)
         diag_fail(item->at, "remove it, or write `integrator: ab3`", "%s has one rate for everything",
                   integrator_name(reader->scene->method));
     reader->scene->ratio = (int32_t)ratio;
+}
+
+static void read_keep(Reader *reader, const Item *item, bool replaced)
+{
+    const double most = 1000, keep = doc_number(item, "keep_jacobian");
+    if (!(keep >= 1 && keep <= most && keep == floor(keep)))
+        diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
+                  "keep_jacobian must be a whole number from 1 to %g", most);
+    if (!scene_implicit(reader->scene) && !replaced)
+        diag_fail(item->at, "remove it, or write `integrator: ros2` or `ros3`", "%s needs no Jacobian",
+                  integrator_name(reader->scene->method));
+    reader->scene->keep = (int32_t)keep;
 }
 
 static void read_time(Reader *reader, const Item *root)
@@ -504,6 +529,11 @@ static void read_most_work(Scene *scene, const Item *most, bool replaced)
 {
     if (!most || (replaced && scene->method >= METHOD_ADAMS))
         return;
+    if (scene_implicit(scene) && replaced)
+        return;
+    if (scene_implicit(scene))
+        diag_fail(most->at, "leave it out, or write `integrator: ab3` or `rk4`",
+                  "implicit steps (%s) do not bound the work of events yet", integrator_name(scene->method));
     const int least = GIC_LEAST_MOST(scene->method == GIC_AB3 ? scene->ratio : 1);
     if (scene->method >= METHOD_ADAMS)
         diag_fail(most->at, "leave it out, or take constant steps", "variable steps take as much work as they need");
@@ -559,8 +589,9 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "most_work", "massless", "base", "driven", "output_step", "initial", "road",
-               "inputs", "input_file", "driver", "course", "parameters", "outputs", "plot", "until", "when");
+               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "output_step",
+               "initial", "road", "inputs", "input_file", "driver", "course", "parameters", "outputs", "plot", "until",
+               "when");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -573,6 +604,8 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     scene->ratio = 1;
     if (doc_find(root, "ratio"))
         read_ratio(&reader, doc_find(root, "ratio"), integrator);
+    if (doc_find(root, "keep_jacobian"))
+        read_keep(&reader, doc_find(root, "keep_jacobian"), integrator);
     read_time(&reader, root);
     read_skips(&reader, root, integrator);
 

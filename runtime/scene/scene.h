@@ -44,6 +44,7 @@ typedef struct Scene {
     int32_t ratio;                      /* of AB3: fast steps in a step */
     double steady;                      /* of gic_step_steady; 0: always fast steps */
     int most_work;                      /* gic_head.most; 0: no bound */
+    int32_t keep;                       /* of implicit steps: steps with one Jacobian */
     int locate;                         /* gic_head.locate: constant steps are made in parts at contacts */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* the velocity is a `speed` along the base's x axis; start in static equilibrium */
@@ -92,6 +93,9 @@ int32_t integrator_method(const char *name);
 /* Their names, from 0; NULL: no more. */
 const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
+bool scene_implicit(const Scene *scene); /* true for methods with implicit steps */
+/* Fail if the scene has an implicit integrator; for what does not take one. what: "a page" */
+void scene_no_implicit(const Scene *scene, const char *what);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */
 /* A new profile for the input that `key` names; name: of all inputs. Fails if the input has one. */
 Profile *scene_profile(Pool *pool, const Model *model, Scene *scene, const Item *key, const char *const *name);

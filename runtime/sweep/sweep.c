@@ -175,6 +175,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
         source_keep(scene->source, i ? journal_path : request->results);
     }
     scene_no_rig(scene);
+    scene_no_implicit(scene, "a sweep");
     scene = equilibrium_start(pool, model, scene, request->code.solve);
     Sweep sweep = {.pool = pool,
                    .model = model,

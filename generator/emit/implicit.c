@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ * What implicit steps need of a model, with Style.implicit: room in the instance, the unknowns of their linear systems,
+ * and the Jacobian. The rate of a position, or of a coordinate, is a state itself: that row of the system is solved as
+ * it stands, and the position is no unknown. */
+#include "base/text.h"
+#include "emit/emit.h"
+#include "emit/emit_private.h"
+#include "model/model.h"
+#include "vehicle/vehicle.h"
+
+/* The state that is the rate of a state; -1: none is. */
+static int rate_of(const Generation *g, int state)
+{
+    const Plan *plan = g->plan;
+    if (g->model->free_base && state < 3)
+        return 7 + plan->free_coordinates + state;
+    for (int w = 0; w < g->model->coordinates; ++w)
+        if (!g->model->coordinate[w].driven && plan->coordinate_state[w] == state)
+            return plan->coordinate_rate[w];
+    return -1;
+}
+
+/* The state whose rate is a state; -1: it is none's. */
+static int position_of(const Generation *g, int state)
+{
+    for (int i = 0; i < states(g); ++i)
+        if (rate_of(g, i) == state)
+            return i;
+    return -1;
+}
+
+static int unknowns(const Generation *g)
+{
+    int count = 0;
+    for (int i = 0; i < states(g); ++i)
+        count += rate_of(g, i) < 0;
+    return count;
+}
+
+void write_implicit_sizes(const Generation *g, Text *out, int indent)
+{
+    if (g->style->implicit)
+        line(out, indent, "%s_IMPLICIT_UNKNOWNS = %d,", g->upper, unknowns(g));
+}
+
+void write_implicit_members(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (!g->style->implicit)
+        return;
+    line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
+    line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d)];", g->upper, jacobian_columns(g));
+    line(out, indent, "int32_t implicit_pivot[%s_IMPLICIT_UNKNOWNS];", g->upper);
+}
+
+/* The unknowns in the order of the state, and the states whose rates they are. */
+static void list_unknowns(const Generation *g, int **unknown, int **position)
+{
+    int count = 0;
+    *unknown = pool_alloc(g->pool, ((size_t)states(g) + 1) * sizeof **unknown);
+    *position = pool_alloc(g->pool, ((size_t)states(g) + 1) * sizeof **position);
+    for (int i = 0; i < states(g); ++i)
+        if (rate_of(g, i) < 0) {
+            (*unknown)[count] = i;
+            (*position)[count++] = position_of(g, i);
+        }
+}
+
+static void write_implicit_factors(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    int *unknown, *position;
+    list_unknowns(g, &unknown, &position);
+    write_elimination_factors(g, out, indent, unknowns(g), unknown, position);
+}
+
+static void write_implicit_solution(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    int *unknown, *position;
+    list_unknowns(g, &unknown, &position);
+    write_elimination_solution(g, out, indent, unknowns(g), unknown, position);
+}
+
+static void write_unknowns(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    for (int i = 0; i < states(g); ++i)
+        if (rate_of(g, i) < 0)
+            line(out, indent, "%d, /* %s */", i, state_number(g->pool, g->formulation, i).name);
+}
+
+static void write_positions(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    for (int i = 0; i < states(g); ++i)
+        if (rate_of(g, i) < 0)
+            line(out, indent, "%d,", position_of(g, i));
+}
+
+static void write_jacobian_call(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const char *name = g->model->name;
+    if (columns_of(g))
+        line(out, indent, "return %s_jacobian_at_once((%s *)self, time, state, &along, jacobian);", name, name);
+    else
+        line(out, indent,
+             "return %s_tangent_columns((%s *)self, time, state, &along, %s_STATES, %s_STATES + %s_INPUTS, "
+             "jacobian);",
+             name, name, g->upper, g->upper, g->upper);
+}
+
+static const Insertion implicit_point[] = {
+    {"implicit jacobian", write_jacobian_call},     {"implicit factors", write_implicit_factors},
+    {"implicit solution", write_implicit_solution}, {"implicit unknowns", write_unknowns},
+    {"implicit positions", write_positions},        {NULL, NULL}};
+
+const Insertions implicit_points = {(const char *const[]){"implicit.c.in", NULL}, implicit_point, NULL};
+
+void write_implicit_code(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->style->implicit)
+        template_expand(g->pool, out, g->templates, "implicit.c.in", g->model->name, NULL, &implicit_points, g);
+}
+
+void write_implicit(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    line(out, indent, "%s,", g->style->implicit ? pool_print(g->pool, "&%s_implicit", g->model->name) : "NULL");
+}

@@ -1,0 +1,328 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_implicit.sh GICGEN GICRUN: implicit steps (ros2, ros3) of models. A body on a stiff bushing against its closed form
+# and its static displacement; van der Pol's oscillator and Prothero and Robinson's problem as models; orders of whole
+# vehicles, with Jacobians that are kept; contacts, gears, controllers; a parked vehicle that must not creep; energy over
+# a long run; bits of all compilers; embedded code in both number types; what is refused. The methods themselves are in
+# unit/test_rosenbrock.c.
+gicgen=$(realpath "$1")
+gicrun=$(realpath "$2")
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+# shellcheck source=tests/lib/against_gic.sh
+. "$(dirname "$0")/../lib/against_gic.sh"
+cd "$work" || exit 1
+models=$root/models
+
+# scene DURATION STEP LINE...: of a run with rows at its whole tenths
+scene() {
+    printf 'gicscene: 1\nduration: %s\nstep: %s\noutput_step: %s\n' "$1" "$2" "$(awk "BEGIN { print $1 / 10 }")"
+    shift 2
+    printf '%s\n' "$@"
+}
+# order NAME MODEL REFERENCE STEPS LEAST MOST FILE: of a scene whose step is @, at STEPS and twice as many a tenth of
+# the run, against rows of a reference
+order() {
+    for part in 1 2; do
+        step=$(awk -v d="$(sed -n 's/^duration: //p' "$7")" -v n="$4" -v p=$part 'BEGIN { printf "%.17g", d / 10 / n / p }')
+        sed "s/@/$step/" "$7" >order.scene
+        "$gicrun" -q "$2" order.scene -o order.csv 2>err || break
+        eval "off$part=\$(apart order.csv '$3')"
+    done
+    found=$(awk -v a="${off1:-0}" -v b="${off2:-0}" 'BEGIN { print (b > 0 ? log(a / b) / log(2) : 0) }')
+    check "$1: errors ${off1:-none} and ${off2:-none}, order $found" within "$5" "$found"
+    check "$1: order $found" within "$found" "$6"
+    unset off1 off2
+}
+
+# ---- a body of 2 kg on a bushing of 2e6 N/m and 400 Ns/m, 159 Hz: x = e^(-100 t) (cos w t + 100 / w sin w t) / 1000
+cat >mount.veh <<'END'
+gicgen: 1
+model: mount
+gravity: [0, 0, 0]
+base: ground
+bodies: {b: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0], range: [-1, 1]}}
+inputs: {push: {unit: N}}
+forces:
+  rubber: {type: bushing, bodies: [ground, b], point: [0, 0, 0], stiffness: [2e6, 0, 0, 0, 0, 0], damping: [400, 0, 0, 0, 0, 0]}
+  push: {type: load, body: b, force: [push, 0, 0]}
+outputs: {x: {type: coordinate, coordinate: x}}
+END
+awk 'BEGIN { print "time [s],x.value [m]"; w = sqrt(1e6 - 1e4); for (k = 0; k <= 10; ++k) { t = k / 500
+    printf "%.17g,%.17g\n", t, 0.001 * exp(-100 * t) * (cos(w * t) + 100 / w * sin(w * t)) } }' >mount.csv
+for method in 2 3; do
+    scene 0.02 @ "integrator: ros$method" 'initial: {coordinates: {x: 0.001}}' 'outputs: [x.value]' >mount.scene
+    order "a body on a bushing, ros$method" mount.veh mount.csv 200 $method.0 $method.2 mount.scene 2>err
+    # at steps of 25 radians the displacement is the static one
+    scene 20 0.025 "integrator: ros$method" 'inputs: {push: 3000}' 'outputs: [x]' >static.scene
+    run -q mount.veh static.scene -o static.csv
+    x=$(tail -n 1 static.csv | cut -d, -f2)
+    check "the static displacement by ros$method: $x" within "$(awk "BEGIN { d = $x / 0.0015 - 1; print d < 0 ? -d : d }")" 1e-12
+done
+
+# ---- van der Pol's oscillator and Prothero and Robinson's problem as a model's own states
+cat >problems.veh <<'END'
+gicgen: 1
+model: problems
+base: ground
+bodies: {b: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0], range: [-1, 1]}}
+parameters: {mu: {value: 1000, tunable: true}, stiff: {value: 1e6, tunable: true}}
+inputs: {phi: {}}
+states:
+  z: {initial: 2, rate: w}
+  w: {initial: -0.66, rate: "mu * ((1 - z * z) * w - z)"}
+  follows: {rate: "stiff * (phi - follows)"}
+signals: {z_s: z, w_s: w, follows_s: follows}
+forces: {f: {type: force, coordinate: x, value: "-1000 * x - 10 * rate(x) + follows"}}
+outputs:
+  z: {type: signal, signal: z_s}
+  w: {type: signal, signal: w_s}
+  follows: {type: signal, signal: follows_s}
+END
+scene 0.5 0.01 'integrator: adams' 'tolerance: 1e-12' 'outputs: [z, w]' 'inputs: {phi: 0}' >pol.scene
+run -q problems.veh pol.scene -o pol.csv
+# order 1 of the algebraic part w and 2 of z at least; w is on z (1 - z^2) w = z
+for method in 2 3; do
+    scene 0.5 @ "integrator: ros$method" 'outputs: [z, w]' >stiff.scene
+    order "van der Pol, mu 1000, ros$method" problems.veh pol.csv 40 1.6 4.2 stiff.scene
+    # a lag of 1 us at steps of 10 ms: follows = sin 3t to a step's error of the lag itself, 3 us
+    scene 1 0.01 "integrator: ros$method" 'outputs: [follows]' 'parameters: {mu: 1}' 'inputs: {phi: {sine: {amplitude: 1, frequency: 0.5, start: -2}}}' >lag.scene
+    run problems.veh lag.scene -o lag.csv
+    off=$(awk -F, 'NR > 2 { p = 3.14159265358979312; d = $2 - (sin(p * $1) - p * 1e-6 * cos(p * $1)); if (d < 0) d = -d; if (d > most) most = d } END { print most + 0 }' lag.csv)
+    check "Prothero and Robinson, ros$method: ${off:-none}" within "${off:-1}" 1e-7
+done
+
+# ---- whole vehicles: base, loops, driven steering, tires and powertrain; Jacobians kept for 1 and for 7 steps
+# reference MODEL SCENE FILE: by variable steps
+reference() {
+    sed "/^step:/d; s/^integrator:.*/integrator: adams/; /^keep/d" "$2" >reference.scene
+    "$gicrun" -q --tolerance 1e-12 "$1" reference.scene -o "$3" 2>err
+}
+# lines of a scene but for times and pictures
+rest_of() {
+    awk '/^[a-z]/ { gone = /^(gicscene|duration|step|integrator|output_step|ratio|steady|sleep|plot|locate|tolerance)/ } !gone' "$1"
+}
+cat >waves <<'END'
+initial: {position: [0, 0, 0.474], velocity: [5, 0, 0]}
+road: {type: sine, amplitude: 0.01, wavelength: 6, phase_per_y: 1}
+END
+cat >steering <<'END'
+initial: {equilibrium: true, speed: 10, gear: 3, states: {engine.speed: 140}}
+inputs: {rack: {sine: {amplitude: 0.02, frequency: 1}}, accelerator: 0.3}
+END
+for method in 2 3; do
+    for keep in 1 7; do
+        scene 0.4 @ "integrator: ros$method" "keep_jacobian: $keep" >car.scene
+        cat waves >>car.scene
+        [ -e car.csv ] || reference "$models/hmmwv.veh" car.scene car.csv
+        order "a vehicle, ros$method, kept $keep steps" "$models/hmmwv.veh" car.csv 32 $((method - 1)).85 $method.3 car.scene
+    done
+    scene 0.4 @ "integrator: ros$method" >complete.scene
+    cat steering >>complete.scene
+    [ -e complete.csv ] || reference "$models/hmmwv_vehicle.veh" complete.scene complete.csv
+    order "tires and powertrain, ros$method" "$models/hmmwv_vehicle.veh" complete.csv 32 $((method - 1)).85 $method.3 complete.scene
+done
+# as RK4 in the limit
+for how in 'rk4 0.0001' 'ros3 0.0001'; do
+    sed "s/@/${how#* }/; s/^integrator.*/integrator: ${how% *}/" car.scene | sed '/^keep/d' >limit.scene
+    "$gicrun" -q "$models/hmmwv.veh" limit.scene -o "${how% *}.csv" 2>err
+done
+off=$(apart rk4.csv ros3.csv)
+check "ros3 is rk4 at short steps: $off" within "$off" 3e-7
+
+# wheels that leave the ground and land, in parts of steps
+scene 1.5 0.0025 'integrator: ros3' 'locate: true' 'outputs: [chassis]' >jump.scene
+rest_of "$models/scenes/tires_jump.scene" >>jump.scene
+sed '/^locate/d' jump.scene >variable.scene
+reference "$models/hmmwv_tires.veh" variable.scene jump.csv
+run "$models/hmmwv_tires.veh" jump.scene -o own.csv
+check 'contacts located by implicit steps' says 'contacts located'
+off=$(apart own.csv jump.csv)
+check "a jump: $off" within "$off" 5e-3
+# sampled controllers: parts of steps
+"$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o rk4.csv --integrator rk4 2>err
+"$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o ros3.csv --integrator ros3 2>err
+off=$(apart rk4.csv ros3.csv)
+check "controllers: ros3 against rk4: $off" within "$off" 2e-3
+
+# ---- parked on a slope at 10 ms, without creep
+for method in 2 3; do
+    scene 20 0.01 "integrator: ros$method" 'outputs: [chassis]' >park.scene
+    rest_of "$models/scenes/tires_park.scene" >>park.scene
+    run -q "$models/hmmwv_tires.veh" park.scene -o park.csv
+    creep=$(awk -F, 'NR > 6 { if (NR == 7 || $2 < low) low = $2; if (NR == 7 || $2 > high) high = $2 } END { print high - low }' park.csv)
+    check "parked for 10 s, ros$method: ${creep:-no run} m" within "${creep:-1}" 1e-7
+done
+
+# ---- a pendulum keeps its energy but for the error of the method, over 1000 s
+for method in 2 3; do
+    for step in 0.01 0.005; do
+        scene 1000 $step "integrator: ros$method" 'outputs: [energy]' 'initial: {coordinates: {angle: 0.5}}' >long.scene
+        run -q "$models/pendulum.veh" long.scene -o long.csv
+        awk -F, 'NR == 2 { e = $2 + $3 } { d = $2 + $3 - e } END { print d < 0 ? -d : d }' long.csv >drift$step
+    done
+    by=$(awk -v a="$(cat drift0.01)" -v b="$(cat drift0.005)" 'BEGIN { print a / b }')
+    check "energy of a long run, ros$method: $(cat drift0.01) and $(cat drift0.005) J" within $((method * 2)) "$by"
+done
+
+# ---- the same bits: compilers, code that changes on the way, twice
+sed 's/@/0.001/' complete.scene >bits.scene
+for engine in tcc auto 'cc --cc gcc' 'cc --cc clang'; do
+    # shellcheck disable=SC2086  # options
+    "$gicrun" -q --engine $engine "$models/hmmwv_vehicle.veh" bits.scene -o bits.csv 2>err
+    [ -e first.csv ] || mv bits.csv first.csv
+    [ -e bits.csv ] || continue
+    check "the bits of $engine" cmp -s bits.csv first.csv
+done
+
+# ---- what is refused: one message, one remedy, no results
+# refused MESSAGE REMEDY OPTION... MODEL SCENE
+refused() {
+    wanted=$1
+    remedy=$2
+    shift 2
+    rm -f none.csv
+    run "$@"
+    { [ "$status" -ne 0 ] && says "$wanted" && says "$remedy" && [ ! -e none.csv ] && [ "$(grep -c error: err)" -le 1 ]; }
+    verdict $? "refused: $wanted"
+}
+scene 1 0.01 'integrator: ros3' 'ratio: 4' >bad.scene
+refused 'ros3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: ros2' 'most_work: 100' >bad.scene
+refused 'implicit steps (ros2) do not bound the work' 'leave it out' "$models/hmmwv_tires.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: ab3' 'keep_jacobian: 4' >bad.scene
+refused 'ab3 needs no Jacobian' 'ros2' "$models/pendulum.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: ros2' 'keep_jacobian: 0' >bad.scene
+refused 'keep_jacobian must be a whole number from 1 to 1000' 'for example 4' "$models/pendulum.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: ros3' >good.scene
+for engine in tape gic gcp1; do
+    refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
+done
+refused 'code in lanes does not take implicit steps' 'rk4' --engine cc --lanes 4 "$models/hmmwv.veh" good.scene -o none.csv
+refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.html "$models/hmmwv_vehicle.veh" good.scene
+refused 'the run to an operating point does not take implicit steps' 'rk4' --linearize --at 0.5 "$models/pendulum.veh" good.scene -o none.npz
+scene 1 0.01 'integrator: ros4' >bad.scene
+refused "there is no integrator 'ros4'" 'ros2, ros3' "$models/pendulum.veh" bad.scene -o none.csv
+for way in '--batch 4' '--lanes 4' "--scene $models/scenes/paper_run.scene" --sequence '--fmu 3'; do
+    # shellcheck disable=SC2086  # options
+    "$gicgen" --implicit $way "$models/hmmwv.veh" -o none.c >out 2>err
+    { [ $? -eq 2 ] && grep -q 'without --batch, --lanes and --scene' err && [ ! -e none.c ]; }
+    verdict $? "--implicit $way is refused"
+done
+
+# ---- embedded: both number types, other compilers, no heap
+for name in hmmwv_vehicle pendulum; do "$gicgen" --implicit "$models/$name.veh" -o $name.c || exit 1; done
+cp "$root"/runtime/gic_runtime.[ch] .
+cat >drive.c <<'END'
+#include "hmmwv_vehicle.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static hmmwv_vehicle car, copy;
+
+/* a second of braking, with a copy on the way */
+int main(void)
+{
+    static const gic_method methods[2] = {GIC_ROS2, GIC_ROS3};
+    int i, k;
+    for (i = 0; i < 2; ++i) {
+        const gic_method method = methods[i];
+        if (hmmwv_vehicle_setup(&car) != GIC_OK)
+            return 1;
+        car.implicit.keep = 3;
+        car.input[HMMWV_VEHICLE_INPUT_BRAKE] = (gic_real)0.3;
+        for (k = 0; k < 100; ++k) {
+            if (k == 50)
+                hmmwv_vehicle_snapshot(&car, &copy);
+            if (hmmwv_vehicle_step(&car, (gic_real)0.01, method) != GIC_OK)
+                return printf("%s %s\n", hmmwv_vehicle_status_text(car.head.status), hmmwv_vehicle_status_state(&car));
+        }
+        for (k = 50; k < 100; ++k)
+            if (hmmwv_vehicle_step(&copy, (gic_real)0.01, method) != GIC_OK)
+                return 3;
+        if (memcmp(car.state, copy.state, sizeof car.state) != 0 || car.implicit.jacobian_count != 34)
+            return printf("%d Jacobians\n", (int)car.implicit.jacobian_count);
+        printf("%.9g ", (double)car.state[HMMWV_VEHICLE_STATE_R_Z]);
+    }
+    return 0;
+}
+END
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror'
+while read -r how; do
+    # shellcheck disable=SC2086  # lists of words
+    { $how $warnings -I. -c pendulum.c -o /dev/null && $how $warnings -I. drive.c hmmwv_vehicle.c gic_runtime.c -o drive -lm && ./drive; } >said 2>&1
+    verdict $? "$how: $(tail -n 1 said)"
+done <<'END'
+gcc -std=c99
+gcc -std=c99 -DGIC_FLOAT -Wdouble-promotion
+gcc -std=c99 -O2 -ffast-math
+g++ -std=c++11 -x c++
+clang -std=c99
+END
+
+# (1 - reach A) u = b multiplied out, with all states of the Jacobian, at states of a run and reaches up to 0.1 s
+cat >residual.c <<'END'
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include NAME_H
+
+static NAME car;
+int main(void)
+{
+    const gic_implicit *how = MODEL.implicit;
+    const int n = MODEL.slow_count + MODEL.fast_count;
+    double *jacobian = calloc((size_t)(n * how->columns + n * n + 3 * n), sizeof *jacobian), worst = 0;
+    double *factor = jacobian + n * how->columns, *b = factor + n * n, *u = b + n, *state = u + n;
+    int i, k, moment, r, counted = 0;
+    if (MODEL.setup(&car) != GIC_OK)
+        return 1;
+    for (moment = 0; moment < 40; ++moment) {
+        for (i = 0; i < n; ++i)
+            state[i] = ((double *)(void *)((char *)&car + MODEL.state_offset))[i];
+        if (how->jacobian(&car, gic_time(&car), state, jacobian) != GIC_OK)
+            return 2;
+        for (r = -5; r <= -1; ++r) {
+            const double reach = pow(10, r);
+            double size = 0, off = 0;
+            if (!how->factorize(jacobian, reach, factor))
+                continue;
+            for (i = 0; i < n; ++i)
+                b[i] = sin(3 * i + moment);
+            how->solve(jacobian, reach, factor, b, u);
+            for (i = 0; i < n; ++i) {
+                double sum = u[i] - b[i], terms = fabs(u[i]) + fabs(b[i]);
+                for (k = 0; k < n; ++k) {
+                    sum -= reach * jacobian[how->columns * i + k] * u[k];
+                    terms += fabs(reach * jacobian[how->columns * i + k] * u[k]);
+                }
+                off = fabs(sum) > off ? fabs(sum) : off;
+                size = terms > size ? terms : size;
+            }
+            worst = off / size > worst ? off / size : worst;
+            ++counted;
+        }
+        if (gic_step(&MODEL, &car, 1e-4, GIC_ROS3) != GIC_OK)
+            return 3;
+    }
+    printf("%d systems, %.2g\n", counted, worst);
+    return !(counted == 200 && worst < 1e-12);
+}
+END
+"$gicgen" --implicit "$models/formula_student.veh" -o formula_student.c && "$gicgen" --implicit "$root/tests/data/laws/bushing.veh" -o mounts.c &&
+    "$gicgen" --implicit "$models/andrews.veh" -o andrews.c
+for name in hmmwv_vehicle formula_student mounts andrews pendulum; do
+    gcc -std=c99 -w -I. "-DNAME_H=\"$name.h\"" -DNAME=$name -DMODEL=${name}_model residual.c $name.c gic_runtime.c -o residual -lm >said 2>&1 && ./residual >said 2>&1
+    verdict $? "$name: solutions multiplied out: $(tail -n 1 said)"
+done
+check 'no heap' sh -c '! nm drive | grep -q " U .*\(malloc\|calloc\|realloc\)"'
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
