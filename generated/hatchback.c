@@ -123,7 +123,7 @@
  */
 #include "hatchback.h"
 
-#if HATCHBACK_H != 0xe1016d61
+#if HATCHBACK_H != 0x3a86bbeb
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -32140,5 +32140,6 @@ const gic_model hatchback_model = {
     HATCHBACK_CONTACTS,
     &hatchback_contacts,
     0,
+    NULL,
     NULL,
 };

@@ -67,7 +67,7 @@
  */
 #include "motorcycle.h"
 
-#if MOTORCYCLE_H != 0xdc729885
+#if MOTORCYCLE_H != 0xbaadac9d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -5638,4 +5638,5 @@ const gic_model motorcycle_model = {
     &motorcycle_contacts,
     1,
     motorcycle_controller,
+    NULL,
 };
