@@ -376,6 +376,14 @@ bool equilibrium_stands(const Model *model, const Scene *scene)
     return !moves;
 }
 
+/* The gear; 0: neutral, or there is no powertrain. */
+static int gear_of(const Equilibrium *found)
+{
+    const gic_model *code = found->engine->code;
+    const int32_t *discrete = (const int32_t *)(const void *)((const char *)found->self + code->discrete_offset);
+    return found->model->powertrain ? discrete[code->free_base + POWERTRAIN_GEAR] : 0;
+}
+
 /* At rest at time 0, inputs fixed. */
 static int start(const Equilibrium *found, const Scene *scene)
 {
@@ -416,7 +424,10 @@ static _Noreturn void fail(const Search *s, Place at)
     else if (of_base && !is_carried(found))
         remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
     else if (may_roll && (of_base || worst >= 2 * linear->places))
-        remedy = "the vehicle rolls or slides away: let brakes hold it, or start where the road is level";
+        remedy = gear_of(found)
+                     ? "the vehicle rolls or slides away, for it is in gear: a scene has `gear: 0` in `initial`, "
+                       "or lets brakes hold it by `inputs`"
+                     : "the vehicle rolls or slides away: let brakes hold it, or start where the road is level";
     else if (of_base)
         remedy = "nothing holds the vehicle against that: check loads, the direction of gravity and the road";
     if (s->limit)
