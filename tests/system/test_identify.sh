@@ -31,7 +31,7 @@ mistake() { # STATUS TEXT MEASURED WORD...: said, and no file is left
 }
 mistake 2 'needs names of what is looked for' "$work/m.csv" "$spring" "$start"
 mistake 2 "there is no 'parameter/none'" "$work/m.csv" "$spring" "$start" parameter/none
-mistake 2 "of coordinates, not 'input/push\[0\]'" "$work/m.csv" "$spring" "$start" 'input/push[0]'
+mistake 2 "does not find 'input/push\[0\]'" "$work/m.csv" "$spring" "$start" 'input/push[0]'
 mistake 2 'no scene given' "$work/m.csv" "$spring"
 mistake 2 'does not go with --engine' "$work/m.csv" --engine cc "$spring" "$start" parameter/k
 mistake 1 'No such file' "$work/none.csv" "$spring" "$start" parameter/k
