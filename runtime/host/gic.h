@@ -317,8 +317,8 @@ typedef struct gicl_bench {
     int quick;    /* 1: few repetitions, few settings */
 } gicl_bench;
 
-/* The text that gicbench prints is a message, GICL_TEXT. Takes minutes, and measures well where nothing else is at work.
- * Loaded code stays until the program ends. */
+/* The text that gicbench prints is a message, GICL_TEXT. Takes minutes, and measures well where nothing else is at
+ * work. Loaded code stays until the program ends. */
 GICL_API int gicl_measure(gicl_library *library, const gicl_bench *bench, gicl_messages *said);
 
 #ifdef __cplusplus
