@@ -11,6 +11,7 @@
 #include "run/engines.h"
 #include "run/knot.h"
 #include "run/run.h"
+#include "run/sampling.h"
 #include "run/scene_events.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
@@ -344,10 +345,10 @@ static void summary_of_events(Text *out, const Run *run)
             text_print(out, "  %-20s %s\n", "did not happen", action->text);
     }
     if (run->scene->driver && driver_is_crossed(run->scene->driver))
-        fprintf(stderr,
-                "  %-20s the vehicle turns to the other side than the driver steers for: is the sign of its "
-                "`per_angle` the other one?\n",
-                "driver");
+        text_print(out,
+                   "  %-20s the vehicle turns to the other side than the driver steers for: is the sign of its "
+                   "`per_angle` the other one?\n",
+                   "driver");
     if (!isnan(o->tipped))
         text_print(out, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
     if (!isnan(o->left))
@@ -387,6 +388,10 @@ static void summary(const Run *run, double total)
         text_print(out, "  work of a step       at most %lld right-hand sides and looks at contacts and gears\n",
                    (long long)run->most_work);
     summary_of_skips(out, head);
+    const double output_step = scene->per_output > 1 ? scene->output_step : 0;
+    const char *parts = run->variable ? NULL : sampling_note(run->pool, run->engine->code, scene->step, output_step);
+    if (parts)
+        text_print(out, "  steps in parts       %s\n", parts);
     summary_of_inputs(out, run);
     text_print(out, "  parameter switches   %lld\n", (long long)head->switch_count);
     text_print(out, "  constraint residual  %.2g at most, relative to the subset's size\n", run->constraint);

@@ -74,6 +74,31 @@ for way in --general '--engine cc' '--engine tape' '--engine gic' '--engine gcp1
     run 1e-11 'engines' "$way" -- period=0.07 delay=0.1 mean=0.1
 done
 
+# ---- the summary names a controller with instants within steps, and a step that fits
+# told NAME STEP TEXT SETTING=VALUE...: the line says TEXT; without TEXT there is none
+told() {
+    name=$1 text=$3
+    scene "$2" 0.1 1 'integrator: ab3'
+    shift 3
+    loop "$@"
+    "$gicrun" loop.veh a.scene -o out.csv 2>err
+    found=$(sed -n 's/^  steps in parts  *//p' err)
+    verdict "$([ "$found" = "$text" ]; echo $?)" "$name: $found"
+}
+told 'a period of no multiple' 0.002 \
+    "the period of controller 'servo', 0.0025 s, is no multiple of the step, 0.002 s; 0.00125 s fits" period=0.0025
+told 'the step that fits' 0.00125 '' period=0.0025
+told 'an offset' 0.002 \
+    "the offset of controller 'servo', 0.001 s, is no multiple of the step, 0.002 s; 0.001 s fits" period=0.004 offset=0.001
+told 'a delay' 0.01 \
+    "the delay of controller 'servo', 0.005 s, is no multiple of the step, 0.01 s; 0.005 s fits" period=0.02 delay=0.005
+told 'the second controller' 0.01 \
+    "the period of controller 'mean', 0.025 s, is no multiple of the step, 0.01 s; 0.00625 s fits" mean=0.025
+told 'no step' 0.01 "the period of controller 'servo', 0.01001 s, is no multiple of the step, 0.01 s, and no step near \
+it fits all controllers" period=0.01001
+told 'a third of a tenth' 0.03333333333333333 '' period=0.1
+told 'ten steps, rounded' 0.01 '' period=0.1 offset=0.3 delay=0.07
+
 # ---- 10^5 samples: k * period, no sum. In 1000 s a sum of 0.01 is off by some 1e-9 s
 scene 0.005 100 1000 'integrator: ab3'
 run 1e-10 'long' '' -- period=0.01 mean=0.1 delay=0.0125
