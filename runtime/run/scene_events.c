@@ -21,6 +21,7 @@ struct SceneEvents {
     gic_head *before, *after, *look; /* instances: at a step's start and end; for looks */
     size_t states;                   /* of the engine's own state */
     double *rate[2];                 /* at both ends */
+    double *jump;                    /* s: of what controllers hold, when it jumps; NAN: it does not */
 };
 
 static double *state_of(const SceneEvents *events, gic_head *self)
@@ -75,8 +76,30 @@ SceneEvents *scene_events_new(Pool *pool, const Engine *engine, const Scene *sce
     events->states = (size_t)(code->slow_count + code->fast_count);
     for (int i = 0; i < 2; ++i)
         events->rate[i] = pool_alloc(pool, sizeof(double) * (events->states + 1));
+    events->jump = pool_alloc(pool, sizeof(double) * (events->states + 1));
+    for (size_t i = 0; i < events->states; ++i)
+        events->jump[i] = NAN;
     *status = note_held(events, code, self);
     return events;
+}
+
+/* Of what controllers hold: when it may jump first in the step from `before` on. */
+static void note_jumps(SceneEvents *events, const gic_model *model)
+{
+    const double *y = state_of(events, events->before);
+    for (int32_t c = 0; c < model->controller_count; ++c) {
+        const gic_controller *controller = &model->controller[c];
+        const double sample = controller->offset + y[controller->samples] * controller->period;
+        events->jump[controller->samples] = sample;
+        for (int32_t i = 0; i < controller->rule_count; ++i) {
+            const gic_rule *rule = &controller->rule[i];
+            for (int32_t k = 0; k <= rule->waiting; ++k)
+                events->jump[rule->state + k] = sample;
+            if (rule->effects >= 0)
+                events->jump[rule->state] = events->jump[rule->effects] =
+                    controller->offset + rule->late + y[rule->effects] * controller->period;
+        }
+    }
 }
 
 /* Rates at an instance, which stays as it is. */
@@ -96,7 +119,10 @@ static int value_between(SceneEvents *events, const gic_model *model, const Acti
     memcpy(at, events->before, model->size);
     double *y = state_of(events, at);
     for (size_t i = 0; i < events->states; ++i)
-        y[i] = y0[i] + s * s * (3 - 2 * s) * (y1[i] - y0[i]) + width * s * u * (u * v0[i] - s * v1[i]);
+        if (isnan(events->jump[i]))
+            y[i] = y0[i] + s * s * (3 - 2 * s) * (y1[i] - y0[i]) + width * s * u * (u * v0[i] - s * v1[i]);
+        else
+            y[i] = start + s * width < events->jump[i] ? y0[i] : y1[i];
     gic_restart(at, start + s * width);
     if (at->input_function)
         at->input_function(at->user, at->lane, start + s * width, instance_array(at, model->input_offset));
@@ -137,6 +163,8 @@ static int first_action(SceneEvents *events, const gic_model *model, gic_head *a
             continue;
         for (int k = 0; k < 2 && !rated && status == GIC_OK; ++k)
             status = rates_at(events, model, k ? events->after : events->before, events->rate[k]);
+        if (!rated)
+            note_jumps(events, model);
         rated = true;
         if (status == GIC_OK)
             status = locate(events, model, action, at, &action->time);

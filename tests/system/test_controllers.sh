@@ -125,6 +125,29 @@ END
 halves 1 '0.5, 1.5, -0.5, -1.5, 0.25, -0.75, 2, 0, 0' '1 2 -1 -2 0 -1 2 0'
 halves 0.5 '0.25, 0.75, -0.25, -0.75, 0.125, -0.5, 1, 0.24, 0' '0.5 1 -0.5 -1 0 -0.5 1 0'
 
+# ---- conditions on what is held become true when it changes: at a sample, at a step's end or within it, or after a delay
+for way in '0.25 ab3 0' '0.1 ab3 0' '0.1 rk4 0.05' '0.07 ab3 0.1' '0.25 rk4 0.1' '0.25 rkck 0' '0.07 adams 0.1'; do
+    # shellcheck disable=SC2086  # words
+    set -- $way
+    cat >clock.veh <<END
+gicgen: 1
+model: clock
+base: ground
+bodies: {b: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0], range: [-10, 10]}}
+controllers: {clock: {period: 0.25, rules: {t: {value: time, unit: s, delay: $3}}}}
+signals: {seen: {value: clock.t, unit: s}}
+outputs: {seen: {type: signal, signal: seen}}
+END
+    printf 'gicscene: 1\nstep: %s\nintegrator: %s\nduration: 2.1\nwhen: [{if: seen > 0.6, mark: m}]\n' "$1" "$2" >clock.scene
+    [ "$1" != 0.25 ] || sed -i 's/2.1/2/' clock.scene
+    "$gicrun" clock.veh clock.scene -o clock.csv 2>err
+    found=$(sed -n 's/.* at t = \([0-9.]*\) s.*/\1/p' err)
+    verdict "$(awk -v t="${found:-0}" -v d="$3" 'BEGIN {t -= 0.75 + d; exit !(t < 1e-9 && t > -1e-9)}'; echo $?)" \
+        "a condition on what is held, $way: $found"
+done
+
 # ---- orders across samples: a spring, 3 rad/s
 for method in 'rk4 13' 'ab3 6.5'; do
     for step in 0.005 0.0025; do
