@@ -21,7 +21,9 @@ typedef struct CodeMemory {
     size_t instance[2], constants[2]; /* constants without the texts of names */
     size_t numbers[2];                /* of the constants: of the subsets */
     bool stacks;                      /* did it tell them? */
-    size_t stack[2][CODE_FUNCTIONS];  /* below a call, without the C library's and the user's own functions */
+    /* below a call, without the C library's and the user's own functions: what it takes without optimization and a
+     * quarter more, enough for code that is optimized */
+    size_t stack[2][CODE_FUNCTIONS];
 } CodeMemory;
 
 /* One HTML page: the model, its sequence, and the cost of its code (c as generate() makes it). `path`: the file of the
