@@ -244,7 +244,8 @@ def check_lane_change():
         near('the same with ' + engine, distance(d, other), 0, most)
         near('commands with ' + engine, max(abs(a - b) for a, b in zip(d['rack.value'], other['rack.value'])), 0, most)
         if most > 1e-10:
-            near('the same with %s, half the step' % engine, distance(fine, run('lane_change', half, ('--engine', engine))), 0, distance(d, other) / 6)
+            near('the same with %s, half the step' % engine, distance(fine, run('lane_change', half, ('--engine', engine))), 0,
+                 distance(d, other) / 6)
     # variable steps, which stop wherever the driver looks: error of AB3 and dual rate at 6 ms
     near('variable steps', distance(d, run('lane_change', options=('--integrator', 'rkck', '--tolerance', '1e-7'))), 0,
          0.001)
