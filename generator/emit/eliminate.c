@@ -82,6 +82,22 @@ static Elimination *eliminate(Generation *g, int n, const int *unknown, const in
     return z;
 }
 
+/* More products than that are left to the loops of the runtime: of a matrix that is nearly full, code would be longer
+ * than caches. */
+static const int most_products = 10000;
+
+bool elimination_is_short(Generation *g, int unknowns, const int *unknown, const int *position)
+{
+    const Elimination *z = eliminate(g, unknowns, unknown, position);
+    const int n = z->n;
+    int products = 0;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k < i && k < j && z->entry[n * i + j]; ++k)
+                products += z->entry[n * i + k] && z->entry[n * k + j];
+    return products <= most_products;
+}
+
 /* "J[7]", the derivative of an unknown's rate by a state. */
 static void add_slope(const Generation *g, const Elimination *z, Text *out, int row, int state)
 {

@@ -164,6 +164,7 @@ void write_wheel_columns(Generation *g, Text *out);
 
 /* eliminate.c: factors and solutions of the linear systems of implicit steps. unknown: [unknowns] states; position:
  * [unknowns] the state whose rate each is, -1: none. */
+bool elimination_is_short(Generation *g, int unknowns, const int *unknown, const int *position);
 void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
 void write_elimination_solution(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
 

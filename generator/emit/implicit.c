@@ -82,6 +82,30 @@ static void write_implicit_solution(void *context, Text *out, int indent)
     write_elimination_solution(g, out, indent, unknowns(g), unknown, position);
 }
 
+static bool is_short(Generation *g)
+{
+    int *unknown, *position;
+    list_unknowns(g, &unknown, &position);
+    return elimination_is_short(g, unknowns(g), unknown, position);
+}
+
+static void write_elimination(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (is_short(g))
+        template_expand(g->pool, out, g->templates, "implicit_eliminate.c.in", g->model->name, NULL, &implicit_points,
+                        g);
+}
+
+static void write_functions(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const bool own = is_short(g);
+    line(out, indent, "%s,", own ? pool_print(g->pool, "%s_factorize", g->model->name) : "NULL");
+    line(out, indent, "%s,", own ? pool_print(g->pool, "%s_solve", g->model->name) : "NULL");
+}
+
 static void write_unknowns(void *context, Text *out, int indent)
 {
     const Generation *g = context;
@@ -112,11 +136,13 @@ static void write_jacobian_call(void *context, Text *out, int indent)
 }
 
 static const Insertion implicit_point[] = {
-    {"implicit jacobian", write_jacobian_call},     {"implicit factors", write_implicit_factors},
+    {"implicit jacobian", write_jacobian_call},     {"implicit elimination", write_elimination},
+    {"implicit functions", write_functions},        {"implicit factors", write_implicit_factors},
     {"implicit solution", write_implicit_solution}, {"implicit unknowns", write_unknowns},
     {"implicit positions", write_positions},        {NULL, NULL}};
 
-const Insertions implicit_points = {(const char *const[]){"implicit.c.in", NULL}, implicit_point, NULL};
+const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "implicit_eliminate.c.in", NULL},
+                                    implicit_point, NULL};
 
 void write_implicit_code(void *context, Text *out, int indent)
 {

@@ -47,6 +47,7 @@ static const Scene *read_scene(const Bench *bench, const char *path)
     const Scene *scene = scene_read(bench->pool, path, bench->model, NULL, 0);
     scene_no_rig(scene);
     scene_no_implicit(scene, "gicbench");
+    scene_no_implicit(scene, "gicbench");
     return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
 }
 
