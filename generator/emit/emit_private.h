@@ -165,8 +165,10 @@ void write_wheel_columns(Generation *g, Text *out);
 /* eliminate.c: factors and solutions of the linear systems of implicit steps. unknown: [unknowns] states; position:
  * [unknowns] the state whose rate each is, -1: none. */
 bool elimination_is_short(Generation *g, int unknowns, const int *unknown, const int *position);
-void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
-void write_elimination_solution(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position);
+void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown,
+                               const int *position);
+void write_elimination_solution(Generation *g, Text *out, int indent, int unknowns, const int *unknown,
+                                const int *position);
 
 /* implicit.c: what Style.implicit adds: sizes, members of the instance, functions and tables, the descriptor's end. */
 extern const Insertions implicit_points;
