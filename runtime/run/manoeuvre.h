@@ -131,8 +131,8 @@ int trial_peak(const Trial *trial, Channel channel, double from, double to, doub
 
 /* A value that the user may give as key=value. */
 typedef struct ManoeuvreKey {
-    const char *name, *unit, *about;
-    double value, least, most; /* value: unless the user gives one */
+    const char *name, *unit, *about; /* unit "": a whole number */
+    double value, least, most;       /* value: unless the user gives one */
 } ManoeuvreKey;
 
 enum { MANOEUVRE_KEYS = 6 };

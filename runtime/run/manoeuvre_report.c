@@ -178,6 +178,9 @@ static void read_key(Pool *pool, const ManoeuvreKind *kind, const char *word, do
             !(value[k] >= key->least && value[k] <= key->most))
             diag_fail_call(program_place(), pool_print(pool, "%s=%.6g is usual", key->name, key->value),
                            "'%s' is no decimal number from %.6g to %.6g %s", word, key->least, key->most, key->unit);
+        if (!*key->unit && value[k] != round(value[k]))
+            diag_fail_call(program_place(), pool_print(pool, "%s=%.6g is usual", key->name, key->value),
+                           "'%s' is no whole number from %.6g to %.6g", word, key->least, key->most);
         if (given[k])
             diag_fail_call(program_place(), "leave one out", "'%s' is given twice, the second time by '%s'", key->name,
                            word);

@@ -26,6 +26,10 @@ int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
 {
     const gic_model *code = sheet->found->engine->code;
     double *state = tape_array(self, code->state_offset), A[9];
+    if (sheet->model->powertrain) { /* in neutral, for in gear the converter drives or brakes wheels that roll freely */
+        int32_t *discrete = (int32_t *)(void *)((char *)self + code->discrete_offset);
+        discrete[code->free_base + POWERTRAIN_GEAR] = discrete[code->free_base + POWERTRAIN_BEFORE] = 0;
+    }
     mat_from_euler(state + 3, A);
     for (int i = 0; i < 3; ++i)
         state[sheet->found->linear->places + 1 + i] = speed * A[3 * i];

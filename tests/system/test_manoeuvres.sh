@@ -117,6 +117,11 @@ check 'an unknown key' exits 2
 check 'the known ones are listed, too' says 'speed=27.7778 m/s'
 run --manoeuvre braking "$linear" brake=2
 check 'a number out of bounds' says "'brake=2' is no decimal number from 0.01 to 1"
+for key in 'ride class=2.5' 'lane-change part=1.5' 'split-braking driver=0.5' 'random seed=0.1'; do
+    # shellcheck disable=SC2086 # a name and a key
+    run --manoeuvre ${key%% *} "$linear" ${key#* }
+    check "$key" says 'is no whole number from'
+done
 run --manoeuvre braking "$linear" speed=abc
 check 'no number' exits 2
 for bounds in 'low=1 high=1' 'low=3 high=2' 'low=1 high=1.001'; do
