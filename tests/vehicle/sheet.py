@@ -41,8 +41,9 @@ dump = json.loads(run(gicgen, "--dump-model", model))
 tires = bool(dump["tires"])
 speed = 20 if tires else 0
 scene = os.path.join(work, "straight.scene")
+neutral = ", gear: 0" if dump.get("powertrain") else ""  # as sheets look at motion
 with open(scene, "w") as f:
-    f.write(f"gicscene: 1\nduration: 1\nstep: 0.001\n" + (f"initial: {{speed: {speed}}}\n" if tires else ""))
+    f.write(f"gicscene: 1\nduration: 1\nstep: 0.001\n" + (f"initial: {{speed: {speed}{neutral}}}\n" if tires else ""))
 states = os.path.join(work, "rest.csv")
 run(gicrun, "--equilibrium", "-q", model, scene, "-o", states)
 at = next(csv.DictReader(run(gicrun, "--eval", states, model).splitlines()))
