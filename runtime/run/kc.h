@@ -35,8 +35,15 @@ typedef struct KcWheel {
     int tip, turn;
 } KcWheel;
 
-/* The most of an axle, and of coordinates that move them. */
-enum { KC_WHEELS = 8, KC_COLUMNS = 2 * KC_WHEELS };
+/* A bushing: places among the outputs of both ends, of position, velocity, orientation and angular velocity. */
+typedef struct KcRubber {
+    const Force *force;
+    int place[2], velocity[2], orientation[2], turn[2];
+    double stiffness[BUSHING_AXES * BUSHING_AXES];
+} KcRubber;
+
+/* The most of an axle, of coordinates that follow from rubber, and of those that move them. */
+enum { KC_WHEELS = 8, KC_FOLLOWERS = 40, KC_COLUMNS = 2 * KC_WHEELS + KC_FOLLOWERS };
 
 /* Wheels of nearly the same x. */
 typedef struct KcAxle {
@@ -47,6 +54,9 @@ typedef struct KcAxle {
     double ahead;          /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
     int travel[KC_WHEELS]; /* [wheels] coordinates that move them up and down */
     int steer;             /* coordinate, -1: none */
+    int followers, follower[KC_FOLLOWERS]; /* coordinates that rubber moves along with those of travel: kc_rubber.c */
+    double *preload;       /* [wheels + followers] forces of rubber as set up; NULL: nothing follows */
+    const char *unit;      /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
     const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
     const char *unsteered; /* why it is not steered; NULL: it is */
 } KcAxle;
@@ -58,14 +68,16 @@ typedef struct Kc {
     const Linear *linear;
     Instance *self; /* as set up: the base at the design, coordinates at their initial values */
     Instance *work;
-    int axles, elements, outputs;
+    int axles, elements, rubbers, outputs;
     KcAxle *axle;
     KcElement *element;
+    KcRubber *rubber;
     double *initial;       /* [coordinates] */
-    double wheelbase;      /* from the last axle to the first, m; 0: there is one axle */
+    double wheelbase;      /* kc_wheelbase() at set-up; 0: there is one axle */
+    const char *units;     /* what is to be said of axles of other units; NULL: there are none */
     double height;         /* of the centre of mass above the mean of all contacts, m; 0: the base is ground */
     double fixed_x;        /* of the mean contact of axles without steering; used if `turns` */
-    bool turns;            /* there is an axle with steering, and one without */
+    bool turns;            /* the base's unit has an axle with steering, and one without */
     double *f, *df, *dout; /* work */
 } Kc;
 
@@ -73,25 +85,54 @@ typedef struct Kc {
  * model's. Ends in diag_fail where the model has no wheels, or no such axle. */
 Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle);
 
+/* Warn once, where wheel rates are computed, of bushings that they leave out. */
+void kc_warn(const Kc *kc);
+/* Axles of the base's unit: the first and the last one. */
+int kc_foremost(const Kc *kc);
+int kc_last(const Kc *kc);
+/* With axles at x [axles], m: from the last axle of the base's unit to its first; of three and more, from the first one
+ * that is steered to the mean of those that are not. */
+double kc_wheelbase(const Kc *kc, const double *x);
+
 /* ---- kc_look.c: a position, with derivatives */
 
-/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, then
- * that of steering. */
-typedef struct KcLook {
+/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, with what
+ * follows them, then that of steering. */
+typedef struct KcLook KcLook;
+struct KcLook {
     int columns, outputs;
     int column[KC_COLUMNS];
     double *value; /* [outputs] at rest */
     double *slope; /* [columns][outputs] derivative by a coordinate, of places; of the rates x' and v: by its rate */
-} KcLook;
+    const KcAxle *axle; /* of rubber; NULL: nothing follows, and so with all of these: */
+    KcLook *whole;      /* columns: travel, what follows, steering; each by itself */
+    double *follow;     /* [wheels][followers] rates of what follows by those of travel */
+    double *relax;      /* [wheels + followers] step to where the rubber's forces are balanced, heights held */
+};
 
 KcLook *kc_look_new(const Kc *kc, const KcAxle *axle);
 /* w: [coordinates]. Returns a status. */
 int kc_look(const Kc *kc, const double *w, KcLook *look);
+/* The derivative of an element's coordinate, length or angle by a column. */
+double kc_element_slope(const KcElement *element, const KcLook *look, int column);
+/* w += step times a motion with the rates `along` [columns], and what follows. */
+void kc_move(const KcLook *look, const double *along, double step, double *w);
 /* Derivatives by the columns of the outputs that are rates, while coordinates move with the rates `along` [columns]:
- * second derivatives. second: [columns][outputs]. Returns a status. */
+ * second derivatives, of looks in which nothing follows. second: [columns][outputs]. Returns a status. */
 int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const double *along, double *second);
 /* The text of a status that a look has returned. */
 const char *kc_status(const Kc *kc, int status);
+
+/* ---- kc_rubber.c: bodies that bushings alone hold */
+
+/* True for one of the six coordinates of a body that force elements alone hold: it gives way, and does not steer. */
+bool kc_is_mount(const Model *model, int coordinate);
+/* Stiffness of all bushings, with the parameters of set-up. */
+void kc_stiffness(Kc *kc);
+/* Followers of an axle whose travel and steering are known; its refusal where rubber does not hold them. */
+void kc_find_followers(Kc *kc, KcAxle *axle);
+/* look->follow and look->relax from look->whole. Returns a status. */
+int kc_follow(const Kc *kc, KcLook *look);
 
 /* ---- kc_wheel.c: a wheel as geometry sees it */
 

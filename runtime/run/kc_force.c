@@ -8,44 +8,69 @@
 
 #include <string.h>
 
-/* dx/dw of a column. */
-static double element_slope(const KcElement *element, const KcLook *look, int column)
+/* F and dz/dw [wheels][wheels], by columns first. Returns a status. */
+static int hold(const Kc *kc, const KcAxle *axle, const KcLook *look, double *J, double *force)
 {
-    if (element->coordinate >= 0)
-        return element->coordinate == look->column[column];
-    return look->slope[column * look->outputs + element->rate];
+    const int n = axle->wheels;
+    double A[KC_WHEELS * KC_WHEELS];
+    memset(force, 0, (size_t)n * sizeof *force);
+    for (int a = 0; a < n; ++a) {
+        double unit[KC_WHEELS + 1] = {0};
+        unit[a] = 1;
+        for (int i = 0; i < n; ++i) {
+            KcPose pose, by;
+            kc_pose(&axle->wheel[i], look, &pose);
+            kc_rate(&axle->wheel[i], look, &pose, unit, &by);
+            J[a * n + i] = by.contact[2];
+        }
+        for (int e = 0; e < kc->elements; ++e)
+            force[a] -=
+                kc->element[e].sign * look->value[kc->element[e].force] * kc_element_slope(&kc->element[e], look, a);
+    }
+    memcpy(A, J, (size_t)n * (size_t)n * sizeof *A);
+    return kc_solve(n, A, force) ? GIC_OK : GIC_ERROR_SINGULAR;
+}
+
+/* F' of an axle on rubber, whose followers have no second derivatives here: central differences. */
+static int differ(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along,
+                  double *rate)
+{
+    static const double step = 1e-5; /* m of travel, rad of roll */
+    const size_t size = (size_t)kc->model->coordinates * sizeof *w;
+    double *there = pool_alloc(kc->pool, size), J[KC_WHEELS * KC_WHEELS], force[2][KC_WHEELS];
+    KcLook *other = kc_look_new(kc, axle);
+    for (int end = 0; end < 2; ++end) {
+        memcpy(there, w, size);
+        kc_move(look, along, end ? step : -step, there);
+        int status = kc_look(kc, there, other);
+        if (status == GIC_OK)
+            status = hold(kc, axle, other, J, force[end]);
+        if (status != GIC_OK)
+            return status;
+    }
+    for (int i = 0; i < axle->wheels; ++i)
+        rate[i] = (force[1][i] - force[0][i]) / (2 * step);
+    return GIC_OK;
 }
 
 int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along, double *force,
               double *rate)
 {
     const int n = axle->wheels;
-    double J[KC_WHEELS * KC_WHEELS] = {0}, A[KC_WHEELS * KC_WHEELS], *second;
-    KcPose pose[KC_WHEELS], moved[KC_WHEELS], by[KC_WHEELS];
+    double J[KC_WHEELS * KC_WHEELS], *second;
+    KcPose pose[KC_WHEELS], moved[KC_WHEELS], by;
+    int status = hold(kc, axle, look, J, force);
+    if (status != GIC_OK || look->axle)
+        return status != GIC_OK ? status : differ(kc, axle, w, look, along, rate);
     second = pool_alloc(kc->pool, ((size_t)look->columns * (size_t)kc->outputs + 1) * sizeof *second);
-    const int status = kc_look_second(kc, w, look, along, second);
+    status = kc_look_second(kc, w, look, along, second);
     if (status != GIC_OK)
         return status;
     for (int i = 0; i < n; ++i) {
         kc_pose(&axle->wheel[i], look, &pose[i]);
         kc_rate(&axle->wheel[i], look, &pose[i], along, &moved[i]);
     }
-    memset(force, 0, (size_t)n * sizeof *force);
     memset(rate, 0, (size_t)n * sizeof *rate);
-    for (int a = 0; a < n; ++a) {
-        double unit[KC_WHEELS + 1] = {0};
-        unit[a] = 1;
-        for (int i = 0; i < n; ++i) {
-            kc_rate(&axle->wheel[i], look, &pose[i], unit, &by[i]);
-            J[a * n + i] = by[i].contact[2];
-        }
-        for (int e = 0; e < kc->elements; ++e)
-            force[a] -=
-                kc->element[e].sign * look->value[kc->element[e].force] * element_slope(&kc->element[e], look, a);
-    }
-    memcpy(A, J, sizeof A);
-    if (!kc_solve(n, A, force))
-        return GIC_ERROR_SINGULAR;
     for (int a = 0; a < n; ++a) {
         double unit[KC_WHEELS + 1] = {0};
         unit[a] = 1;
@@ -55,15 +80,15 @@ int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *l
             double change = 0;
             for (int k = 0; k < look->columns; ++k)
                 change += along[k] * look->slope[k * kc->outputs + element->force];
-            rate[a] -= element->sign * (change * element_slope(element, look, a) + look->value[element->force] * bend);
+            rate[a] -=
+                element->sign * (change * kc_element_slope(element, look, a) + look->value[element->force] * bend);
         }
         for (int i = 0; i < n; ++i) {
             const double *by_a = second + a * kc->outputs;
-            kc_rate(&axle->wheel[i], look, &pose[i], unit, &by[i]);
-            rate[a] -= force[i] * kc_contact_bend(&axle->wheel[i], &pose[i], &moved[i], &by[i],
+            kc_rate(&axle->wheel[i], look, &pose[i], unit, &by);
+            rate[a] -= force[i] * kc_contact_bend(&axle->wheel[i], &pose[i], &moved[i], &by,
                                                   by_a + axle->wheel[i].velocity, by_a + axle->wheel[i].turn);
         }
     }
-    memcpy(A, J, sizeof A);
-    return kc_solve(n, A, rate) ? GIC_OK : GIC_ERROR_SINGULAR;
+    return kc_solve(n, J, rate) ? GIC_OK : GIC_ERROR_SINGULAR;
 }

@@ -32,13 +32,6 @@ typedef struct Rig {
     KcPose pose[KC_WHEELS], by[KC_COLUMNS][KC_WHEELS];
 } Rig;
 
-static double element_slope(const KcElement *element, const KcLook *look, int column)
-{
-    if (element->coordinate >= 0)
-        return element->coordinate == look->column[column];
-    return look->slope[column * look->outputs + element->rate];
-}
-
 /* The coordinates of the look: travel, then others that are free and move a wheel. */
 static KcLook *columns_of(const Kc *kc, const KcAxle *axle)
 {
@@ -87,7 +80,7 @@ static int evaluate_rig(Rig *rig)
         }
         for (int e = 0; e < kc->elements; ++e)
             rig->missing[a] -= kc->element[e].sign * rig->look->value[kc->element[e].force] *
-                               element_slope(&kc->element[e], rig->look, a);
+                               kc_element_slope(&kc->element[e], rig->look, a);
     }
     double *second = pool_alloc(kc->pool, ((size_t)m * (size_t)kc->outputs + 1) * sizeof *second);
     for (int b = 0; b < m && status == GIC_OK; ++b) {
@@ -100,7 +93,7 @@ static int evaluate_rig(Rig *rig)
                 const KcElement *element = &kc->element[e];
                 rig->A[a * all + b] +=
                     element->sign *
-                    (rig->look->slope[b * kc->outputs + element->force] * element_slope(element, rig->look, a) +
+                    (rig->look->slope[b * kc->outputs + element->force] * kc_element_slope(element, rig->look, a) +
                      rig->look->value[element->force] * (element->coordinate >= 0 ? 0 : by_a[element->rate]));
             }
             for (int i = 0; i < n; ++i)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A position of the mechanism, with derivatives by the coordinates of an axle. Poses are differentiated by a
+ * A position of the mechanism, with derivatives by the coordinates of an axle, and what follows these. Poses are differentiated by a
  * coordinate; velocities, which are linear in the rates, by its rate; and velocities at given rates by a coordinate:
  * that is the second derivative of the poses. All in dual numbers. */
 #include "gic_runtime.h"
@@ -16,6 +16,20 @@ KcLook *kc_look_new(const Kc *kc, const KcAxle *axle)
         look->column[look->columns++] = axle->travel[i];
     if (axle->steer >= 0)
         look->column[look->columns++] = axle->steer;
+    if (axle->preload) {
+        look->axle = axle;
+        look->whole = kc_look_new(kc, &(KcAxle){.steer = -1});
+        for (int i = 0; i < axle->wheels; ++i)
+            look->whole->column[look->whole->columns++] = axle->travel[i];
+        for (int i = 0; i < axle->followers; ++i)
+            look->whole->column[look->whole->columns++] = axle->follower[i];
+        if (axle->steer >= 0)
+            look->whole->column[look->whole->columns++] = axle->steer;
+        const size_t room = (size_t)look->whole->columns * sizeof(double);
+        look->whole->slope = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * room);
+        look->follow = pool_alloc(kc->pool, (size_t)axle->wheels * room);
+        look->relax = pool_alloc(kc->pool, room);
+    }
     look->value = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * sizeof(double));
     look->slope = pool_alloc(kc->pool, ((size_t)kc->outputs * (size_t)look->columns + 1) * sizeof(double));
     return look;
@@ -82,8 +96,48 @@ static bool is_rate(const Kc *kc, int at)
     return false;
 }
 
+/* Columns of travel with what follows, from those by themselves. */
+static int look_with_followers(const Kc *kc, const double *w, KcLook *look)
+{
+    const KcLook *whole = look->whole;
+    const int wheels = look->axle->wheels, followers = look->axle->followers;
+    int status = kc_look(kc, w, look->whole);
+    if (status == GIC_OK)
+        status = kc_follow(kc, look);
+    memcpy(look->value, whole->value, (size_t)kc->outputs * sizeof(double));
+    for (int k = 0; k < look->columns && status == GIC_OK; ++k)
+        for (int i = 0; i < kc->outputs; ++i) {
+            double sum = whole->slope[(k < wheels ? k : k + followers) * kc->outputs + i];
+            for (int j = 0; j < followers && k < wheels; ++j)
+                sum += look->follow[k * followers + j] * whole->slope[(wheels + j) * kc->outputs + i];
+            look->slope[k * kc->outputs + i] = sum;
+        }
+    return status;
+}
+
+double kc_element_slope(const KcElement *element, const KcLook *look, int column)
+{
+    if (element->coordinate < 0)
+        return look->slope[column * look->outputs + element->rate];
+    for (int j = 0; look->axle && j < look->axle->followers && column < look->axle->wheels; ++j)
+        if (element->coordinate == look->axle->follower[j])
+            return look->follow[column * look->axle->followers + j];
+    return element->coordinate == look->column[column];
+}
+
+void kc_move(const KcLook *look, const double *along, double step, double *w)
+{
+    for (int k = 0; k < look->columns; ++k) {
+        w[look->column[k]] += step * along[k];
+        for (int j = 0; look->axle && j < look->axle->followers && k < look->axle->wheels; ++j)
+            w[look->axle->follower[j]] += step * along[k] * look->follow[k * look->axle->followers + j];
+    }
+}
+
 int kc_look(const Kc *kc, const double *w, KcLook *look)
 {
+    if (look->axle)
+        return look_with_followers(kc, w, look);
     const gic_model *code = kc->engine->code;
     memcpy(kc->work, kc->self, code->size);
     put(kc, w, look, NULL);

@@ -57,13 +57,28 @@ static int probe(Pool *pool, Model *model, const Force *element, bool rate)
     return watch_force(pool, model, model->forces - 1);
 }
 
-static void add_element(Kc *kc, Model *model, int index)
+static void watch_rubber(Kc *kc, Model *model, const Force *force)
 {
-    const Force *force = &model->force[index];
+    KcRubber rubber = {.force = force};
+    for (int end = 0; end < 2; ++end) {
+        const int body = force->body[end];
+        if (body == BODY_GROUND)
+            continue;
+        rubber.place[end] = watch_point(kc->pool, model, OUTPUT_POSITION, body, force->point[end]);
+        rubber.velocity[end] = watch_point(kc->pool, model, OUTPUT_VELOCITY, body, force->point[end]);
+        rubber.turn[end] = watch(kc->pool, model,
+                                 (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = body, .in = BODY_GROUND, .count = 3});
+        rubber.orientation[end] =
+            watch(kc->pool, model, (Output){.type = OUTPUT_ORIENTATION, .body = body, .in = BODY_GROUND, .count = 4});
+    }
+    *POOL_PUSH(kc->pool, kc->rubber, kc->rubbers) = rubber;
+}
+
+static void add_element(Kc *kc, Model *model, const Force *force, int index)
+{
     KcElement element = {.name = force->name, .coordinate = force->coordinate, .value = -1, .rate = -1, .sign = 1};
     if (force->type == FORCE_BUSHING)
-        diag_warn(force->at, "write what matters of it as springs between points, along coordinates or about axes",
-                  "bushing '%s' is left out of forces, wheel and roll rates and compliance", force->name);
+        watch_rubber(kc, model, force);
     if (force_is_wrench(force))
         return;
     element.force = watch_force(kc->pool, model, index);
@@ -160,9 +175,9 @@ static void find_axles(Kc *kc, Model *model)
 /* ---- what coordinates do -------------------------------------------------------------------------------- */
 
 /* What unit rates of all coordinates do to an axle's wheels: [wheels][coordinates], times the coordinates' ranges.
- * turn: angular velocities. */
+ * lift, aside: velocities of the centres along z and y; turn: angular velocities. */
 typedef struct Effects {
-    double *lift, (*turn)[3];
+    double *lift, *aside, (*turn)[3];
 } Effects;
 
 /* Coordinates that change nothing that a force element acts along, such as the heave of a body on a rig, are taken for
@@ -181,6 +196,35 @@ static bool is_sprung(const Kc *kc, int coordinate, const double *slope)
 static double width(const Coordinate *coordinate)
 {
     return coordinate->range[1] - coordinate->range[0];
+}
+
+/* A coordinate that turns a whole unit, such as a trailer, turns all wheels of an axle alike about the vertical, by
+ * more than this altogether, rad, about an axis that is further from the axle than this, in radii of its wheels: what
+ * rubber gives turns less, and what steers an axle turns it near its middle. */
+static const double unit_turns = 0.35, unit_apart = 2;
+
+/* Does it? Of coordinate c, that nothing drives. */
+static bool turns_unit(const KcAxle *axle, const Effects *effects, int all, int c)
+{
+    const double *first = effects->turn[c];
+    double aside = 0;
+    for (int i = 0; i < axle->wheels; ++i) {
+        double apart[3];
+        sub3(effects->turn[i * all + c], first, apart);
+        if (norm3(apart) > nothing * norm3(first))
+            return false;
+        aside += effects->aside[i * all + c] / axle->wheels;
+    }
+    return fabs(first[2]) > unit_turns && fabs(first[2]) > 0.9 * norm3(first) &&
+           fabs(aside / first[2]) > unit_apart * axle->wheel[0].radius;
+}
+
+static void find_unit(const Kc *kc, KcAxle *axle, const Effects *effects)
+{
+    const int all = kc->model->coordinates;
+    for (int c = 0; c < all && !axle->unit; ++c)
+        if (!kc->model->coordinate[c].driven && turns_unit(axle, effects, all, c))
+            axle->unit = kc->model->coordinate[c].name;
 }
 
 /* The largest number that is left, of rows and columns not yet taken, becomes the next pivot; its row is eliminated
@@ -226,18 +270,6 @@ static int ascending(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
-/* One of the six coordinates of a body that force elements alone hold: it gives way, and does not steer. */
-static bool is_mount(const Model *model, int c)
-{
-    const Coordinate *one = &model->coordinate[c];
-    int alike = 0;
-    for (int i = 0; i < model->coordinates; ++i) {
-        const Coordinate *other = &model->coordinate[i];
-        alike += other->body[0] == one->body[0] && other->body[1] == one->body[1] && !other->driven;
-    }
-    return alike == 6;
-}
-
 /* How much a coordinate steers while the heights of the wheels are held: the sum of the wheels' turning about z; 0
  * where a wheel's axis of turning is more than 60 degrees from the vertical. */
 static double steering_of(const KcAxle *axle, const Effects *effects, int all, int c)
@@ -263,13 +295,19 @@ static double steering_of(const KcAxle *axle, const Effects *effects, int all, i
     return sum > nothing ? sum : 0;
 }
 
+static bool is_unit(const Kc *kc, const KcAxle *axle, int c)
+{
+    return axle->unit && !strcmp(axle->unit, kc->model->coordinate[c].name);
+}
+
 /* The coordinate that steers most, a driven one before others; -1: none does. */
 static int find_steer(const Kc *kc, const KcAxle *axle, const Effects *effects)
 {
     int best = -1;
     double most = 0;
     for (int c = 0; c < kc->model->coordinates; ++c) {
-        const double much = is_mount(kc->model, c) ? 0 : steering_of(axle, effects, kc->model->coordinates, c);
+        const bool is_none = kc_is_mount(kc->model, c) || is_unit(kc, axle, c);
+        const double much = is_none ? 0 : steering_of(axle, effects, kc->model->coordinates, c);
         const double worth = much > 0 && kc->model->coordinate[c].driven ? much + 1e6 : much;
         if (worth > most) {
             most = worth;
@@ -283,7 +321,7 @@ static void classify(const Kc *kc, KcAxle *axle)
 {
     const int n = axle->wheels, all = kc->model->coordinates;
     const size_t room = ((size_t)n * (size_t)all + 1) * sizeof(double);
-    Effects effects = {pool_alloc(kc->pool, room), pool_alloc(kc->pool, 3 * room)};
+    Effects effects = {pool_alloc(kc->pool, room), pool_alloc(kc->pool, room), pool_alloc(kc->pool, 3 * room)};
     double *left = pool_alloc(kc->pool, room);
     for (int c = 0; c < all; ++c) {
         KcAxle one = {.steer = c};
@@ -295,10 +333,12 @@ static void classify(const Kc *kc, KcAxle *axle)
         for (int i = 0; i < n; ++i) {
             const double scale = width(&kc->model->coordinate[c]);
             effects.lift[i * all + c] = scale * look->slope[axle->wheel[i].centre + 2];
+            effects.aside[i * all + c] = scale * look->slope[axle->wheel[i].velocity + 1];
             left[i * all + c] = effects.lift[i * all + c] * (is_sprung(kc, c, look->slope) ? 1 : unsprung);
             add_scaled3(scale, look->slope + axle->wheel[i].turn, effects.turn[i * all + c]);
         }
     }
+    find_unit(kc, axle, &effects);
     const int rank = choose(axle, all, left, axle->travel);
     qsort(axle->travel, (size_t)rank, sizeof *axle->travel, ascending);
     if (rank == 0)
@@ -329,12 +369,71 @@ static double mass_height(const Model *model, double ground)
     return mass > 0 ? moment / mass - ground : 0;
 }
 
+/* What is said of axles that belong to other units; NULL: there are none. */
+static const char *units_of(const Kc *kc)
+{
+    const char *names = "", *by = "";
+    int count = 0;
+    for (int a = 0; a < kc->axles; ++a) {
+        const KcAxle *axle = &kc->axle[a];
+        if (!axle->unit)
+            continue;
+        names = pool_print(kc->pool, "%s%s%s", names, count++ ? ", " : "", axle->name);
+        if (!strstr(by, pool_print(kc->pool, "'%s'", axle->unit)))
+            by = pool_print(kc->pool, "%s%s'%s'", by, *by ? ", " : "", axle->unit);
+    }
+    if (!count)
+        return NULL;
+    return pool_print(kc->pool,
+                      "%s %s belong%s to a unit that turns by %s: not counted for wheelbase, turning circle, Ackermann "
+                      "and understeer; no anti-dive, which is that of one rigid vehicle",
+                      count > 1 ? "axles" : "axle", names, count > 1 ? "" : "s", by);
+}
+
+int kc_last(const Kc *kc)
+{
+    int last = 0;
+    for (int a = 0; a < kc->axles; ++a)
+        if (!kc->axle[a].unit)
+            last = a;
+    return last;
+}
+
+int kc_foremost(const Kc *kc)
+{
+    for (int a = 0; a < kc->axles; ++a)
+        if (!kc->axle[a].unit)
+            return a;
+    return 0;
+}
+
+double kc_wheelbase(const Kc *kc, const double *x)
+{
+    double fixed = 0, steered = NAN;
+    int axles = 0, unsteered = 0;
+    for (int a = 0; a < kc->axles; ++a) {
+        const KcAxle *axle = &kc->axle[a];
+        if (axle->unit)
+            continue;
+        ++axles;
+        if (axle->steer < 0) {
+            fixed += x[a];
+            ++unsteered;
+        } else if (isnan(steered)) {
+            steered = x[a];
+        }
+    }
+    if (axles > 2 && unsteered > 0 && unsteered < axles)
+        return fabs(steered - fixed / unsteered);
+    return x[kc_foremost(kc)] - x[kc_last(kc)];
+}
+
 /* Where the axles are. */
 static void measure(Kc *kc)
 {
     double ground = 0, sum = 0, fixed = 0;
     double *x = pool_alloc(kc->pool, (size_t)kc->axles * sizeof *x);
-    int wheels = 0, unsteered = 0;
+    int wheels = 0, unsteered = 0, own = 0;
     const KcAxle none = {.steer = -1};
     KcLook *look = kc_look_new(kc, &none);
     if (kc_look(kc, kc->initial, look) != GIC_OK)
@@ -347,18 +446,22 @@ static void measure(Kc *kc)
             x[a] += pose.contact[0] / axle->wheels;
             ground += pose.contact[2];
         }
+        if (axle->unit)
+            continue;
         sum += x[a];
+        ++own;
         if (axle->steer < 0) {
             fixed += x[a];
             ++unsteered;
         }
     }
     for (int a = 0; a < kc->axles; ++a)
-        kc->axle[a].ahead = x[a] >= sum / kc->axles ? 1 : -1;
-    kc->wheelbase = x[0] - x[kc->axles - 1];
-    kc->turns = unsteered > 0 && unsteered < kc->axles;
+        kc->axle[a].ahead = x[a] >= sum / own ? 1 : -1;
+    kc->wheelbase = own ? kc_wheelbase(kc, x) : 0;
+    kc->turns = unsteered > 0 && unsteered < own;
     kc->fixed_x = unsteered ? fixed / unsteered : 0;
     kc->height = kc->model->free_base ? mass_height(kc->model, ground / wheels) : 0;
+    kc->units = units_of(kc);
 }
 
 /* Leave the axle that is asked for. */
@@ -377,6 +480,20 @@ static void keep(Kc *kc, const char *name)
               "model '%s' has no axle '%s'", kc->model->name, name);
 }
 
+void kc_warn(const Kc *kc)
+{
+    const char *names = "";
+    for (int r = 0; r < kc->rubbers; ++r)
+        names = pool_print(kc->pool, "%s%s'%s'", names, r ? ", " : "", kc->rubber[r].force->name);
+    if (kc->rubbers)
+        diag_warn(kc->rubber[0].force->at,
+                  "write what matters of their forces as springs between points, along coordinates or about axes",
+                  "%s %s left out of forces, wheel and roll rates and compliance",
+                  kc->rubbers > 1 ? pool_print(kc->pool, "%d bushings, %s,", kc->rubbers, names)
+                                  : pool_print(kc->pool, "bushing %s", names),
+                  kc->rubbers > 1 ? "are" : "is");
+}
+
 Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle)
 {
     Kc *kc = pool_alloc(pool, sizeof *kc);
@@ -393,7 +510,7 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
                   model->name);
     find_axles(kc, copy);
     for (int i = 0; i < model->forces; ++i)
-        add_element(kc, copy, i);
+        add_element(kc, copy, &model->force[i], i);
     kc->outputs = copy->output_components;
     kc->engine = engine_open(pool, "tape", copy, &(EngineOptions){.solve = solve, .quiet = true});
     kc->linear = linear_open(pool, kc->engine);
@@ -413,8 +530,11 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
         kc->initial[c] = code->coordinate_state[c] >= 0
                              ? tape_array(kc->self, code->state_offset)[code->coordinate_state[c]]
                              : tape_array(kc->self, code->input_offset)[code->coordinate_input[c]];
-    for (int i = 0; i < kc->axles; ++i)
+    kc_stiffness(kc);
+    for (int i = 0; i < kc->axles; ++i) {
         classify(kc, &kc->axle[i]);
+        kc_find_followers(kc, &kc->axle[i]);
+    }
     measure(kc);
     if (axle)
         keep(kc, axle);

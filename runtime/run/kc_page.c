@@ -151,6 +151,11 @@ static void write_axles(void *context, Text *out, int indent)
 {
     Page *page = context;
     (void)indent;
+    if (page->study->kc->units) {
+        text_print(out, "<p class=\"stop\">");
+        text_html(out, page->study->kc->units);
+        text_print(out, "</p>\n");
+    }
     for (int a = 0; a < page->study->kc->axles; ++a) {
         const KcAxle *axle = &page->study->kc->axle[a];
         text_print(out, "<h2>%s</h2>\n",

@@ -15,6 +15,7 @@ static KcStudy study_of(Pool *pool, const Model *model, const Scene *scene, cons
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
     KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
+    kc_warn(kc);
     study.curve = pool_alloc(pool, (size_t)kc->axles * sizeof *study.curve);
     study.refusal = pool_alloc(pool, (size_t)kc->axles * sizeof *study.refusal);
     for (int a = 0; a < kc->axles; ++a)
@@ -57,6 +58,8 @@ const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion,
 
 static void tell_stops(Text *out, const KcStudy *study, const char *before)
 {
+    if (study->kc->units)
+        text_print(out, "%s%s\n", before, study->kc->units);
     for (int a = 0; a < study->kc->axles; ++a)
         for (KcMotion m = 0; m < KC_MOTIONS; ++m)
             for (int end = 0; end < 2; ++end) {
@@ -221,10 +224,18 @@ static void write_csv(Pool *pool, const KcStudy *study, const char *path)
     interrupt_release();
 }
 
+static void note_units(Pool *pool, const KcStudy *study, const Request *request)
+{
+    if (study->kc->units && !request->quiet)
+        diag_note(pool_print(pool, "%s: note: %s: %s\n", program_place().source->path, study->kc->model->name,
+                             study->kc->units));
+}
+
 /* --loads: compliance alone. */
 static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    kc_warn(kc);
     if (request->results) {
         kc_loads_csv(pool, kc, request->results);
         return;
@@ -255,6 +266,8 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
     if (request->compare) {
         const Model *model_of_other = model_read(pool, request->compare);
         const KcStudy other = study_of(pool, model_of_other, NULL, request);
+        note_units(pool, &study, request);
+        note_units(pool, &other, request);
         kc_compare(pool, model, &study, model_of_other, &other, request);
         return;
     }

@@ -154,8 +154,7 @@ static bool ratios(const Kc *kc, const KcAxle *axle, const KcLook *look, double 
             const KcElement *element = &kc->element[e];
             double sum = 0;
             for (int k = 0; k < look->columns; ++k)
-                sum += along[k] * (element->coordinate < 0 ? look->slope[k * look->outputs + element->rate]
-                                                           : element->coordinate == look->column[k]);
+                sum += along[k] * kc_element_slope(element, look, k);
             out[i * kc->elements + e] = sum;
         }
     }
@@ -218,7 +217,7 @@ static void ackermann(const Kc *kc, const KcAxle *axle, const KcLook *look, cons
         out[KC_RATIO] = 1 / change;
     const int inner = mean > 0 ? 0 : 1;
     const double *o = pose[1 - inner].contact, *in = pose[inner].contact, turn = angle[1 - inner];
-    if (!kc->turns || fabs(mean) < slight || fabs(turn) < slight || turn * mean < 0)
+    if (!kc->turns || axle->unit || fabs(mean) < slight || fabs(turn) < slight || turn * mean < 0)
         return;
     /* the outer wheel's axis meets the line x = fixed_x at `middle` */
     const double ahead = o[0] - kc->fixed_x, middle = o[1] + ahead / tan(turn);
@@ -267,7 +266,7 @@ int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, c
         if (motion != KC_STEER)
             row->wheel[i][KC_RATE] = rate[i] / moved.contact[2];
     }
-    if (kc->wheelbase > 0 && kc->height > 0) {
+    if (kc->wheelbase > 0 && kc->height > 0 && !kc->units) {
         double brake = 0, drive = 0;
         for (int i = 0; i < n; ++i) {
             brake += tan(row->wheel[i][KC_BRAKE_ANGLE]) / n;

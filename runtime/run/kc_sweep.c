@@ -33,9 +33,10 @@ static double direction(const Way *way, int i)
 /* A coordinate that is beyond its range. */
 static bool in_ranges(Way *way)
 {
-    for (int k = 0; k < way->look->columns; ++k) {
-        const Coordinate *c = &way->kc->model->coordinate[way->look->column[k]];
-        const double w = way->w[way->look->column[k]], slack = 1e-12 * (c->range[1] - c->range[0]);
+    const KcLook *look = way->look->whole ? way->look->whole : way->look;
+    for (int k = 0; k < look->columns; ++k) {
+        const Coordinate *c = &way->kc->model->coordinate[look->column[k]];
+        const double w = way->w[look->column[k]], slack = 1e-12 * (c->range[1] - c->range[0]);
         if (w < c->range[0] - slack || w > c->range[1] + slack) {
             const bool low = w < c->range[0];
             way->why = pool_print(way->kc->pool, "coordinate '%s' is at the %s end of its range, %.6g", c->name,
@@ -52,6 +53,17 @@ static bool look_at(Way *way)
     if (status != GIC_OK)
         way->why = kc_status(way->kc, status);
     return status == GIC_OK;
+}
+
+/* How far what hangs on rubber is from where its forces are balanced, as a share of the ranges. */
+static double rest(const Way *way)
+{
+    double most = 0;
+    for (int a = 0; a < way->axle->wheels + way->axle->followers; ++a) {
+        const Coordinate *c = &way->kc->model->coordinate[way->look->whole->column[a]];
+        most = fmax(most, fabs(way->look->relax[a]) / (c->range[1] - c->range[0]));
+    }
+    return most;
 }
 
 /* Bring the mechanism to a place `at` of the motion, from way->w. */
@@ -71,13 +83,17 @@ static bool reach(Way *way, double at)
             most = fmax(most, fabs(missing[i]));
         }
         const double radius = axle->wheel[0].radius;
+        if (way->look->axle)
+            most = fmax(most, radius * rest(way));
         if (most <= 2 * DBL_EPSILON * radius || (most <= close_enough * radius && most >= before))
             return in_ranges(way);
         before = most;
         if (!kc_along(axle, way->look, false, missing, 0, along))
             break;
-        for (int k = 0; k < axle->wheels; ++k)
-            way->w[axle->travel[k]] += along[k];
+        along[axle->wheels] = 0;
+        kc_move(way->look, along, 1, way->w);
+        for (int a = 0; way->look->axle && a < axle->wheels + axle->followers; ++a)
+            way->w[way->look->whole->column[a]] += way->look->relax[a];
     }
     way->why = "the mechanism does not reach further";
     return false;

@@ -34,8 +34,8 @@ static Course course_of(const Manoeuvre *m)
     const Kc *kc = s->kc;
     Course c;
     double aside[2];
-    c.axle[0] = sheet_axle_place(s, &kc->axle[0], &aside[0]) - s->com[0];
-    c.axle[1] = sheet_axle_place(s, &kc->axle[kc->axles - 1], &aside[1]) - s->com[0];
+    c.axle[0] = sheet_axle_place(s, &kc->axle[kc_foremost(kc)], &aside[0]) - s->com[0];
+    c.axle[1] = sheet_axle_place(s, &kc->axle[kc_last(kc)], &aside[1]) - s->com[0];
     const double tire = 0.25, width = m->value[0] > 0 ? m->value[0] : 2 * fmax(aside[0], aside[1]) + tire;
     const bool first = m->value[1] < 1.5; /* part 1 */
     const double wide[LANES] = {1.1 * width + 0.25, first ? 1.2 * width + 0.25 : width + 1,

@@ -274,6 +274,8 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
     m.result = pool_alloc(pool, sizeof *m.result);
     *m.result = (Sheet){.pool = pool, .model = model};
     kind->run(&m);
+    if (m.car->sheet.kc->units)
+        sheet_note(m.result, m.car->sheet.kc->units);
     const double *aside = m.car->aside;
     if (fabs(aside[0]) > slight[0] || fabs(aside[1]) > slight[1])
         sheet_note(m.result, pool_print(pool,

@@ -30,7 +30,7 @@ typedef struct Sheet {
     double speed;        /* m/s at which they are taken */
     double *w;           /* [coordinates] at rest */
     double com[3], mass; /* of the vehicle at rest, in the axes of the drawing carried along by the base */
-    double wheelbase;    /* distance of the first axle's contacts from the last one's, at rest */
+    double wheelbase;    /* kc_wheelbase() of the axles' contacts at rest */
     int rows, notes;
     SheetRow *row;
     const char *other; /* the name of the vehicle to compare with; NULL: none */

@@ -100,8 +100,12 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
         return NULL;
     for (int a = 0; a < sheet->kc->axles; ++a) {
         const KcAxle *axle = &sheet->kc->axle[a];
-        if (!axle->refusal && axle->steer >= 0 && model->coordinate[axle->steer].driven)
+        if (axle->refusal || axle->steer < 0 || !model->coordinate[axle->steer].driven)
+            continue;
+        if (!axle->unit)
             return axle;
+        *why = pool_print(sheet->pool, "axle %s, which is steered, belongs to a unit that turns by '%s' against the base",
+                          axle->name, axle->unit);
     }
     return NULL;
 }

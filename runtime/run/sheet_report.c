@@ -189,6 +189,7 @@ static void add_top_speed(Sheet *sheet, const Model *model, const Request *reque
 static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Sheet sheet = sheet_open(pool, model, scene, request->solve);
+    kc_warn(sheet.kc);
     find_modes(&sheet);
     add_modes(&sheet);
     sheet_cornering(&sheet);

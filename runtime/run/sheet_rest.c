@@ -225,9 +225,12 @@ void sheet_rest(Sheet *sheet)
     masses(sheet, pose, &c);
     loads(sheet, pose, &c);
     const Kc *kc = sheet->kc;
-    double aside;
-    sheet->wheelbase =
-        sheet_axle_place(sheet, &kc->axle[0], &aside) - sheet_axle_place(sheet, &kc->axle[kc->axles - 1], &aside);
+    double aside, *x = pool_alloc(sheet->pool, (size_t)kc->axles * sizeof *x);
+    for (int a = 0; a < kc->axles; ++a)
+        x[a] = sheet_axle_place(sheet, &kc->axle[a], &aside);
+    sheet->wheelbase = kc_wheelbase(kc, x);
+    if (kc->units)
+        sheet_note(sheet, kc->units);
     if (sheet->wheelbase > 0)
         sheet_add(sheet, NULL, "wheelbase", "Wheelbase", "m", sheet->wheelbase);
     for (int a = 0; a < kc->axles; ++a) {

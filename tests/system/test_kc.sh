@@ -36,6 +36,7 @@ for axle in "$models/hmmwv.veh front" "$models/hmmwv14.veh front" "$models/hmmwv
     # shellcheck disable=SC2086  # a model and an axle
     check "the independent solution of $axle" python "$root/tests/vehicle/kinematics.py" "$gicgen" "$gicrun" $axle
 done
+check 'axles on rubber, and a trailer' python "$root/tests/vehicle/rubber_and_units.py" "$gicrun" "$work"
 check 'planar axles by hand' python "$root/tests/vehicle/planar_axles.py" "$gicrun" "$work"
 
 check 'compliance by an independent solution, in closed form and mutual' python "$root/tests/vehicle/compliance.py" "$gicgen" \
@@ -78,6 +79,9 @@ printf '%s\n' 'gicgen: 1' 'model: soft' "include: $models/hmmwv.veh" 'forces:' \
     '  mount: {type: bushing, bodies: [chassis, rack], point: [1.4, 0, 0.5], stiffness: [1, 1, 1, 1, 1, 1]}' >"$work/soft.veh"
 run --kc "$work/soft.veh"
 check 'bushings are left out' says "bushing 'mount' is left out of forces"
+run --kc --loads --axle rear "$models/hatchback.veh"
+check 'all of them at once' says "10 bushings, 'frame_l', .*, are left out of forces"
+check 'and that once' [ "$(grep -c 'warning' "$work/err")" -eq 1 ]
 run --kc "$models/pendulum.veh"
 check 'no wheels' exits 1
 check 'no wheels, said' says 'has no wheels, and so no axles'
@@ -122,4 +126,4 @@ run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" --report "$work/x
 check '--compare is a table' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 55 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 58 ]

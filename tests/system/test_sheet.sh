@@ -55,6 +55,27 @@ sed 's/^forces:/&\n  air: {type: aero, body: chassis, point: [0.001996672, 0, 0.
 run --sheet "$work/air.veh"
 check 'air that pushes down' prints 'cornering at 20 m/s: there .* pushed down with 0.416 m/s^2' # 1.25 20^2 / 1202
 
+# a trailer does not count: the wheelbase of the tractor is that of its drawing, 0 to -4.9 and -6.2 m, and the circle that of its outer
+# wheel at the end of the steering; understeer follows from the yaw gain
+run --sheet -q "$models/semitrailer.veh" -o "$work/truck.csv"
+check 'the sheet of a semitrailer' exits 0
+run --kc -q --axle front "$models/semitrailer.veh" -o "$work/truck_kc.csv"
+truck() { awk -F, 'NR == FNR { n[$1] = $2; next } FNR == 1 { for (i = 1; i <= NF; ++i) { split($i, h, " "); at[h[1]] = i } }
+    $2 == "steer" { for (s = 0; s < 2; ++s) { a = $at["steer_tire_" (s ? "r" : "l") ".steer"]; m = s && m * m < a * a || !s ? a : m; o = s ? (o * o < a * a ? o : a) : a }
+        if (o * o > most * most) most = o }
+    END { l = n["wheelbase"]; bad = (l / 5.55 - 1) ^ 2 > 1e-8; most = most < 0 ? -most : most
+    c = n["front.turning_circle"] * sin(most) / 2 / 5.55 - 1; bad += !(c * c < 1e-4)
+    for (v = 10; v <= 30; v += 10) { k = 1 / (v * n["at_" v ".yaw_gain"]) - l / v ^ 2; d = n["at_" v ".understeer"] - k; bad += !(d * d < 1e-24) || !(k > 0.004 && k < 0.01) }
+    exit bad > 0 }' "$work/truck.csv" "$work/truck_kc.csv"; }
+check 'wheelbase, circle and understeer of the tractor' truck
+run --sheet "$models/semitrailer.veh"
+check 'axles of the trailer are told once' [ "$(grep -c "axles axle_4, rear belong to a unit that turns by 'bend'" "$work/out")" -eq 1 ]
+check 'and their loads' prints 'Load of trailer_2_outer_l'
+run --sheet "$models/hatchback.veh" -o "$work/rubber.csv"
+check 'bushings are told once' [ "$(grep -c 'left out' "$work/err")" -eq 1 ]
+even() { awk -F, '{ n[$1] = $2 } END { d = n["rear_l.wheel_rate"] / n["rear_r.wheel_rate"] - 1; exit !(n["rear_l.wheel_rate"] > 0 && d * d < 1e-12) }' "$work/rubber.csv"; }
+check 'left and right of the twist beam' even
+
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/sheet.html"
 check 'the page' exits 0
 run --sheet "$models/hmmwv_vehicle.veh" -o "$work/again.html"
@@ -84,4 +105,4 @@ run --compare "$models/hmmwv.veh" --modes "$models/hmmwv.veh"
 check '--compare without --sheet' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 27 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 33 ]

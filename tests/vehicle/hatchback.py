@@ -247,20 +247,17 @@ for what, at, (d, r), names in (
     for k, name in enumerate(('roll', 'pitch', 'yaw')):
         near('%s at rest: %s' % (what, name), rest['%s_%s%s' % (at, name, end)], r[k] @ move, 4e-4)
 
-# ---- lever ratios, with rubber that does not give: the arm turns about its bushings, the beam about its own
-held = joints() + [numpy.eye(6 * len(NAMES))[:6]] + fixed('body', 'subframe') + fixed('subframe', 'gear')
-for s in 'lr':
-    held += revolute('subframe', 'arm_' + s, P['f_arm_' + s], X)
-for s in 'lr':
-    held += [apart('body', 'trail_' + s, P['r_bush_' + s])[0]] # both bushings as balls
-motions = free(held)
-check('an axle of two arms, and a beam with two motions', motions.shape[1] == 4, motions.shape[1])
+# ---- lever ratios: wheels that are held at heights, on rubber alone, whose energy is least; the steering gear is held
+motions = free(joints() + [numpy.eye(6 * len(NAMES))[:6]] + fixed('subframe', 'gear'))
+n = motions.shape[1]
 
 
-def motion(up):
-    """Displacements for the travel of each wheel."""
-    rows = numpy.array([hubs[w] for w in up]) @ motions
-    return motions @ numpy.linalg.solve(rows, numpy.array(list(up.values())))
+def motion(up, K=K):
+    """Displacements for the travel of each wheel: K q = J^T lambda, J q = up."""
+    J = numpy.array([hubs[w] for w in up]) @ motions
+    k = motions.T @ K @ motions
+    right = numpy.append(numpy.zeros(n), list(up.values()))
+    return motions @ numpy.linalg.solve(numpy.block([[k, J.T], [J, numpy.zeros((4, 4))]]), right)[:n]
 
 
 one = motion({'front_l': 1, 'front_r': 0, 'rear_l': 0, 'rear_r': 0})
@@ -268,21 +265,63 @@ row = car.kc['front']
 near('motion ratio of the strut', row['front_l.ratio.spring_l'], strut('l') @ one, 1e-6)
 near('motion ratio of the bar', abs(row['front_l.ratio.bar']), abs(Y @ (turned('lever_r') - turned('lever_l')) @ one), 1e-6)
 contact = P['f_hub_l'] - [0, 0, car.radius]
-moves = moved('strut_l', contact) @ one
-near('camber by travel', row['front_l.camber_rate'], -(turned('strut_l') @ one)[0], 1e-6)
-near('toe by travel', row['front_l.toe_rate'], -(turned('strut_l') @ one)[2], 1e-6)
-near('roll centre', row['roll_centre_height'], contact[1] * moves[1] / moves[2], 2e-4) # of the wheel that does not lean
+both = motion({'front_l': 1, 'front_r': 1, 'rear_l': 0, 'rear_r': 0}) # the subframe gives way otherwise
+near('camber by travel', row['front_l.camber_rate'], -(turned('strut_l') @ both)[0], 1e-6)
+near('toe by travel', row['front_l.toe_rate'], -(turned('strut_l') @ both)[2], 1e-6)
+lean = motion({'front_l': 1, 'front_r': -1, 'rear_l': 0, 'rear_r': 0})
+moves = moved('strut_l', contact) @ lean
+near('roll centre', row['roll_centre_height'], contact[1] * moves[1] / moves[2], 1e-6) # of the wheel that does not lean
 rate = SPRING * (strut('l') @ one) ** 2
 near('wheel rate in front', row['front_l.wheel_rate'], rate, 0.1 * rate)
 axis = P['f_top_l'] - P['f_ball_l']
 near('kingpin inclination', row['front_l.kingpin_inclination'], math.atan2(-axis[1], axis[2]), 1e-6)
 near('caster', row['front_l.caster'], math.atan2(-axis[0], axis[2]), 1e-6)
-both = motion({'front_l': 0, 'front_r': 0, 'rear_l': 1, 'rear_r': 1})
 row = car.kc['rear']
 check('the beam gives way, but does not steer', 'steering_ratio' not in row and 'steering_ratio' in car.kc['front'])
-near('motion ratio of springs behind, both wheels together', row['rear_l.ratio.rear_spring_l'] + row['rear_r.ratio.rear_spring_l'],
-     rear_spring('l') @ both, 1e-6)
-near('the same of dampers', row['rear_l.ratio.rear_damper_l'] + row['rear_r.ratio.rear_damper_l'], rear_damper('l') @ both, 1e-6)
+one = motion({'front_l': 0, 'front_r': 0, 'rear_l': 1, 'rear_r': 0})
+twist = Y @ (turned('trail_r') - turned('trail_l'))
+for s in 'lr':
+    near('motion ratio of the spring behind, ' + s, row['rear_l.ratio.rear_spring_' + s], rear_spring(s) @ one, 1e-6)
+    near('the same of the damper', row['rear_l.ratio.rear_damper_' + s], rear_damper(s) @ one, 1e-6)
+near('the same of the torsion spring', row['rear_l.ratio.twist'], twist @ one, 1e-6)
+for name, value in row.items():
+    sign = -1 if re.search(r'(contact|centre)_y$|\.steer$|twist$', name) else 1
+    if name.startswith('rear_l.'):
+        other = re.sub('_(l|r)$', lambda m: '_r' if m.group(1) == 'l' else '_l', 'rear_r.' + name[7:])
+        near('left and right: ' + name, row[other], sign * value, 1e-8 * max(1, abs(value)))
+
+
+def roll(K=K):
+    """Roll centre and roll rate of springs and torsion spring, at the drawing."""
+    half = P['r_hub_l'][1]
+    q = motion({'front_l': 0, 'front_r': 0, 'rear_l': half, 'rear_r': -half}, K)
+    aside = moved('trail_l', P['r_hub_l'] - [0, 0, car.radius])[1] @ q
+    return aside, BEAM * (twist @ q) ** 2 + sum(REAR_SPRING * (rear_spring(s) @ q) ** 2 for s in 'lr')
+
+
+centre, rate = roll()
+near('roll centre behind', row['roll_centre_height'], centre, 1e-6)
+near('the same by forces', row['roll_centre_force'], centre, 1e-6)
+near('roll rate behind, but for what the springs press', row['roll_rate'], rate, 0.03 * rate)
+balls = [d for s in 'lr' for d in [apart('body', 'trail_' + s, P['r_bush_' + s])[0]]]
+hard = roll(K + 1e12 * sum(d.T @ d for d in balls))
+near('with balls in place of bushings: roll centre', centre, hard[0], 2e-3)
+near('with balls in place of bushings: roll rate', rate, hard[1], 0.01 * rate)
+# rates are those of what moves: the mean of neighbours' over a step, 1/12 of its cube left over
+car.said([car.gicrun, '--kc', '-q', '--travel', '0.02', car.model, '-o', car.path('travel.csv')])
+table = car.table('travel.csv')
+for axle in 'front', 'rear':
+    for way in 'parallel', 'opposite':
+        rows = [{k: float(v) for k, v in r.items() if v and k not in ('axle', 'motion')} for r in table
+                if r['axle'] == axle and r['motion'] == way]
+        check('%s, %s: 41 rows' % (axle, way), len(rows) == 41, len(rows))
+        wheel = axle + '_l.'
+        for what, by, rate in (('camber', 'travel', 'camber_rate'), ('toe', 'travel', 'toe_rate'), ('force', 'contact_z', 'wheel_rate')):
+            change = [b[wheel + what] - a[wheel + what] for a, b in zip(rows, rows[1:])]
+            summed = [(b[wheel + by] - a[wheel + by]) * (a[wheel + rate] + b[wheel + rate]) / 2 for a, b in zip(rows, rows[1:])]
+            most = max(abs(b[wheel + rate]) * 0.001 for b in rows)
+            worst = max(abs(c - d) for c, d in zip(change, summed))
+            check('%s, %s: %s and its rate' % (axle, way, what), worst <= 2e-3 * most + 1e-9, (worst, most))
 
 # ---- the double lane change, between the cones of the scene
 d = car.run('hatchback_lane_change')

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT
+ * Axles on rubber. A body that bushings alone hold has six coordinates, and what of them, and of others that bend
+ * bushings, does not serve for travel follows from the rubber: with the heights z of the wheels' centres given, the energy of the bushings is least. So
+ * motions do not depend on which coordinates serve, and stiff bushings move as hinges and balls do. With their
+ * stiffness K by coordinates, forces g and z_q = J, a step v of coordinates fulfils
+ *     K v + J^T lambda = g0 - g,    J v = dz,
+ * in which g0 are the forces as set up: preloads do not move the axle. Bushings are linear here (FORMAT.md 7.5). */
+#include "base/vec3.h"
+#include "gic_runtime.h"
+#include "run/kc.h"
+#include "tape/engine_tape.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROOM = KC_COLUMNS + KC_WHEELS };
+
+static const double nothing = 1e-9;
+
+bool kc_is_mount(const Model *model, int c)
+{
+    const Coordinate *one = &model->coordinate[c];
+    int alike = 0;
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Coordinate *other = &model->coordinate[i];
+        alike += other->body[0] == one->body[0] && other->body[1] == one->body[1] && !other->driven;
+    }
+    return alike == 6;
+}
+
+/* ---- a bushing ------------------------------------------------------------------------------------------ */
+
+void kc_stiffness(Kc *kc)
+{
+    Model model = *kc->model;
+    const gic_real *tuned = tape_array(kc->self, kc->engine->code->parameter_offset);
+    model.parameter = pool_alloc(kc->pool, ((size_t)model.parameters + 1) * sizeof *model.parameter);
+    for (int i = 0; i < model.parameters; ++i) {
+        model.parameter[i] = kc->model->parameter[i];
+        if (model.parameter[i].tunable)
+            model.parameter[i].value = tuned[model.parameter[i].index];
+    }
+    for (int r = 0; r < kc->rubbers; ++r)
+        for (int k = 0; k < BUSHING_AXES * BUSHING_AXES; ++k) {
+            const Law *law =
+                kc->rubber[r].force->bushing->stiffness[bushing_place(k / BUSHING_AXES, k % BUSHING_AXES)];
+            kc->rubber[r].stiffness[k] = law ? law_number(law, &model) : 0;
+        }
+}
+
+/* Its displacements and rotation vector q, the axes in the world, and from its end in a to that in b. */
+typedef struct Bent {
+    double q[BUSHING_AXES], axes[9], lever[3];
+} Bent;
+
+static void multiply(const double A[9], const double B[9], double out[9])
+{
+    for (int i = 0; i < 9; ++i) {
+        out[i] = 0;
+        for (int k = 0; k < 3; ++k)
+            out[i] += A[3 * (i / 3) + k] * B[3 * k + i % 3];
+    }
+}
+
+/* The axes of one end in the world. */
+static void axes_of(const KcRubber *rubber, const KcLook *look, int end, double out[9])
+{
+    double A[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    if (rubber->force->body[end] != BODY_GROUND)
+        mat_from_euler(look->value + rubber->orientation[end], A);
+    multiply(A, rubber->force->bushing->frame[end], out);
+}
+
+/* One of its ends: position, or a rate of a column. */
+static void end_of(const KcRubber *rubber, const double *from, int end, int place, double out[3])
+{
+    if (rubber->force->body[end] == BODY_GROUND)
+        memset(out, 0, 3 * sizeof *out);
+    else
+        copy3(from + place, out);
+}
+
+static Bent bend(const KcRubber *rubber, const KcLook *look)
+{
+    Bent bent;
+    double other[9], C[9] = {0}, a[3], b[3];
+    axes_of(rubber, look, 0, bent.axes);
+    axes_of(rubber, look, 1, other);
+    end_of(rubber, look->value, 0, rubber->place[0], a);
+    end_of(rubber, look->value, 1, rubber->place[1], b);
+    if (rubber->force->body[0] == BODY_GROUND)
+        copy3(rubber->force->point[0], a);
+    if (rubber->force->body[1] == BODY_GROUND)
+        copy3(rubber->force->point[1], b);
+    sub3(b, a, bent.lever);
+    apply3_transposed(bent.axes, bent.lever, bent.q);
+    for (int i = 0; i < 9; ++i)
+        for (int k = 0; k < 3; ++k)
+            C[i] += bent.axes[3 * k + i / 3] * other[3 * k + i % 3];
+    const double s[3] = {(C[7] - C[5]) / 2, (C[2] - C[6]) / 2, (C[3] - C[1]) / 2}, size = norm3(s);
+    const double angle = atan2(size, (C[0] + C[4] + C[8] - 1) / 2);
+    for (int i = 0; i < 3; ++i)
+        bent.q[3 + i] = size > 0 ? s[i] * (angle / size) : 0;
+    return bent;
+}
+
+/* q' by a column: theta' = (I - 1/2 [theta]x + c [theta]x^2) omega. */
+static void bend_rate(const KcRubber *rubber, const Bent *bent, const KcLook *look, int column, double out[6])
+{
+    const double *slope = look->slope + column * look->outputs, *theta = bent->q + 3, t = norm3(theta);
+    const double c = t > 1e-4 ? (1 - t / 2 / tan(t / 2)) / (t * t) : 1.0 / 12;
+    double v[2][3], turn[2][3], carried[3], omega[3], once[3], twice[3];
+    for (int end = 0; end < 2; ++end) {
+        end_of(rubber, slope, end, rubber->velocity[end], v[end]);
+        end_of(rubber, slope, end, rubber->turn[end], turn[end]);
+    }
+    cross3(turn[0], bent->lever, carried);
+    sub3(v[1], v[0], v[1]);
+    sub3(v[1], carried, v[1]);
+    sub3(turn[1], turn[0], turn[1]);
+    apply3_transposed(bent->axes, v[1], out);
+    apply3_transposed(bent->axes, turn[1], omega);
+    cross3(theta, omega, once);
+    cross3(theta, once, twice);
+    for (int i = 0; i < 3; ++i)
+        out[3 + i] = omega[i] - once[i] / 2 + c * twice[i];
+}
+
+/* ---- what follows --------------------------------------------------------------------------------------- */
+
+/* K [n][n] and g [n] by the first n columns, of all bushings. */
+static void stiffness_of(const Kc *kc, const KcLook *look, int n, double *K, double *g)
+{
+    memset(K, 0, (size_t)n * (size_t)n * sizeof *K);
+    memset(g, 0, (size_t)n * sizeof *g);
+    for (int r = 0; r < kc->rubbers; ++r) {
+        const KcRubber *rubber = &kc->rubber[r];
+        const Bent bent = bend(rubber, look);
+        double rate[KC_COLUMNS][BUSHING_AXES];
+        for (int a = 0; a < n; ++a)
+            bend_rate(rubber, &bent, look, a, rate[a]);
+        for (int a = 0; a < n; ++a)
+            for (int i = 0; i < BUSHING_AXES; ++i) {
+                double along = 0; /* of row i of its stiffness */
+                for (int k = 0; k < BUSHING_AXES; ++k)
+                    along += rubber->stiffness[k * BUSHING_AXES + i] * rate[a][k];
+                g[a] += along * bent.q[i];
+                for (int b = 0; b < n; ++b)
+                    K[a * n + b] += along * rate[b][i];
+            }
+    }
+}
+
+/* The equations above, in coordinates over their ranges and energies over the largest. */
+typedef struct Given {
+    int wheels, n; /* n: coordinates, travel first */
+    double scale[KC_COLUMNS], most;
+    double A[ROOM * ROOM];
+} Given;
+
+static bool solve(const Given *given, double soft, const double *right, double *out)
+{
+    const int all = given->n + given->wheels;
+    double A[ROOM * ROOM], b[ROOM];
+    memcpy(A, given->A, (size_t)all * (size_t)all * sizeof *A);
+    for (int a = 0; a < all; ++a) {
+        b[a] = a < given->n ? right[a] * given->scale[a] / given->most : right[a];
+        if (a < given->n)
+            A[a * all + a] += soft;
+    }
+    if (!kc_solve(all, A, b) || !gic_finite(b, all))
+        return false;
+    for (int a = 0; a < given->n; ++a)
+        out[a] = b[a] * given->scale[a];
+    return true;
+}
+
+static void prepare(const Kc *kc, const KcAxle *axle, const KcLook *whole, const double *K, Given *given)
+{
+    given->wheels = axle->wheels;
+    given->n = axle->wheels + axle->followers;
+    given->most = 0;
+    const int n = given->n, all = n + given->wheels;
+    for (int a = 0; a < n; ++a) {
+        const Coordinate *c = &kc->model->coordinate[whole->column[a]];
+        given->scale[a] = c->range[1] - c->range[0];
+        given->most = fmax(given->most, K[a * n + a] * given->scale[a] * given->scale[a]);
+    }
+    memset(given->A, 0, (size_t)all * (size_t)all * sizeof *given->A);
+    for (int a = 0; a < n; ++a) {
+        for (int b = 0; b < n; ++b)
+            given->A[a * all + b] = K[a * n + b] * given->scale[a] * given->scale[b] / given->most;
+        for (int i = 0; i < given->wheels; ++i)
+            given->A[a * all + n + i] = given->A[(n + i) * all + a] =
+                whole->slope[a * whole->outputs + axle->wheel[i].centre + 2] * given->scale[a];
+    }
+}
+
+/* What nothing holds is not determined: a little stiffness of all coordinates would change it. */
+static bool is_determined(const Given *given, const double *right, const double *v)
+{
+    double other[KC_COLUMNS], most = 0, apart = 0;
+    if (!solve(given, 1e-9, right, other))
+        return false;
+    for (int a = 0; a < given->n; ++a) {
+        most = fmax(most, fabs(v[a]) / given->scale[a]);
+        apart = fmax(apart, fabs(other[a] - v[a]) / given->scale[a]);
+    }
+    return apart <= 1e-3 * most;
+}
+
+int kc_follow(const Kc *kc, KcLook *look)
+{
+    const KcAxle *axle = look->axle;
+    const KcLook *whole = look->whole;
+    const int wheels = axle->wheels, n = wheels + axle->followers;
+    double K[KC_COLUMNS * KC_COLUMNS], g[KC_COLUMNS], V[KC_WHEELS][KC_COLUMNS], right[ROOM] = {0};
+    Given given;
+    stiffness_of(kc, whole, n, K, g);
+    prepare(kc, axle, whole, K, &given);
+    for (int a = 0; a < n; ++a)
+        right[a] = axle->preload[a] - g[a];
+    if (!solve(&given, 0, right, look->relax))
+        return GIC_ERROR_SINGULAR;
+    memset(right, 0, sizeof right);
+    for (int i = 0; i < wheels; ++i) {
+        right[n + i] = 1;
+        if (!solve(&given, 0, right, V[i]) || !is_determined(&given, right, V[i]))
+            return GIC_ERROR_SINGULAR;
+        right[n + i] = 0;
+    }
+    for (int k = 0; k < wheels; ++k) { /* the motion in which coordinate k of travel alone moves with the rate 1 */
+        double A[KC_WHEELS * KC_WHEELS], share[KC_WHEELS] = {0};
+        for (int i = 0; i < wheels; ++i)
+            for (int j = 0; j < wheels; ++j)
+                A[j * wheels + i] = V[i][j];
+        share[k] = 1;
+        if (!kc_solve(wheels, A, share))
+            return GIC_ERROR_SINGULAR;
+        for (int j = 0; j < axle->followers; ++j) {
+            double sum = 0;
+            for (int i = 0; i < wheels; ++i)
+                sum += share[i] * V[i][wheels + j];
+            look->follow[k * axle->followers + j] = sum;
+        }
+    }
+    return GIC_OK;
+}
+
+/* Does a coordinate move a wheel of the axle, and bend a bushing? */
+static bool is_follower(const Kc *kc, const KcAxle *axle, int c)
+{
+    bool moves = false, bends = false;
+    KcLook *one = kc_look_new(kc, &(KcAxle){.steer = c});
+    if (kc_look(kc, kc->initial, one) != GIC_OK)
+        return false;
+    for (int i = 0; i < axle->wheels; ++i)
+        moves =
+            moves || norm3(one->slope + axle->wheel[i].velocity) + norm3(one->slope + axle->wheel[i].turn) > nothing;
+    for (int r = 0; r < kc->rubbers && moves; ++r) {
+        double rate[BUSHING_AXES];
+        const Bent bent = bend(&kc->rubber[r], one);
+        bend_rate(&kc->rubber[r], &bent, one, 0, rate);
+        bends = bends || norm3(rate) + norm3(rate + 3) > nothing;
+    }
+    return moves && bends;
+}
+
+/* A bushing with a formula, whose stiffness is not known here; NULL: none has one. */
+static const char *formula_of(const Kc *kc)
+{
+    for (int r = 0; r < kc->rubbers; ++r)
+        for (int i = 0; i < BUSHING_AXES; ++i) {
+            const Law *law = kc->rubber[r].force->law[i];
+            if (law && law->op != LAW_NUMBER && law->op != LAW_PARAMETER)
+                return kc->rubber[r].force->name;
+        }
+    return NULL;
+}
+
+void kc_find_followers(Kc *kc, KcAxle *axle)
+{
+    const char *names = "";
+    bool on_rubber = false; /* else nothing follows: rubber beside joints */
+    for (int c = 0; c < kc->model->coordinates && kc->rubbers && !axle->refusal; ++c) {
+        bool is_free = !kc->model->coordinate[c].driven && c != axle->steer;
+        for (int k = 0; k < axle->wheels; ++k)
+            is_free = is_free && axle->travel[k] != c;
+        if (!is_free || !is_follower(kc, axle, c))
+            continue;
+        if (axle->followers == KC_FOLLOWERS) {
+            axle->refusal = "more coordinates of bodies on rubber move its wheels than can be followed";
+            return;
+        }
+        names = pool_print(kc->pool, "%s%s%s", names, axle->followers ? ", " : "", kc->model->coordinate[c].name);
+        axle->follower[axle->followers++] = c;
+        on_rubber = on_rubber || kc_is_mount(kc->model, c);
+    }
+    axle->followers = on_rubber ? axle->followers : 0;
+    if (!on_rubber)
+        return;
+    if (formula_of(kc)) {
+        axle->refusal = pool_print(kc->pool,
+                                   "its wheels hang on rubber, and bushing '%s' has a formula, of which no stiffness is "
+                                   "known; give it `stiffness`",
+                                   formula_of(kc));
+        return;
+    }
+    axle->preload = pool_alloc(kc->pool, KC_COLUMNS * sizeof *axle->preload);
+    KcLook *look = kc_look_new(kc, axle);
+    double *K = pool_alloc(kc->pool, KC_COLUMNS * KC_COLUMNS * sizeof *K);
+    int status = kc_look(kc, kc->initial, look->whole);
+    if (status == GIC_OK)
+        stiffness_of(kc, look->whole, axle->wheels + axle->followers, K, axle->preload);
+    if (status == GIC_OK)
+        status = kc_look(kc, kc->initial, look);
+    if (status == GIC_ERROR_SINGULAR)
+        axle->refusal =
+            pool_print(kc->pool, "its wheels hang on rubber, and the stiffness of bushings does not hold all of %s", names);
+}
