@@ -99,7 +99,7 @@ def worst(a, b, near=1):
     for r in a:
         other = rows[r["axle"], r["motion"], r["travel"], r.get("rack")]
         for k, x in r.items():
-            if k in ("axle", "motion") or not x or k not in other or "arm" in k.split(".")[-1]:
+            if k in ("axle", "motion") or not x or x == other.get(k) or k not in other or "arm" in k.split(".")[-1]:
                 continue
             apart = abs(float(x) - float(other[k])) / max(near, abs(float(x)))
             most = max(most, (apart if apart == apart else 9, (k, r["motion"], r["travel"], x, other[k])))
