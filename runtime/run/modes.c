@@ -135,13 +135,50 @@ static size_t spectrum_nearest(const Spectrum *s, gsl_complex value)
     return best;
 }
 
+/* Left eigenvectors by columns, in the order of the right ones: the rows of the inverse of their matrix, so that those
+ * of equal eigenvalues, which are any of a subspace, belong to each other too. Where right ones are dependent but for
+ * rounding, as of a critically damped motion, there is no inverse: those of the transposed matrix, by nearest values.
+ * False: they could not be found. */
+static bool left_find(const gsl_matrix *A, const Spectrum *right, gsl_matrix_complex *left)
+{
+    static const double dependent = 1e-10; /* the least pivot of unit vectors */
+    const size_t n = A->size1;
+    gsl_matrix_complex *lu = gsl_matrix_complex_alloc(n, n);
+    gsl_permutation *order = gsl_permutation_alloc(n);
+    int sign;
+    double least = INFINITY;
+    gsl_matrix_complex_memcpy(lu, right->vector);
+    gsl_linalg_complex_LU_decomp(lu, order, &sign);
+    for (size_t i = 0; i < n; ++i) {
+        const gsl_complex pivot = gsl_matrix_complex_get(lu, i, i);
+        least = fmin(least, hypot(GSL_REAL(pivot), GSL_IMAG(pivot)));
+    }
+    bool found;
+    if (least > dependent) {
+        found = gsl_linalg_complex_LU_invert(lu, order, left) == GSL_SUCCESS;
+        gsl_matrix_complex_transpose(left);
+    } else {
+        Spectrum other;
+        found = spectrum_find(A, true, &other);
+        for (size_t k = 0; k < n; ++k) {
+            const size_t near = spectrum_nearest(&other, gsl_vector_complex_get(right->value, k));
+            for (size_t i = 0; i < n; ++i)
+                gsl_matrix_complex_set(left, i, k, gsl_matrix_complex_get(other.vector, i, near));
+        }
+        spectrum_free(&other);
+    }
+    gsl_permutation_free(order);
+    gsl_matrix_complex_free(lu);
+    return found;
+}
+
 /* A vector of the deflated system in all numbers: real and imaginary parts [count]. */
-static void expand(const Deflation *d, const Spectrum *s, size_t k, gsl_vector *part[2])
+static void expand(const Deflation *d, const gsl_matrix_complex *vectors, size_t k, gsl_vector *part[2])
 {
     for (int p = 0; p < 2; ++p) {
         gsl_vector *small = gsl_vector_alloc(d->A->size1);
         for (size_t i = 0; i < small->size; ++i) {
-            const gsl_complex z = gsl_matrix_complex_get(s->vector, i, k);
+            const gsl_complex z = gsl_matrix_complex_get(vectors, i, k);
             gsl_vector_set(small, i, p ? GSL_IMAG(z) : GSL_REAL(z));
         }
         gsl_blas_dgemv(CblasNoTrans, 1, d->basis, small, 0, part[p]);
@@ -153,14 +190,14 @@ static void expand(const Deflation *d, const Spectrum *s, size_t k, gsl_vector *
  * relative to the sum. Left eigenvectors have no components along neutral directions; those of a right eigenvector
  * follow from A, one Jordan layer at a time. */
 static void find_shares(const Linear *linear, const gsl_matrix *A, const Deflation *d, const Spectrum *right, size_t k,
-                        const Spectrum *left, Mode *mode)
+                        const gsl_matrix_complex *left, Mode *mode)
 {
     const size_t count = (size_t)linear->count, places = (size_t)linear->places;
     gsl_vector *r[2] = {gsl_vector_alloc(count), gsl_vector_alloc(count)}, *moved = gsl_vector_alloc(count);
     gsl_vector *l[2] = {gsl_vector_alloc(count), gsl_vector_alloc(count)};
     double sum = 0;
-    expand(d, right, k, r);
-    expand(d, left, spectrum_nearest(left, gsl_vector_complex_get(right->value, k)), l);
+    expand(d, right->vector, k, r);
+    expand(d, left, k, l);
     for (int layer = 0; layer < d->layers; ++layer)
         for (int p = 0; p < 2; ++p) {
             gsl_blas_dgemv(CblasNoTrans, 1, A, r[p], 0, moved);
@@ -207,9 +244,9 @@ static const char *name_neutral(Pool *pool, const Linear *linear, const Deflatio
 /* One of each conjugate pair. False: they could not be found. */
 static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, const Deflation *d, Modes *modes)
 {
-    Spectrum right, left;
-    const bool found_right = spectrum_find(d->A, false, &right), found_left = spectrum_find(d->A, true, &left);
-    const bool found = found_right && found_left;
+    Spectrum right;
+    gsl_matrix_complex *left = gsl_matrix_complex_alloc(d->A->size1, d->A->size1);
+    const bool found = spectrum_find(d->A, false, &right) && left_find(d->A, &right, left);
     for (size_t k = 0; found && k < d->rest; ++k) {
         const gsl_complex value = gsl_vector_complex_get(right.value, k);
         const bool is_real = fabs(GSL_IMAG(value)) <= critical * fabs(GSL_REAL(value));
@@ -218,10 +255,10 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
         *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double)),
                        pool_alloc(pool, 2 * A->size1 * sizeof(double))};
-        find_shares(linear, A, d, &right, k, &left, mode);
+        find_shares(linear, A, d, &right, k, left, mode);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);
-    spectrum_free(&left);
+    gsl_matrix_complex_free(left);
     spectrum_free(&right);
     return found;
 }

@@ -145,6 +145,56 @@ check 'spins oscillate with slips' prints 'i .*slip_x 2.*spin 2'
 check 'the accelerations that remain are named' prints 'largest acceleration is -0.0[0-9]* m/s^2 or rad/s^2 of x, then'
 check 'windups of free brakes are neutral' prints 'neutral in x, y, yaw, tire_f_l.brake'
 
+# equal eigenvalues: two equal oscillators side by side, and a cab on four mounts, whose motions along x and y are alike. Each of
+# the six motions moves in one pair of modes altogether: shares of a number over all modes are 1
+oscillator() {
+    echo "$2: {type: translation, bodies: [ground, $1], axis: [1, 0, 0]}"
+}
+cat >"$work/twins.veh" <<END
+gicgen: 1
+model: twins
+base: ground
+bodies:
+  a: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+  b: {mass: 1, com: [1, 0, 0], inertia: [1, 1, 1]}
+joints:
+  a: {type: prismatic, bodies: [ground, a], axis: [1, 0, 0]}
+  b: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}
+coordinates:
+  $(oscillator a x)
+  $(oscillator b y)
+forces:
+  a: {type: spring_damper, coordinate: x, stiffness: 1, damping: 0.1}
+  b: {type: spring_damper, coordinate: y, stiffness: 1, damping: 0.1}
+END
+cat >"$work/cab.veh" <<END
+gicgen: 1
+model: cab
+base: ground
+bodies:
+  cab: {mass: 100, com: [0, 0, 1], inertia: [10, 10, 10]}
+coordinates:
+  $(oscillator cab x)
+  y: {type: translation, bodies: [ground, cab], axis: [0, 1, 0]}
+  z: {type: translation, bodies: [ground, cab], axis: [0, 0, 1]}
+  r: {type: angle, bodies: [ground, cab], axis: [1, 0, 0]}
+  p: {type: angle, bodies: [ground, cab], axis: [0, 1, 0]}
+  w: {type: angle, bodies: [ground, cab], axis: [0, 0, 1]}
+forces:
+$(for x in 1 -1; do for y in 1 -1; do
+    echo "  mount_$((x + 2))_$((y + 2)): {type: bushing, bodies: [ground, cab], point: [$x, $y, 0], stiffness: [1e4, 1e4, 1e4, 0, 0, 0]}"
+done; done)
+END
+shares() {
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^share/) at[i] = $i }
+        NR > 1 { for (i in at) sum[i] += $i }
+        END { for (i in at) { ++n; if (sum[i] < 1 - 1e-9 || sum[i] > 1 + 1e-9) { print at[i], sum[i]; bad = 1 } } exit bad || !n }' "$1"
+}
+for name in twins cab; do
+    run --modes -q "$work/$name.veh" -o "$work/$name.csv"
+    check "equal eigenvalues of $name" shares "$work/$name.csv"
+done
+
 run --modes --eval "$work/states" "$root/models/hmmwv.veh"
 check '--modes and --eval are one too many' exits 2
 run --modes "$root/models/hmmwv.veh" --plot "$work/a.svg"
