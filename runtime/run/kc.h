@@ -51,13 +51,13 @@ typedef struct KcAxle {
     int number;       /* from 1, the foremost */
     int wheels;
     KcWheel wheel[KC_WHEELS];
-    double ahead;          /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
-    int travel[KC_WHEELS]; /* [wheels] coordinates that move them up and down */
-    int steer;             /* coordinate, -1: none */
+    double ahead;                          /* 1: ahead of the mean of the vehicle's axles, or there; -1: behind it */
+    int travel[KC_WHEELS];                 /* [wheels] coordinates that move them up and down */
+    int steer;                             /* coordinate, -1: none */
     int followers, follower[KC_FOLLOWERS]; /* coordinates that rubber moves along with those of travel: kc_rubber.c */
-    double *preload;       /* [wheels + followers] forces of rubber as set up; NULL: nothing follows */
-    const char *unit;      /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
-    const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
+    double *preload;                       /* [wheels + followers] forces of rubber as set up; NULL: nothing follows */
+    const char *unit;    /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
+    const char *refusal; /* why no wheel of it can be moved; NULL: they can */
     const char *unsteered; /* why it is not steered; NULL: it is */
 } KcAxle;
 
@@ -96,8 +96,8 @@ double kc_wheelbase(const Kc *kc, const double *x);
 
 /* ---- kc_look.c: a position, with derivatives */
 
-/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, with what
- * follows them, then that of steering. */
+/* Of one axle, at values of all coordinates. Derivatives by the axle's `columns` coordinates: those of travel, with
+ * what follows them, then that of steering. */
 typedef struct KcLook KcLook;
 struct KcLook {
     int columns, outputs;

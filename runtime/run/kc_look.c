@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A position of the mechanism, with derivatives by the coordinates of an axle, and what follows these. Poses are differentiated by a
- * coordinate; velocities, which are linear in the rates, by its rate; and velocities at given rates by a coordinate:
- * that is the second derivative of the poses. All in dual numbers. */
+ * A position of the mechanism, with derivatives by the coordinates of an axle, and what follows these. Poses are
+ * differentiated by a coordinate; velocities, which are linear in the rates, by its rate; and velocities at given rates
+ * by a coordinate: that is the second derivative of the poses. All in dual numbers. */
 #include "gic_runtime.h"
 #include "run/kc.h"
 #include "tape/engine_tape.h"

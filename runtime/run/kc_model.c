@@ -66,8 +66,8 @@ static void watch_rubber(Kc *kc, Model *model, const Force *force)
             continue;
         rubber.place[end] = watch_point(kc->pool, model, OUTPUT_POSITION, body, force->point[end]);
         rubber.velocity[end] = watch_point(kc->pool, model, OUTPUT_VELOCITY, body, force->point[end]);
-        rubber.turn[end] = watch(kc->pool, model,
-                                 (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = body, .in = BODY_GROUND, .count = 3});
+        rubber.turn[end] = watch(
+            kc->pool, model, (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = body, .in = BODY_GROUND, .count = 3});
         rubber.orientation[end] =
             watch(kc->pool, model, (Output){.type = OUTPUT_ORIENTATION, .body = body, .in = BODY_GROUND, .count = 4});
     }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Axles on rubber. A body that bushings alone hold has six coordinates, and what of them, and of others that bend
- * bushings, does not serve for travel follows from the rubber: with the heights z of the wheels' centres given, the energy of the bushings is least. So
- * motions do not depend on which coordinates serve, and stiff bushings move as hinges and balls do. With their
- * stiffness K by coordinates, forces g and z_q = J, a step v of coordinates fulfils
- *     K v + J^T lambda = g0 - g,    J v = dz,
- * in which g0 are the forces as set up: preloads do not move the axle. Bushings are linear here (FORMAT.md 7.5). */
+ * bushings, does not serve for travel follows from the rubber: with the heights z of the wheels' centres given, the
+ * energy of the bushings is least. So motions do not depend on which coordinates serve, and stiff bushings move as
+ * hinges and balls do. With their stiffness K by coordinates, forces g and z_q = J, a step v of coordinates fulfils K v
+ * + J^T lambda = g0 - g,    J v = dz, in which g0 are the forces as set up: preloads do not move the axle. Bushings are
+ * linear here (FORMAT.md 7.5). */
 #include "base/vec3.h"
 #include "gic_runtime.h"
 #include "run/kc.h"
@@ -42,8 +42,7 @@ void kc_stiffness(Kc *kc)
     }
     for (int r = 0; r < kc->rubbers; ++r)
         for (int k = 0; k < BUSHING_AXES * BUSHING_AXES; ++k) {
-            const Law *law =
-                kc->rubber[r].force->bushing->stiffness[bushing_place(k / BUSHING_AXES, k % BUSHING_AXES)];
+            const Law *law = kc->rubber[r].force->bushing->stiffness[bushing_place(k / BUSHING_AXES, k % BUSHING_AXES)];
             kc->rubber[r].stiffness[k] = law ? law_number(law, &model) : 0;
         }
 }
@@ -300,10 +299,11 @@ void kc_find_followers(Kc *kc, KcAxle *axle)
     if (!on_rubber)
         return;
     if (formula_of(kc)) {
-        axle->refusal = pool_print(kc->pool,
-                                   "its wheels hang on rubber, and bushing '%s' has a formula, of which no stiffness is "
-                                   "known; give it `stiffness`",
-                                   formula_of(kc));
+        axle->refusal =
+            pool_print(kc->pool,
+                       "its wheels hang on rubber, and bushing '%s' has a formula, of which no stiffness is "
+                       "known; give it `stiffness`",
+                       formula_of(kc));
         return;
     }
     axle->preload = pool_alloc(kc->pool, KC_COLUMNS * sizeof *axle->preload);
@@ -315,6 +315,6 @@ void kc_find_followers(Kc *kc, KcAxle *axle)
     if (status == GIC_OK)
         status = kc_look(kc, kc->initial, look);
     if (status == GIC_ERROR_SINGULAR)
-        axle->refusal =
-            pool_print(kc->pool, "its wheels hang on rubber, and the stiffness of bushings does not hold all of %s", names);
+        axle->refusal = pool_print(
+            kc->pool, "its wheels hang on rubber, and the stiffness of bushings does not hold all of %s", names);
 }

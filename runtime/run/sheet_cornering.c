@@ -104,8 +104,9 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
             continue;
         if (!axle->unit)
             return axle;
-        *why = pool_print(sheet->pool, "axle %s, which is steered, belongs to a unit that turns by '%s' against the base",
-                          axle->name, axle->unit);
+        *why =
+            pool_print(sheet->pool, "axle %s, which is steered, belongs to a unit that turns by '%s' against the base",
+                       axle->name, axle->unit);
     }
     return NULL;
 }
