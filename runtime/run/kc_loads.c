@@ -153,6 +153,9 @@ const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool op
     Rig *rig = pool_alloc(kc->pool, sizeof *rig);
     if (axle->refusal)
         return axle->refusal;
+    if (axle->followers > 0)
+        return pool_print(kc->pool, "coordinate '%s' is held by bushings, which compliance leaves out",
+                          kc->model->coordinate[axle->follower[0]].name);
     *rig = (Rig){.kc = kc, .axle = axle, .look = columns_of(kc, axle), .n = axle->wheels};
     rig->m = rig->look->columns;
     rig->w = pool_alloc(kc->pool, (size_t)kc->model->coordinates * sizeof *rig->w);

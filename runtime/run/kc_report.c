@@ -235,6 +235,17 @@ static void note_units(Pool *pool, const KcStudy *study, const Request *request)
 static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    const char *why = NULL, *first = NULL;
+    bool gives = false;
+    for (int a = 0; a < kc->axles; ++a) {
+        KcGive give[KC_WHEELS];
+        why = kc_compliance(kc, &kc->axle[a], KC_LATERAL, false, give);
+        first = first ? first : why;
+        gives = gives || !why;
+    }
+    if (!gives)
+        diag_fail((Place){model->source, 0, 0}, "write what holds it as springs between points or along coordinates",
+                  "no axle of model '%s' has a compliance: %s: %s", model->name, kc->axle[0].name, first);
     kc_warn(kc);
     if (request->results) {
         kc_loads_csv(pool, kc, request->results);

@@ -122,6 +122,12 @@ beside() { awk -F, 'NR == FNR {if (FNR == 1) for (i = 1; i <= NF; ++i) {split($i
     else if ($2 == "parallel" && $3 ^ 2 < 1e-24) for (i = 1; i <= NF; ++i) at[name[i]] = $i; next}
     FNR > 1 && $1 in at {n += 1; e += at[$1] != $4} END {exit !(n > 20 && !e)}' "$work/rows.csv" "$work/both.csv"; }
 check 'the other one has its numbers' beside
+for axle in front rear; do
+    run --kc --loads --axle $axle "$models/hatchback.veh" -q -o "$work/rubber.csv"
+    check "no compliance of axle $axle on rubber" exits 1
+    check "no compliance of axle $axle on rubber, said" says "has a compliance: $axle: coordinate '.*' is held by bushings"
+    check "no file for axle $axle" [ ! -e "$work/rubber.csv" ]
+done
 run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" --report "$work/x.html"
 check '--compare is a table' exits 2
 
