@@ -247,11 +247,25 @@ static const char *stem(Pool *pool, const char *path)
     return dot && dot > name ? pool_print(pool, "%.*s", (int)(dot - name), name) : name;
 }
 
+/* A coordinate that the scene gives as a free one and the model drives is no other model's. */
+static void refuse_driven(const Fit *fit, const Model *model)
+{
+    for (int k = 0; k < KINDS; ++k)
+        for (int i = 0; i < fit->kind[k].lacking && !strcmp(fit->kind[k].one, "free coordinate"); ++i)
+            for (int c = 0; c < model->coordinates; ++c)
+                if (!strcmp(model->coordinate[c].name, fit->kind[k].lacks[i]->text) && model->coordinate[c].driven)
+                    diag_fail(fit->kind[k].lacks[i]->at,
+                              "describe its motion in `inputs`, or take `driven: true` from it in the model",
+                              "coordinate '%s' of '%s' is driven: its motion is an input, not an initial value",
+                              model->coordinate[c].name, model->name);
+}
+
 void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model *model)
 {
     const Fit fit = fit_of(pool, root, model);
     if (fits(&fit) || !strcmp(path, "-"))
         return;
+    refuse_driven(&fit, model);
     const char **other = NULL, **scene = NULL;
     const char *folder = folder_of(pool, path), *beside = folder_of(pool, model->source->path);
     int others = 0, scenes = 0;

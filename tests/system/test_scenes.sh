@@ -62,6 +62,10 @@ echo 'gicgen: 1' >aaa.veh
 try pendulum full_run
 check 'a broken model beside it' grep -q "error: full_run is for models with the inputs brake, accelerator, rack: hmmwv_vehicle; 'pendulum' has no input 'brake'$" err
 check 'what to run instead' grep -q "remedy: run it with hmmwv_vehicle.veh, or 'pendulum' with the scene pendulum$" err
+# a coordinate that the model drives is no matter of other models
+printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'initial: {coordinates: {rack: 0.01}}' >driven.scene
+"$gicrun" "$root/models/hmmwv_vehicle.veh" driven.scene -q >out 2>err
+check 'an initial value of a driven coordinate' grep -q "^driven.scene:4:.*coordinate 'rack' of 'hmmwv_vehicle' is driven" err
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
