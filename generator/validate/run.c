@@ -289,6 +289,21 @@ static double largest(const Run *run, const Values row)
     return most;
 }
 
+static const char not_finite[] = "numbers that are not finite";
+
+/* States in which the motion of a subset has numbers that are not finite, as those of a coupler whose formula has no
+ * value there, are refused: generated code ends in a status there, too. */
+static void refuse_infinite(Run *run, const Subset *subset, const char *what)
+{
+    for (int k = 0; k < STATES; ++k)
+        for (int b = 0; b < subset->bodies && !run->refused[k]; ++b)
+            for (int i = 0; i < MOTION_S && !run->refused[k]; ++i)
+                if (!isfinite(run_motion(run, subset->body[b], i, k))) {
+                    run->refused[k] = not_finite;
+                    run->where[k] = what;
+                }
+}
+
 /* Solve one subset at programs->at. */
 static void solve_subset(Run *run, int s, bool last)
 {
@@ -302,6 +317,7 @@ static void solve_subset(Run *run, int s, bool last)
     bind_subset(run, s);
     if (formula->closed) {
         run_play(run, solve, member, name);
+        refuse_infinite(run, subset, name);
         return;
     }
     Values *q = programs->own;

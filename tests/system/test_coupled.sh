@@ -254,5 +254,28 @@ refused 15:3 "joint 'spare' (coupler) lacks the key 'value'" 'add `value: formul
 [ $? -eq 1 ] && [ ! -e bad.c ] && grep -q 'the articulated form .* does not know joints' said
 verdict $? 'the articulated form'
 
+# a formula without a value in a part of the range: no mistake of gicgen's, and right where it has one. y = log(1 + x) with x
+# from 0 on at 1 m/s, no forces: (1 + (1 + y')^2) x'^2 stays 5, y' = 1 / (1 + x), by the place of b, x + y
+cat >log.veh <<'END'
+gicgen: 1
+model: by_log
+base: ground
+bodies:
+  a: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+  b: {mass: 1, com: [1, 0, 0], inertia: [1, 1, 1]}
+joints:
+  a: {type: prismatic, bodies: [ground, a], axis: [1, 0, 0]}
+  b: {type: prismatic, bodies: [a, b], axis: [1, 0, 0]}
+  follows: {type: coupler, bodies: [a, b], axis: [1, 0, 0], value: log(x + 1)}
+coordinates:
+  x: {type: translation, bodies: [ground, a], axis: [1, 0, 0], range: [-2, 2]}
+outputs:
+  x: {type: coordinate, coordinate: x}
+END
+printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'integrator: rk4' 'output_step: 0.1' 'initial: {rates: {x: 1}}' >log.scene
+"$gicrun" -q log.veh log.scene -o log.csv >out 2>said &&
+    awk -F, 'NR > 1 { e = (1 + (1 + 1 / (1 + $2)) ^ 2) * $3 ^ 2 / 5 - 1; n += 1; bad += e * e > 1e-20 } END { exit !(n == 11 && !bad) }' log.csv
+verdict $? 'a formula without a value in a part of the range'
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
