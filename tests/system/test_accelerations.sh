@@ -7,8 +7,9 @@
 # residuals at the same states; the reduced form also with alike parts side by side in lanes. Each form within half of
 # 1e-12 of the reference: so they agree with each other to 1e-12.
 # With tires within 2e-12, for tires are stiff: at some states they make 1e-12 of the last digit of a pose, whichever way
-# that is found. Once more on waves with a patch of little friction, where 100 m from the origin heights of a road whose
-# slope reaches 0.1 are known to 1e-15 m; there also with wheels side by side in lanes.
+# that is found; of vehicles longer than 10 m within 4e-12, for places of their ends have larger last digits (2.2e-12 seen in
+# the steering of the semitrailer, at one of 400 states). Once more on waves with a patch of little friction, where 100 m from
+# the origin heights of a road whose slope reaches 0.1 are known to 1e-15 m; there also with wheels side by side in lanes.
 # The reference takes seven times as long in quad precision as in extended precision (64 bits): quad judges a quarter of the
 # states, extended all of them, those included.
 gicgen=$1
@@ -59,12 +60,19 @@ agrees() {
         "$agree" "$work/dump" "$work/accelerations" "$work/results" --reactions --wheels --tolerance "$tolerance"
 }
 
+# the tolerance of a vehicle with tires, by the distance in x of its bodies
+with_tires() {
+    /usr/bin/python3 -c 'import json, sys
+x = [body["position"][0] for body in json.load(open(sys.argv[1]))["bodies"]]
+print("2e-12" if max(x) - min(x) < 10 else "4e-12")' "$work/dump"
+}
+
 for model in "$root"/models/*.veh "$root"/tests/data/laws/*.veh "$work/steered.veh"; do
     rows=${ROWS:-100}
     tires=false
     tolerance=5e-13
     if "$gicgen" --dump-model "$model" >"$work/dump" &&
-        { ! grep -q '"tire": [0-9]' "$work/dump" || { tires=true && tolerance=2e-12 && rows=$((4 * rows)); }; } &&
+        { ! grep -q '"tire": [0-9]' "$work/dump" || { tires=true && tolerance=$(with_tires) && rows=$((4 * rows)); }; } &&
         { sh "$root/tests/lib/reactions.sh" "$work/dump" "$(realpath "$model")" &&
             sh "$root/tests/lib/wheels.sh" "$work/dump"; } >"$work/variant.veh" &&
         "$states" "$work/dump" --count "$rows" --seed 1 -o "$work/states" &&
