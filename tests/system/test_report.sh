@@ -52,7 +52,7 @@ compare() {
 
 for model in "$root"/models/*.veh "$root/tests/data/laws/cart.veh"; do
     compare "$(basename "$model" .veh)" "$model"
-    grep -q 'in the reduced form' "$name.html"
+    grep -q 'in the \(reduced\|articulated\) form' "$name.html" # of a truck's axles one behind the other the latter takes less
     verdict $? "$name does not name the form"
 done
 
