@@ -36,7 +36,17 @@ for model in "$root"/generated/*.c; do
     sed -n "/int ${name}_\(wheel_[a-z_]*\|drive\|grip\)(/,/^}/p" "$model" |
         grep -v -E 'if \(contact\[0\] > |^ *gic_real |road_height' >wheels
     arrays='x|xd|acc|pose|tau|size|link|grip|fast|torque|force|contact|gear|watch'
-    ! { grep -E "\b(y|u|p|out|rate|$arrays)\[[0-9]+[] ]" whole || grep -E "\b(rate|$arrays)\[[0-9]+[] ]" wheels; } >bare
+    # behind the numbers of wheels, twelve each, link[] has coordinates and signals that formulas read; they have no names
+    behind=$(sed -n 's/^ *[A-Z0-9_]*_LINK_OF_[A-Z0-9_]* = \([0-9]*\),/\1/p' "$model" "${model%.c}.h" | sort -n | tail -n 1)
+    named() {
+        awk -v behind=$((${behind:--12} + 12)) '{ kept = $0
+            while (match($0, /(^|[^a-z_])link\[[0-9]+\]/)) { i = substr($0, RSTART, RLENGTH); gsub(/[^0-9]/, "", i)
+                if (i + 0 < behind) { print kept; next } $0 = substr($0, 1, RSTART - 1) " read" substr($0, RSTART + RLENGTH) }
+            print }' "$1"
+    }
+    named whole >named.whole
+    named wheels >named.wheels
+    ! { grep -E "\b(y|u|p|out|rate|$arrays)\[[0-9]+[] ]" named.whole || grep -E "\b(rate|$arrays)\[[0-9]+[] ]" named.wheels; } >bare
     verdict $? "$name: a bare index: $(head -n 1 bare)"
     ! grep -q -E '\b(motion|inertia|m[0-9]*|n)\[[0-9]+\]' "$model"
     verdict $? "$name: a bare index of a motion: $(grep -E '\b(motion|inertia|m[0-9]*|n)\[[0-9]+\]' "$model" | head -n 1)"
