@@ -224,7 +224,7 @@ static void add_name(Text *text, int i, int count, const char *name)
 }
 
 /* The first thing that the model lacks, with its place, and all others of its kind. */
-static Place say_needs(const Fit *fit, Text *needs, Text *lack)
+static Place say_needs(const Fit *fit, const Model *model, Text *needs, Text *lack)
 {
     for (int k = 0; k < KINDS; ++k) {
         const Kind *kind = &fit->kind[k];
@@ -234,6 +234,9 @@ static Place say_needs(const Fit *fit, Text *needs, Text *lack)
         for (int i = 0; i < kind->lacking; ++i)
             add_name(needs, i, kind->lacking, kind->lacks[i]->text);
         text_print(lack, "has no %s '%s'", kind->one, kind->lacks[0]->text);
+        for (int c = 0; c < model->coordinates; ++c)
+            if (!strcmp(model->coordinate[c].name, kind->lacks[0]->text) && model->coordinate[c].driven)
+                text_print(lack, ": it is driven, and `inputs` describe its motion");
         return kind->lacks[0]->at;
     }
     text_print(needs, fit->free_base ? "a free base" : "a powertrain");
@@ -247,25 +250,11 @@ static const char *stem(Pool *pool, const char *path)
     return dot && dot > name ? pool_print(pool, "%.*s", (int)(dot - name), name) : name;
 }
 
-/* A coordinate that the scene gives as a free one and the model drives is no other model's. */
-static void refuse_driven(const Fit *fit, const Model *model)
-{
-    for (int k = 0; k < KINDS; ++k)
-        for (int i = 0; i < fit->kind[k].lacking && !strcmp(fit->kind[k].one, "free coordinate"); ++i)
-            for (int c = 0; c < model->coordinates; ++c)
-                if (!strcmp(model->coordinate[c].name, fit->kind[k].lacks[i]->text) && model->coordinate[c].driven)
-                    diag_fail(fit->kind[k].lacks[i]->at,
-                              "describe its motion in `inputs`, or take `driven: true` from it in the model",
-                              "coordinate '%s' of '%s' is driven: its motion is an input, not an initial value",
-                              model->coordinate[c].name, model->name);
-}
-
 void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model *model)
 {
     const Fit fit = fit_of(pool, root, model);
     if (fits(&fit) || !strcmp(path, "-"))
         return;
-    refuse_driven(&fit, model);
     const char **other = NULL, **scene = NULL;
     const char *folder = folder_of(pool, path), *beside = folder_of(pool, model->source->path);
     int others = 0, scenes = 0;
@@ -277,7 +266,7 @@ void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model
     if (is_file(model->source->path)) /* standard input can't be read again */
         find_fitting(pool, folder, NULL, model->source->path, &scene, &scenes);
     Text needs = {.pool = pool}, lack = {.pool = pool}, names = {.pool = pool}, remedy = {.pool = pool};
-    const Place at = say_needs(&fit, &needs, &lack);
+    const Place at = say_needs(&fit, model, &needs, &lack);
     for (int i = 0; i < others; ++i)
         add_name(&names, i, others, stem(pool, other[i]));
     text_print(&remedy, "run it with %s", other[0]);
