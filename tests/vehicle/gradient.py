@@ -5,32 +5,15 @@ derivative of the very steps; whole runs of vehicles by Taylor remainders, which
 import csv
 import math
 import re
-import subprocess
 import sys
 from decimal import Decimal, getcontext
 from pathlib import Path
 
+from counted import check, finish, near, runner
+
 gicrun, models, work = sys.argv[1:4]
+gic = runner(gicrun)
 getcontext().prec = 50
-failed = passed = 0
-
-
-def check(what, good):
-    global failed, passed
-    passed += bool(good)
-    failed += not good
-    if not good:
-        print("FAILED:", what)
-
-
-def near(what, value, wanted, tolerance):
-    check(f"{what}: {value!r}, wanted {wanted!r}", abs(value - wanted) <= tolerance)
-
-
-def gic(*words):
-    done = subprocess.run([gicrun, *words], capture_output=True, text=True)
-    assert done.returncode == 0, (words, done.stderr)
-    return done.stdout
 
 
 def gradient(formula, model, scene, *names):
@@ -297,5 +280,4 @@ last = gic("-q", "--general", hmmwv, f"{work}/rest.scene", "-o", "-").splitlines
 names = [name.split(" [")[0] for name in last[0].split(",")]
 near("a start in equilibrium", value, float(last[-1].split(",")[names.index("chassis.z")]), 1e-12)
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed != 0)
+finish()

@@ -6,28 +6,15 @@ suspension of a vehicle from the motion of its chassis."""
 import csv
 import math
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 
+from counted import check, finish, runner
+
 gicrun, models, work = sys.argv[1:4]
-failed = passed = 0
-
-
-def check(what, good):
-    global failed, passed
-    passed += bool(good)
-    failed += not good
-    if not good:
-        print("FAILED:", what)
-
-
-def gic(*words):
-    done = subprocess.run([gicrun, *words], capture_output=True, text=True)
-    assert done.returncode == 0, (words, done.stderr)
-    return done.stdout
+gic = runner(gicrun)
 
 
 def columns(text):
@@ -148,5 +135,4 @@ found = identify(names, np.column_stack([clean[:, 0], noisy[:, 1:]]), car, f"{wo
 for name, value in (("parameter/load", 2000), ("parameter/tire", 250000)):
     check(f"a vehicle with noise: {name} {found[name]}", abs(found[name]["value"] - value) < 4 * found[name]["deviation"])
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed != 0)
+finish()

@@ -12,29 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
+from counted import check, finish, near, runner
+
 gicrun, models, linear, work = sys.argv[1:5]
+gic = runner(gicrun)
 tools = Path(__file__).resolve().parent.parent / "tools"
 vehicle, tires = f"{models}/hmmwv_vehicle.veh", f"{models}/hmmwv_tires.veh"
 g = 9.80665
-failed = passed = 0
-
-
-def check(what, good):
-    global failed, passed
-    passed += bool(good)
-    failed += not good
-    if not good:
-        print("FAILED:", what)
-
-
-def near(what, value, wanted, tolerance):
-    check(f"{what}: {value!r}, wanted {wanted!r}", abs(value - wanted) <= tolerance)
-
-
-def gic(*words):
-    done = subprocess.run([gicrun, *words], capture_output=True, text=True)
-    assert done.returncode == 0, (words, done.stderr)
-    return done.stdout
 
 
 def trim(model, *words):
@@ -166,5 +150,4 @@ def differs(model, *words):
 differs(vehicle, "speed=10", "lateral=3")
 differs(tires, "speed=20", "lateral=-4", "drive=drive_torque")
 
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed != 0)
+finish()
