@@ -338,6 +338,45 @@ static double number_at_design(const Model *model, const Law *law)
     return op_value((Op)law->call, x[0], x[1], x[2]);
 }
 
+/* The formula with the given coordinates [model->coordinates] and the file's values of parameters. */
+static Ex of_coordinates(Dag *dag, const Model *model, const Law *law, const Ex *x)
+{
+    Ex arg[3] = {0};
+    if (law->op == LAW_VALUE)
+        return x[law->index];
+    if (law->op != LAW_CALL)
+        return ex_literal(dag, law_number(law, model));
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        arg[i] = of_coordinates(dag, model, law->arg[i], x);
+    return law_top(dag, model, law, arg);
+}
+
+static Ex still(const void *context, Dag *dag, Element element)
+{
+    (void)context;
+    (void)element;
+    return ex_literal(dag, 0);
+}
+
+/* The coordinate by which the formula has no finite first or second derivative at the design; -1: none. */
+static int without_derivative(Pool *pool, const Model *model, const Law *law)
+{
+    Dag *dag = dag_new(pool, 1, 1);
+    Ex x[model->coordinates + 1];
+    for (int i = 0; i < model->coordinates; ++i)
+        x[i] = ex_input(dag, (Element){.array = ARRAY_x, .index = i}, &model->coordinate[i].design);
+    const Ex value = of_coordinates(dag, model, law, x);
+    for (int i = 0; i < model->coordinates; ++i) {
+        const Ex one = ex_literal(dag, 1);
+        const Seeds seeds = {.seed = still, .givens = 1, .given = &x[i], .slope = &one, .smooth = true};
+        const Ex slope = dag_slopes(dag, NULL, &value, 1, &seeds)[value];
+        const Ex bend = dag_slopes(dag, NULL, &slope, 1, &seeds)[slope];
+        if (!isfinite(ex_value(dag, slope, 0)) || !isfinite(ex_value(dag, bend, 0)))
+            return i;
+    }
+    return -1;
+}
+
 /* Parameters in a formula are numbers of the model, so that tunable ones act at set-up. */
 static void tune_parameters(const Model *model, const Law *law)
 {
@@ -371,6 +410,12 @@ static void coupler_read(Reader *reader, const Entry *entry, Joint *joint)
     if (!isfinite(joint->offset))
         diag_fail(item->at, "look for a division by zero or a root of a negative number",
                   "%s is not a finite number at the design", what);
+    const int coordinate = without_derivative(reader->pool, model, law);
+    if (coordinate >= 0)
+        diag_fail(item->at,
+                  "write a formula that is smooth where the model is drawn, or give the coordinate another `design`",
+                  "%s has no finite derivative by '%s' at the design, so that nothing could move there", what,
+                  model->coordinate[coordinate].name);
     tuning_set(model->tuning, &joint->offset, &tuned, 1);
     tune_parameters(model, law);
 }

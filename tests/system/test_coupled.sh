@@ -247,6 +247,9 @@ for kink in '"abs(turn)"' '"max(turn, 0)"' '"if(turn > 0, turn, 0)"'; do
 done
 refused 14:74 "value of joint 'teeth' follows no coordinate" 'name a coordinate' 0.3
 refused 14:74 "value of joint 'teeth' is not a finite number at the design" 'look for a division' '1 / turn'
+for root in 'sqrt(turn)' 'turn^0.5' '"turn^1.5"' 'sqrt(turn * turn)' '"asin(1 - turn^2)"'; do
+    refused 14:74 "value of joint 'teeth' has no finite derivative by 'turn' at the design" 'write a formula that is smooth' "$root"
+done
 refused 14:78 "value of joint 'teeth': there is no 'trun'" "did you mean 'turn'?" '2 * trun'
 refused 15:3 "joint 'spare' (coupler) lacks the key 'value'" 'add `value: formula`' '1}
   spare: {type: coupler, bodies: [ground, rack], axis: [0, 1, 0]'
@@ -276,6 +279,15 @@ printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'integrator: rk4' 'outpu
 "$gicrun" -q log.veh log.scene -o log.csv >out 2>said &&
     awk -F, 'NR > 1 { e = (1 + (1 + 1 / (1 + $2)) ^ 2) * $3 ^ 2 / 5 - 1; n += 1; bad += e * e > 1e-20 } END { exit !(n == 11 && !bad) }' log.csv
 verdict $? 'a formula without a value in a part of the range'
+
+# formulas that go far, or have a pole, a jump or a tangent upright, within the range: right where they are near, y = f(x) - f(0)
+for formula in 'exp(20 * x)' 'tan(x)' 'asin(x)' '"atan2(x, 0.5)"' '1 / (x + 1.5)' '(x + 1)^1.5'; do
+    sed "s|log(x + 1)|$formula|" log.veh >far.veh
+    printf 'x,x.rate\n0.1,1\n' >near
+    "$gicgen" far.veh -o far.c >out 2>said && "$gicrun" --eval near far.veh -o eval.csv 2>err && "$gicrun" --engine gic --eval near far.veh -o gic.csv 2>err &&
+        paste -d, eval.csv gic.csv | awk -F, 'NR > 1 { for (i = 1; i <= NF / 2; ++i) { d = $i - $(i + NF / 2); s = $i * $i + 1; if (!(d * d <= 1e-18 * s)) exit 1 } n += 1 } END { exit n != 1 }'
+    verdict $? "a steep formula: $formula"
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
