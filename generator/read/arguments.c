@@ -134,6 +134,7 @@ const Item *arguments_bind(Reader *reader, const Item *file, const Item *with, P
             (Argument){.group = argument_group[type],
                        .name = entry[i].name,
                        .to = name ? value->text : NULL,
+                       .at = value->at,
                        .value = with && doc_find(with, entry[i].name) ? value : NULL};
         Item *key = pool_alloc(pool, sizeof *key), *copy = pool_alloc(pool, sizeof *copy);
         *key = (Item){.kind = ITEM_SCALAR, .text = entry[i].name, .at = value->at};

@@ -147,6 +147,7 @@ const Section *group_section(const char *group);
 typedef struct Argument {
     const char *group, *name; /* of an entry ("points") */
     const char *to;           /* the name of the including file that it stands for; NULL: it is an entry itself */
+    Place at;                 /* of that name */
     const Item *value;        /* of that entry, as the including file has it; NULL: the default */
 } Argument;
 

@@ -348,5 +348,8 @@ Item *name_rewrite(const Rewrite *rewrite, const char *group, Item *item)
         return item;
     Item *other = copy(rewrite, item);
     other->text = renamed(rewrite, group, item->text);
+    const Argument *argument = argument_find(rewrite->arguments, group, item->text);
+    if (argument && argument->to)
+        other->at = argument->at; /* a name that is unknown was written there */
     return other;
 }

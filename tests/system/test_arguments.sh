@@ -104,7 +104,7 @@ refused bad.veh 5:67 "the included file has no argument 'rates'" 'it has: carrie
 refused bad.veh 5:44 "'carrier' is a body of the included file" 'write the name of a body' '{file: parts/axle.veh, with: {carrier: 3, hub: [3, 0, 0], rate: 1}}'
 refused bad.veh 5:56 "'hub' is a point of the included file" 'write [x, y, z], or the name' '{file: parts/axle.veh, with: {carrier: frame, hub: 0.5, rate: 1}}'
 refused bad.veh 5:75 "'rate' is a number of the included file" 'write a number' '{file: parts/axle.veh, with: {carrier: frame, hub: [3, 0, 0.5], rate: [1]}}'
-refused parts/axle.veh 12:37 "bodies of joint 'slide': there is no body 'frume'" "did you mean 'frame'?" '{file: parts/axle.veh, with: {carrier: frume, hub: [3, 0, 0.5], rate: 1}}' bad.veh:5:12
+refused bad.veh 5:44 "bodies of joint 'slide': there is no body 'frume'" "did you mean 'frame'?" '{file: parts/axle.veh, with: {carrier: frume, hub: [3, 0, 0.5], rate: 1}}'
 refused parts/axle.veh 16:62 "stiffness of force 'spring' must not be negative (rate)" 'write zero or a positive number' '{file: parts/axle.veh, with: {carrier: frame, hub: [3, 0, 0.5], rate: -1}}' bad.veh:5:12
 refused bad.veh 5:56 "point 'hub' must have 3 numbers, not 2" 'write [x, y, z]' '{file: parts/axle.veh, with: {carrier: frame, hub: [3, 0], rate: 1}}'
 "$gicgen" parts/axle.veh -o alone.c >out 2>said
