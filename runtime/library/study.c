@@ -217,9 +217,9 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
         report_rest(w, model, scene, request);
     else
         simulate(pool, w->engine, model, scene,
-                 request->page
-                     ? animation_new(pool, model, scene, request->scene, request->other, name_of(request->with))
-                     : NULL,
+                 request->page ? animation_new(pool, model, w->engine, scene, request->scene, request->other,
+                                               name_of(request->with))
+                               : NULL,
                  request);
 }
 

@@ -44,13 +44,15 @@ struct Animation {
     const char *other_name;
     int others;         /* curves that it has, their channels after those of the curves */
     int *column, *mine; /* [others] column of it; index among the scene's curves */
+    Ghost *ghost;       /* its vehicle; NULL: none */
+    int ghosts;         /* index of its first channel: poses, and angles of wheels */
     WheelOutputs *told; /* [wheels] */
     double *spin;       /* [wheels] spins of wheels with tires at the frame before, rad/s */
     double *value;      /* [frames][channels] */
 };
 
-/* The curves that another run has too. */
-static void add_others(Animation *a, const CsvTable *other, const char *other_name)
+/* The curves that another run has too, and its vehicle. */
+static void add_others(Animation *a, const Engine *engine, const CsvTable *other, const char *other_name)
 {
     const size_t room = sizeof(int) * ((size_t)a->scene->curves + 1);
     a->column = pool_alloc(a->pool, room);
@@ -65,9 +67,20 @@ static void add_others(Animation *a, const CsvTable *other, const char *other_na
         a->mine[a->others++] = i;
     }
     a->channels += a->others;
-    if (!a->others || !other->rows)
+    a->ghost = other->rows ? ghost_new(a->pool, a->model, engine, a->scene, other) : NULL;
+    a->ghosts = a->channels;
+    if (a->ghost)
+        a->channels += POSE * a->model->bodies + a->model->wheels;
+    if (!a->ghost && (!a->others || !other->rows))
         diag_fail((Place){other->source, 1, 1}, "give it results of a run with the outputs of the scene's `plot`",
                   "the table has none of the curves of the page");
+    if (!a->ghost)
+        diag_warn((Place){other->source, 1, 1},
+                  a->model->free_base
+                      ? "a second vehicle needs outputs `position` and `roll_pitch_yaw` or `orientation` "
+                        "of the base in these results"
+                      : "a second mechanism needs outputs of coordinates in these results",
+                  "the page shows its curves only");
 }
 
 /* The value of a curve of the other run at a time, straight between its rows. */
@@ -87,8 +100,8 @@ static double other_value(const Animation *a, int i, double time)
     return share < 1 ? p[a->column[i]] + share * (q[a->column[i]] - p[a->column[i]]) : q[a->column[i]];
 }
 
-Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path,
-                         const CsvTable *other, const char *other_name)
+Animation *animation_new(Pool *pool, const Model *model, const Engine *engine, const Scene *scene,
+                         const char *scene_path, const CsvTable *other, const char *other_name)
 {
     Animation *a = pool_alloc(pool, sizeof *a);
     const double most = fmin(fmax(frame_rate * scene->duration, FEWEST), MOST);
@@ -100,7 +113,7 @@ Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, con
     a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
     a->channels = a->curves + scene->curves;
     if (other)
-        add_others(a, other, other_name);
+        add_others(a, engine, other, other_name);
     a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
     for (int w = 0; w < model->wheels; ++w)
         a->told[w] = (WheelOutputs){animate_output(model, OUTPUT_WHEEL, w), animate_output(model, OUTPUT_TIRE, w),
@@ -209,6 +222,18 @@ static void set_wheel(const Animation *a, int w, const double *output, double sp
         force[2] = output[told->wheel];
 }
 
+/* The second vehicle: its wheels roll. */
+static void set_ghost(const Animation *a, double time, double *frame, const double *before)
+{
+    double *pose = frame + a->ghosts, *angle = pose + POSE * a->model->bodies;
+    ghost_poses(a->ghost, time, pose);
+    for (int b = 0; before && b < a->model->bodies; ++b)
+        keep_sign(pose + POSE * b, before + a->ghosts + POSE * b);
+    for (int w = 0; w < a->model->wheels; ++w)
+        angle[w] =
+            before ? before[a->ghosts + POSE * a->model->bodies + w] + rolled(a, w, pose, before + a->ghosts) : 0;
+}
+
 int animation_frame(Animation *a, const gic_model *code, gic_head *self)
 {
     if (a->times++ % a->every)
@@ -228,6 +253,8 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
         frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
     for (int i = 0; i < a->others; ++i)
         frame[a->curves + a->scene->curves + i] = other_value(a, i, gic_time(self));
+    if (a->ghost)
+        set_ghost(a, gic_time(self), frame, before);
     ++a->frames;
     return GIC_OK;
 }
@@ -244,6 +271,10 @@ static double channel_unit(const Animation *a, int c, double length)
 {
     if (c < a->wheels)
         return c % POSE < 3 ? length : 1e-5;
+    if (a->ghost && c >= a->ghosts && c < a->ghosts + a->wheels)
+        return (c - a->ghosts) % POSE < 3 ? length : 1e-5;
+    if (a->ghost && c >= a->ghosts + a->wheels)
+        return 1e-3;
     if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS == 0)
         return 1e-3;
     if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 3)
@@ -311,6 +342,27 @@ static void json_curves(const Animation *a, Text *out)
     text_print(out, "],\n");
 }
 
+/* The second vehicle: null where there is none. */
+static void json_ghost(const Animation *a, Text *out)
+{
+    const char *const *name;
+    text_print(out, "\"ghost\":");
+    if (!a->ghost) {
+        text_print(out, "null,\n");
+        return;
+    }
+    text_print(out, "{");
+    json_key(out, "name", a->other_name);
+    text_print(out, "\"motion\":%d,\"angle\":%d,\"until\":%.9g,\"untold\":[", a->ghosts, a->ghosts + a->wheels,
+               ghost_end(a->ghost));
+    const int untold = ghost_untold(a->ghost, &name);
+    for (int i = 0; i < untold; ++i) {
+        text_print(out, i ? "," : "");
+        json_text(out, name[i]);
+    }
+    text_print(out, "]},\n");
+}
+
 /* ---- the page ---------------------------------------------------------------------------------------------------- */
 
 /* Size of the vehicle at the start, or of all moving bodies on a fixed base; and the lowest height of any point at any
@@ -331,11 +383,15 @@ static double extent(const Animation *a, double *lowest)
     return shapes_size(a->model, low, high);
 }
 
-/* The path of the base over the frames, along which the road is drawn; of a fixed base the middle of the other bodies.
- */
-static double *way_of(const Animation *a)
+/* The path of the base over the frames, along which the road is drawn, then that of the second vehicle; of a fixed base
+ * the middle of the other bodies. */
+static double *way_of(const Animation *a, int *count)
 {
-    double *way = pool_alloc(a->pool, (size_t)a->frames * 2 * sizeof *way);
+    const bool two = a->ghost && a->model->free_base;
+    double *way = pool_alloc(a->pool, (size_t)a->frames * 4 * sizeof *way);
+    *count = two ? 2 * a->frames : a->frames;
+    for (int k = 0; k < a->frames && two; ++k)
+        memcpy(way + 2 * (a->frames + k), a->value + (size_t)k * (size_t)a->channels + a->ghosts, 2 * sizeof *way);
     for (int k = 0; k < a->frames; ++k)
         for (int i = 0; i < 2; ++i) {
             const double *frame = a->value + (size_t)k * (size_t)a->channels;
@@ -366,16 +422,15 @@ static void json_run(const Animation *a, Text *out)
     json_lines(out, &a->shapes);
     json_wheels(a, out);
     json_curves(a, out);
+    json_ghost(a, out);
     json_course(out, a->scene);
     text_print(out, ",\n");
     text_print(out, "\"road\":");
+    int places;
+    const double *way = way_of(a, &places);
     const gic_road_plane below = {.head = {.height = gic_plane_height}, .z0 = lowest - 0.05 * size};
     const gic_road_plane level = {.head = {.height = gic_plane_height}};
-    road_tiles(out,
-               !a->model->wheels ? &below.head
-               : a->scene->road  ? a->scene->road
-                                 : &level.head,
-               size, way_of(a), a->frames);
+    road_tiles(out, !a->model->wheels ? &below.head : a->scene->road ? a->scene->road : &level.head, size, way, places);
     text_print(out, ",\n\"channels\":[");
     for (int c = 0; c < a->channels; ++c) {
         text_print(out, c ? ",\n" : "\n");

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "emit/emit.h"
+#include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/scene.h"
@@ -92,6 +93,21 @@ void json_wheel(Text *out, const Model *model, const Shapes *shapes, int w, int 
 
 /* JSON: cones, edges of lanes and the driver's path of a scene. */
 void json_course(Text *out, const Scene *scene);
+
+/* ---- animate_ghost.c: another run as a second vehicle ------------------------------------------------------------ */
+
+typedef struct Ghost Ghost;
+
+/* Of a table with at least one row; NULL: it does not tell where the base is, or on a fixed base none of the
+ * coordinates. */
+Ghost *ghost_new(Pool *pool, const Model *model, const Engine *engine, const Scene *scene,
+                 const struct CsvTable *table);
+/* Poses [bodies][7] at a time; after the table's end those at its end. */
+void ghost_poses(Ghost *ghost, double time, double *pose);
+/* The time of the last row, s. */
+double ghost_end(const Ghost *ghost);
+/* How many coordinates are not told, and their names. */
+int ghost_untold(const Ghost *ghost, const char *const **name);
 
 /* ---- animate_road.c: the road along a way ------------------------------------------------------------------------ */
 

@@ -54,10 +54,10 @@ typedef struct Request {
 
 typedef struct Animation Animation;
 
-/* Before a run of a scene, whose name the page shows; other: results of another run, whose curves it shows too, and
- * their name; NULL: none. */
-Animation *animation_new(Pool *pool, const Model *model, const Scene *scene, const char *scene_path,
-                         const struct CsvTable *other, const char *other_name);
+/* Before a run of a scene, whose name the page shows; other: results of another run, which it shows too as curves and
+ * as a second vehicle, and their name; NULL: none. */
+Animation *animation_new(Pool *pool, const Model *model, const Engine *engine, const Scene *scene,
+                         const char *scene_path, const struct CsvTable *other, const char *other_name);
 /* At each output time, after outputs are computed: record a frame if one is due. Returns a status. */
 int animation_frame(Animation *animation, const gic_model *code, gic_head *self);
 /* The page; exits with a message when it can't be written. */

@@ -35,6 +35,24 @@ run "$model" "$scene" --animate "$work/none.html" --with "$work/nothing.csv"
 check 'another run without them' exits 1
 check 'another run without them: why' says 'none of the curves of the page'
 
+# a second vehicle, whose results end earlier; what they do not tell; and who needs more
+later=$root/models/scenes/lane_change.scene
+sed 's/target: 10/target: 9/; s/^duration: 10/duration: 8/; s/preview: 0.55/preview: 0.8/' "$later" >"$work/later.scene"
+run -q "$root/models/hmmwv_vehicle.veh" "$work/later.scene" -o "$work/later.csv"
+run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/two.html" --with "$work/later.csv"
+check 'a page of two vehicles' exits 0
+check 'the second vehicle is where its results put it' page ghost "$work/two.html" "$work/later.csv"
+run -q --engine gcp1 "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/gcp_two.html" --with "$work/later.csv"
+check 'it is with another engine' page ghost "$work/gcp_two.html" "$work/later.csv"
+sed '1s/spring_f_l.value/spring.value/' "$work/later.csv" >"$work/less.csv"
+run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/less.html" --with "$work/less.csv"
+check 'what is not told is as at the start' grep -q '"untold":\["spring_f_l"\]' "$work/less.html"
+sed '1s/chassis\.z/body.z/' "$work/later.csv" >"$work/nowhere.csv"
+run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/curves.html" --with "$work/nowhere.csv"
+check 'results that do not tell where the base is' exits 0
+check 'results that do not tell where the base is: why' says 'a second vehicle needs outputs'
+check 'results that do not tell where the base is: no vehicle' grep -q '"ghost":null' "$work/curves.html"
+
 # to rounding, twice a unit, for the last digit may fall either way; partitioned coordinates are integrated themselves,
 # with errors of their own: more
 for engine in cc tape gic gcp1 gcp2; do
@@ -163,7 +181,7 @@ check 'edges of a lane that turns' page bend "$work/bend.html"
 
 run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
 timeout 600 /usr/bin/python3 -B "$root/tests/data/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
-    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" "$work/beside.html" >"$work/notes" 2>"$work/err"
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" "$work/beside.html" "$work/two.html" >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]

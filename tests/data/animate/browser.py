@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html: opens pages of `gicrun --animate` in chromium, uses
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html TWO.html: opens pages of `gicrun --animate` in chromium, uses
 # them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
@@ -189,6 +189,23 @@ def course(browser, path):
     note('lanes are seen', white > 100, '%d white pixels more than before' % white)
 
 
+def second(browser, path):
+    """The second vehicle is seen, goes by its key, and is hidden where both are one."""
+    def purple(rows):
+        return sum(1 for row in rows[:TALL // 2] for r, g, b in row if r > g + 25 and b > g + 10)
+    browser.open(path, 't=5&toggle=body,curves,forces')
+    two = purple(read_png(browser.picture()))
+    note('the second vehicle is seen', two > 500, '%d pixels' % two)
+    note('and how far away it is', 'later.csv' in browser.text('facts') and ' m away' in browser.text('facts'),
+         browser.text('facts'))
+    browser.press('g', 'g')
+    browser.wait('!state.changed', 5)
+    gone = purple(read_png(browser.picture()))
+    note('G hides it', gone < two / 2 and 'later.csv' not in browser.text('facts'), '%d pixels' % gone)
+    browser.open(path, 't=10')
+    note('its results have ended', 'ended' in browser.text('facts'), browser.text('facts'))
+
+
 def save(browser, path, profile):
     """Picture and video arrive as files of their kind; the loop begins again."""
     folder = profile + '/saved'
@@ -228,7 +245,7 @@ def save(browser, path, profile):
 
 
 def main():
-    profile, run, results, spin, spin_results, odd, lanes, beside = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd, lanes, beside, two = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
     compare(browser, spin, spin_results)
@@ -236,6 +253,7 @@ def main():
     narrow(browser, lanes)
     course(browser, lanes)
     save(browser, lanes, profile)
+    second(browser, two)
     browser.open(beside, 't=2')
     pairs = browser.ask('panels.flatMap((p) => p.curves.filter((c) => c.until).map((c) => '
                         'p.curves.some((d) => !d.until && d.ink === c.ink && c.name.startsWith(d.name))))')

@@ -315,12 +315,41 @@ def check_other(page, other):
                   0.51 * run['channels'][curve['values']]['unit'])
 
 
+def check_ghost(page, other):
+    """The second vehicle: wheels where the other results put them, by outputs that the page does not read; rounding of
+    poses as in check_motion. Its wheels roll. After the end of the results it stays."""
+    run, rows = read_run(page), read_csv(other)
+    ghost, names = run['ghost'], [body['name'] for body in run['bodies']]
+    if ghost['name'] != other.split('/')[-1] or ghost['untold']:
+        sys.exit('%s, without %s' % (ghost['name'], ghost['untold']))
+    close('the end', ghost['until'], rows['time'][-1], 1e-9)
+    own = run['channel']
+    run['channel'] = own[ghost['motion']:]  # poses of the second vehicle in place of those of the first
+    apart, at = 0, {round(time, 9): k for k, time in enumerate(rows['time'])}
+    for i in range(run['frames']):
+        k = at.get(round(min(i * run['frame_step'], rows['time'][-1]), 9))
+        if k is None:
+            continue
+        for w, wheel in enumerate(run['wheels']):
+            place = wheel['name'].replace('tire', 'wheel')
+            centre = point(run, names.index(place), wheel['center'], i)
+            for c, axis in enumerate('xyz'):
+                close('%s of the second vehicle at frame %d' % (place, i), centre[c], rows['%s.%s' % (place, axis)][k], 2e-4)
+            way = rows[place + '.x'][k] - rows[place + '.x'][0]
+            close('angle of ' + place, own[ghost['angle'] + w][i], way / wheel['radius'], 2e-3 + 2e-2 * way / wheel['radius'])
+        apart = max(apart, abs(own[0][i] - run['channel'][0][i]))
+    if not apart > 0.5:
+        sys.exit('both vehicles are the same')
+
+
 def main():
     check, *words = sys.argv[1:]
     if check == 'motion':
         check_motion(*words)
     elif check == 'other':
         check_other(*words)
+    elif check == 'ghost':
+        check_ghost(*words)
     elif check == 'tires':
         check_tires(words[0], words[1], *map(float, words[2:]))
     elif check == 'friction':
