@@ -33,6 +33,8 @@ typedef struct gic_batch_model {
     /* Numbers in place: block v / lanes, of `block_size` bytes, has the head of vehicle v at v % lanes *
      * sizeof(gic_head), and number i of an array at its offset + (i * lanes + v % lanes) * sizeof(gic_real). */
     size_t block_size, state_offset, rate_offset, input_offset, output_offset, parameter_offset, port_offset;
+    /* As gic_step_steady; NULL: there are no fast states. */
+    int32_t (*step_dual)(void *self, gic_real step, int32_t ratio, gic_real steady, int32_t count);
 } gic_batch_model;
 
 #ifdef __cplusplus

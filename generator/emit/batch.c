@@ -2,6 +2,7 @@
  * Code for many vehicles at once: the same blocks as for one, each number a vector with one vehicle a lane. */
 #include "base/text.h"
 #include "base/version.h"
+#include "emit/batch_private.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"
@@ -27,6 +28,12 @@ static void write_vector(BatchGeneration *b, Text *out, int indent, const char *
     line(out, indent, "return all;");
 }
 
+/* Do the vehicles have fast states? Then elementary functions are vectors', and rare steps are made one by one. */
+static bool is_fast(const BatchGeneration *b)
+{
+    return b->g.formulation->wheels;
+}
+
 static void write_spread(void *context, Text *out, int indent)
 {
     write_vector(context, out, indent, "gic_lane");
@@ -37,9 +44,29 @@ static void write_spread_whole(void *context, Text *out, int indent)
     write_vector(context, out, indent, "gic_mask");
 }
 
-static const Insertion lanes_point[] = {{"spread", write_spread}, {"spread whole", write_spread_whole}, {NULL, NULL}};
+static void write_width(void *context, Text *out, int indent)
+{
+    const BatchGeneration *b = context;
+    line(out, indent, "#define GIC_LANES %d", b->batch->lanes);
+}
 
-static const Insertions lanes_points = {(const char *const[]){"batch_lanes.c.in", NULL}, lanes_point, NULL};
+static void write_more_lanes(void *context, Text *out, int indent);
+
+static const Insertion lanes_point[] = {{"spread", write_spread},
+                                        {"spread whole", write_spread_whole},
+                                        {"width", write_width},
+                                        {"more", write_more_lanes},
+                                        {NULL, NULL}};
+
+static const Insertions lanes_points = {
+    (const char *const[]){"batch_lanes.c.in", "batch_vectors.c.in", "batch_more_lanes.c.in", NULL}, lanes_point, NULL};
+
+static void write_more_lanes(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    (void)indent;
+    template_expand(b->g.pool, out, b->g.templates, "batch_more_lanes.c.in", b->g.model->name, NULL, &lanes_points, b);
+}
 
 static void write_kept(void *context, Text *out, int indent)
 {
@@ -136,6 +163,8 @@ static void write_exchange(const Generation *g, Text *out, int indent, bool load
         line(out, indent + 4, "block->discrete[i][l] = one->discrete[i];");
     else
         line(out, indent + 4, "one->discrete[i] = (int32_t)block->discrete[i][l];");
+    if (g->formulation->wheels)
+        write_batch_fast_exchange(g, out, indent, load);
 }
 
 /* True if a geometric parameter has changed since set-up. */
@@ -181,7 +210,8 @@ static void write_lanes(void *context, Text *out, int indent)
 {
     BatchGeneration *b = context;
     (void)indent;
-    template_expand(b->g.pool, out, b->g.templates, "batch_lanes.c.in", b->g.model->name, NULL, &lanes_points, b);
+    template_expand(b->g.pool, out, b->g.templates, is_fast(b) ? "batch_vectors.c.in" : "batch_lanes.c.in",
+                    b->g.model->name, NULL, &lanes_points, b);
 }
 
 static void write_links(void *context, Text *out, int indent)
@@ -218,11 +248,75 @@ static void write_integrate(void *context, Text *out, int indent)
     write_template(context, out, "batch_integrate.c.in");
 }
 
-static void write_about(void *context, Text *out, int indent)
+static void write_work(void *context, Text *out, int indent)
 {
     BatchGeneration *b = context;
     (void)indent;
-    if (block_is_about(b->g.formulation->dynamics))
+    if (!is_fast(b)) /* else the header has it */
+        write_template(b, out, "batch_work.c.in");
+}
+
+static void write_fast(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    (void)indent;
+    if (is_fast(b))
+        write_batch_fast(&b->g, out);
+}
+
+static void write_recover(void *context, Text *out, int indent)
+{
+    const BatchGeneration *b = context;
+    line(out, indent, "%s_recover%s(self, work, turn);", b->g.model->name, is_fast(b) ? "_once" : "");
+}
+
+static void write_turn_wheels(void *context, Text *out, int indent)
+{
+    const BatchGeneration *b = context;
+    if (is_fast(b))
+        line(out, indent, "%s_turn_fast(self, work, y, e, rate + %s_SLOW);", b->g.model->name, b->g.upper);
+}
+
+static void write_steps(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    (void)indent;
+    write_template(b, out, is_fast(b) ? "batch_fast_steps.c.in" : "batch_steps.c.in");
+}
+
+static void write_shift_lanes(void *context, Text *out, int indent)
+{
+    const BatchGeneration *b = context;
+    if (!b->g.model->powertrain)
+        return;
+    line(out, indent, "if (lane_any(good))");
+    line(out, indent + 4, "good &= ~%s_shifts(self, work);", b->g.model->name);
+}
+
+static void write_runs(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    (void)indent;
+    write_template(b, out, is_fast(b) ? "batch_fast_runs.c.in" : "batch_runs.c.in");
+}
+
+static void write_dual(void *context, Text *out, int indent)
+{
+    const BatchGeneration *b = context;
+    if (is_fast(b))
+        line(out, indent, "%s_any_step_dual,", b->g.model->name);
+    else
+        line(out, indent, "NULL, /* there are no fast states */");
+}
+
+static void write_about(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    if (!block_is_about(b->g.formulation->dynamics))
+        return;
+    if (is_fast(b)) /* the code for one vehicle finds out what it is about */
+        line(out, indent, "#define ABOUT(i) (-1000 - (i))\n");
+    else
         write_template(b, out, "batch_about.c.in");
 }
 
@@ -265,6 +359,14 @@ static const Insertion batch_point[] = {{"banner", write_batch_banner},
                                         {"unwind", write_unwind},
                                         {"base", write_base},
                                         {"road", write_road_lookup},
+                                        {"work", write_work},
+                                        {"fast", write_fast},
+                                        {"recover", write_recover},
+                                        {"turn wheels", write_turn_wheels},
+                                        {"steps", write_steps},
+                                        {"shift", write_shift_lanes},
+                                        {"runs", write_runs},
+                                        {"dual", write_dual},
                                         {"integrate", write_integrate},
                                         {"about", write_about},
                                         {"abouts", write_abouts},
@@ -277,7 +379,8 @@ static const Insertion batch_point[] = {{"banner", write_batch_banner},
 
 static const Insertions batch_points = {(const char *const[]){"batch.c.in", "batch_integrate.c.in", "batch_free.c.in",
                                                               "batch_fixed.c.in", "batch_road.c.in", "batch_about.c.in",
-                                                              NULL},
+                                                              "batch_work.c.in", "batch_steps.c.in", "batch_runs.c.in",
+                                                              "batch_fast_steps.c.in", "batch_fast_runs.c.in", NULL},
                                         batch_point, &code_points};
 
 static void write_derived(void *context, Text *out, int indent)
@@ -302,22 +405,57 @@ static void write_sizes(void *context, Text *out, int indent)
     line(out, indent, "%s_BLOCKS = %d", b->g.upper, (batch->vehicles + batch->lanes - 1) / batch->lanes);
 }
 
-static const Insertion header_point[] = {{"banner", write_batch_banner}, {"guard", write_guard},
-                                         {"include", write_include},     {"sizes", write_sizes},
-                                         {"derived", write_derived},     {NULL, NULL}};
+static void write_work_type(void *context, Text *out, int indent);
+static void write_dual_step(void *context, Text *out, int indent);
 
-static const Insertions header_points = {(const char *const[]){"batch.h.in", NULL}, header_point, NULL};
+static void write_fast_members(void *context, Text *out, int indent)
+{
+    BatchGeneration *b = context;
+    if (is_fast(b))
+        write_batch_fast_members(&b->g, out, indent);
+}
+
+static const Insertion header_point[] = {{"banner", write_batch_banner},
+                                         {"guard", write_guard},
+                                         {"include", write_include},
+                                         {"sizes", write_sizes},
+                                         {"derived", write_derived},
+                                         {"work", write_work_type},
+                                         {"fast", write_fast_members},
+                                         {"dual", write_dual_step},
+                                         {NULL, NULL}};
+
+static const Insertions header_points = {
+    (const char *const[]){"batch.h.in", "batch_fast.h.in", "batch_dual.h.in", NULL}, header_point, NULL};
+
+static void write_fast_template(BatchGeneration *b, Text *out, const char *name)
+{
+    if (is_fast(b))
+        template_expand(b->g.pool, out, b->g.templates, name, b->g.model->name, NULL, &header_points, b);
+}
+
+static void write_work_type(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_fast_template(context, out, "batch_fast.h.in");
+}
+
+static void write_dual_step(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_fast_template(context, out, "batch_dual.h.in");
+}
 
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {&batch_points, &class_points, &lanes_points, &header_points, NULL};
+    const Insertions *const points[] = {
+        &batch_points,      &class_points,       &lanes_points,       &header_points,
+        &batch_fast_points, &batch_wheel_points, &batch_drive_points, NULL};
     templates_check(pool, templates, points);
 }
 
 const char *batch_missing(const Formulation *formulation)
 {
-    if (formulation->wheels)
-        return formulation->wheels->count > 0 ? "wheels with tires" : "states of its own";
     if (formulation_reacts(formulation))
         return "outputs of reactions, which the reduced form finds afterwards";
     return NULL;

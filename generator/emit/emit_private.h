@@ -233,6 +233,11 @@ void write_drive(void *context, Text *out, int indent);       /* their call afte
 void write_shift(Generation *g, Text *out);                   /* functions for the descriptor */
 void write_start_gears(void *context, Text *out, int indent); /* discrete states at set-up */
 void write_powertrain_sizes(Generation *g, Text *out, int indent);
+/* Lines of its functions: ratios of the gears, duration and latency of a change, statements. */
+void write_ratios(void *context, Text *out, int indent);
+void write_shift_times(void *context, Text *out, int indent);
+void write_drive_lines(void *context, Text *out, int indent);
+void write_shift_lines(void *context, Text *out, int indent);
 void write_powertrain_members(Generation *g, Text *out, int indent); /* of the instance */
 
 #endif

@@ -7,7 +7,7 @@
 #include "model/powertrain_numbers.h"
 #include "vehicle/vehicle.h"
 
-static void write_ratios(void *context, Text *out, int indent)
+void write_ratios(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     const Powertrain *powertrain = g->model->powertrain;
@@ -15,7 +15,7 @@ static void write_ratios(void *context, Text *out, int indent)
         line(out, indent, "%s, /* %d */", emit_number(g->pool, powertrain->gear[powertrain->reverse + gear]), gear);
 }
 
-static void write_times(void *context, Text *out, int indent)
+void write_shift_times(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     const Powertrain *powertrain = g->model->powertrain;
@@ -30,23 +30,23 @@ static void write_unused(void *context, Text *out, int indent)
         line(out, indent, "(void)grip, (void)watch, (void)fast, (void)rate;");
 }
 
-static void write_drive_block(void *context, Text *out, int indent)
+void write_drive_lines(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     Constants none = {0};
     write_fast_block(g, out, &g->formulation->wheels->drive, SCOPE_FAST, &none, indent);
 }
 
-static void write_shift_block(void *context, Text *out, int indent)
+void write_shift_lines(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     Constants none = {0};
     write_fast_block(g, out, &g->formulation->wheels->shift, SCOPE_FAST, &none, indent);
 }
 
-static const Insertion powertrain_point[] = {{"ratios", write_ratios},           {"times", write_times},
-                                             {"unused", write_unused},           {"drive block", write_drive_block},
-                                             {"shift block", write_shift_block}, {NULL, NULL}};
+static const Insertion powertrain_point[] = {{"ratios", write_ratios},           {"times", write_shift_times},
+                                             {"unused", write_unused},           {"drive block", write_drive_lines},
+                                             {"shift block", write_shift_lines}, {NULL, NULL}};
 
 const Insertions powertrain_points = {(const char *const[]){"powertrain.c.in", "shift.c.in", NULL}, powertrain_point,
                                       NULL};

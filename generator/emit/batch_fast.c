@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ * Fast states of many vehicles at once: wheels with tires, powertrain and own states, with one vehicle a lane. */
+#include "base/text.h"
+#include "emit/batch_private.h"
+#include "emit/emit.h"
+#include "emit/emit_private.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "model/powertrain_numbers.h"
+#include "vehicle/vehicle.h"
+#include "vehicle/wheel.h"
+
+/* ---- one function a class of wheels ------------------------------------------------------------------------------ */
+
+typedef struct Expansion {
+    Generation *g;
+    const WheelClass *class;
+    Constants constants;
+} Expansion;
+
+static void write_comment(void *context, Text *out, int indent)
+{
+    const Expansion *x = context;
+    (void)indent;
+    write_wheel_comment(x->g, out, x->class);
+}
+
+static void write_wheel_arrays(void *context, Text *out, int indent)
+{
+    (void)context;
+    line(out, indent, "gic_lane force[%d]; /* Fx Fy Mx My Mz */", TIRE_FORCES);
+    write_contact_array(out, indent, "gic_lane");
+}
+
+static void write_alone(void *context, Text *out, int indent)
+{
+    (void)context;
+    line(out, indent, "for (i = 0; i < %d; ++i)", TIRE_FORCES);
+    line(out, indent + 4, "force[i] = LANE_WHERE(loaded, force[i]);");
+}
+
+static void write_contact(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_fast_block(x->g, out, &x->class->contact, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static void write_tire(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_fast_block(x->g, out, &x->class->tire, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static void write_balance(void *context, Text *out, int indent)
+{
+    Expansion *x = context;
+    write_fast_block(x->g, out, &x->class->balance, SCOPE_WHEEL, &x->constants, indent);
+}
+
+static const Insertion wheel_point[] = {{"comment", write_comment},
+                                        {"arrays", write_wheel_arrays},
+                                        {"contact", write_contact},
+                                        {"tire", write_tire},
+                                        {"alone", write_alone},
+                                        {"balance", write_balance},
+                                        {NULL, NULL}};
+
+const Insertions batch_wheel_points = {(const char *const[]){"batch_wheel.c.in", NULL}, wheel_point, NULL};
+
+static void write_wheel_classes(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    const Wheels *wheels = g->formulation->wheels;
+    for (int c = 0; c < wheels->classes; ++c) {
+        const WheelClass *class = &wheels->class[c];
+        Expansion x = {.g = g, .class = class};
+        Text body = {.pool = g->pool};
+        const char *member[class->members];
+        for (int i = 0; i < class->members; ++i)
+            member[i] = g->model->wheel[class->member[i]].name;
+        template_expand(g->pool, &body, g->templates, "batch_wheel.c.in", g->model->name, class->name,
+                        &batch_wheel_points, &x);
+        write_constants(g, out, pool_print(g->pool, "k_wheel_%s", class->name), class->contact.dag, &x.constants,
+                        member); /* known now that all blocks are text */
+        text_add(out, body.s, body.size);
+    }
+}
+
+static void write_wheel_calls(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const Wheels *wheels = g->formulation->wheels;
+    const char *name = g->model->name;
+    for (int c = 0; c < wheels->classes; ++c) {
+        const WheelClass *class = &wheels->class[c];
+        for (int i = 0; i < class->members; ++i) {
+            const int wheel = class->member[i], place = wheel_rolling(g->model, wheel);
+            const char *fast = wheel_place_text(g, "FAST", wheel, g->model->wheel[wheel].fast);
+            line(out, indent,
+                 "%s_wheel_%s(self, work, %s_k_wheel_%s[%d], link + %s, fast + %s, torque + %s, rate + %s, grip + %s);",
+                 name, class->name, name, class->name, i, wheel_place_text(g, "LINK", wheel, LINK_NUMBERS * place),
+                 fast, wheel_place_text(g, "TORQUE", wheel, 2 * place), fast,
+                 wheel_place_text(g, "GRIP", wheel, GRIP_NUMBERS * place));
+        }
+    }
+}
+
+/* ---- powertrain -------------------------------------------------------------------------------------------------- */
+
+static const Insertion drive_point[] = {{"ratios", write_ratios},
+                                        {"times", write_shift_times},
+                                        {"drive block", write_drive_lines},
+                                        {"shift block", write_shift_lines},
+                                        {NULL, NULL}};
+
+const Insertions batch_drive_points = {(const char *const[]){"batch_drive.c.in", NULL}, drive_point, NULL};
+
+static void write_batch_powertrain(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->model->powertrain)
+        template_expand(g->pool, out, g->templates, "batch_drive.c.in", g->model->name, NULL, &batch_drive_points, g);
+}
+
+static void write_batch_drive(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->model->powertrain)
+        line(out, indent, "%s_drive(self, work, link, fast, rate);", g->model->name);
+}
+
+/* ---- all fast states --------------------------------------------------------------------------------------------- */
+
+static void write_friction(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (wheels_roll(g))
+        template_expand(g->pool, out, g->templates, "batch_friction.c.in", g->model->name, NULL, &batch_fast_points,
+                        g);
+}
+
+static void write_arrays(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (wheels_roll(g))
+        line(out, indent, "gic_lane *const grip = self->grip, torque[2 * %s_ROLLING];", g->upper);
+    else
+        line(out, indent, "(void)fast;");
+}
+
+static void write_link(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    Constants none = {0};
+    write_fast_block(g, out, &g->formulation->wheels->link, SCOPE_FAST, &none, indent);
+}
+
+static void write_torque(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    Constants none = {0};
+    write_fast_block(g, out, &g->formulation->wheels->torque, SCOPE_FAST, &none, indent);
+}
+
+static const Insertion fast_point[] = {{"friction", write_friction},
+                                       {"wheel classes", write_wheel_classes},
+                                       {"link", write_link},
+                                       {"powertrain", write_batch_powertrain},
+                                       {"arrays", write_arrays},
+                                       {"torque", write_torque},
+                                       {"wheel calls", write_wheel_calls},
+                                       {"drive", write_batch_drive},
+                                       {NULL, NULL}};
+
+const Insertions batch_fast_points = {(const char *const[]){"batch_fast.c.in", "batch_friction.c.in", NULL}, fast_point,
+                                      NULL};
+
+void write_batch_fast(Generation *g, Text *out)
+{
+    template_expand(g->pool, out, g->templates, "batch_fast.c.in", g->model->name, NULL, &batch_fast_points, g);
+}
+
+void write_batch_fast_members(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const char *name = g->model->name, *upper = g->upper;
+    line(out, indent, "%s_lane mean[%s_STATES - %s_SLOW]; /* of the rates of the fast states, of steady steps */", name,
+         upper, upper);
+    line(out, indent, "%s_lane link[3 * %s_LINKS]; /* what moves the fast states, at the last three slow steps */",
+         name, upper);
+    if (wheels_roll(g))
+        line(out, indent, "%s_lane grip[%s_GRIP * %s_ROLLING]; /* what the wheels do */", name, upper, upper);
+    if (g->model->powertrain)
+        line(out, indent, "%s_lane watch[%d]; /* of the powertrain */", name, WATCH_NUMBERS);
+    if (g->formulation->contacts)
+        line(out, indent, "%s_lane touch[2 * %s_CONTACTS]; /* how near contacts were */", name, upper);
+    line(out, indent, "%s_lane recovered_at[2 * %s_COORDINATE_ROOM + 4]; /* where the recovery in `work` was */", name,
+         upper);
+    line(out, indent, "%s_mask recovered; /* lanes in which there is one */", name);
+    line(out, indent, "%s_work work;", name);
+}
+
+/* An array of a block and of one vehicle, and how many numbers it has. */
+typedef struct Exchange {
+    bool used;
+    const char *block, *one, *factor, *size;
+} Exchange;
+
+void write_batch_fast_exchange(const Generation *g, Text *out, int indent, bool load)
+{
+    const char *upper = g->upper;
+    const Exchange array[] = {{true, "link", "link", "3 * ", "_LINKS"},
+                              {wheels_roll(g), "grip", "grip", "", pool_print(g->pool, "_GRIP * %s_ROLLING", upper)},
+                              {g->formulation->contacts, "touch", "touch", "2 * ", "_CONTACTS"},
+                              {true, "recovered_at", "recovered_at", "4 + 2 * ", "_COORDINATE_ROOM"},
+                              {true, "work.x", "x", "", "_COORDINATES"},
+                              {true, "work.xd", "xd", "", "_COORDINATES"},
+                              {true, "work.motion", "motion", "", "_MOTION_ROOM"},
+                              {true, "work.inertia", "inertia", "", "_INERTIA_ROOM"},
+                              {true, "work.multiplier", "multiplier", "", "_MULTIPLIER_ROOM"}};
+    line(out, indent, "for (i = 0; i < %s_STATES - %s_SLOW; ++i)", upper, upper);
+    if (load)
+        line(out, indent + 4, "block->mean[i][l] = one->history[2 * %s_STATES + i];", upper);
+    else
+        line(out, indent + 4, "one->history[2 * %s_STATES + i] = block->mean[i][l];", upper);
+    if (g->model->powertrain) {
+        line(out, indent, "for (i = 0; i < %d; ++i)", WATCH_NUMBERS);
+        line(out, indent + 4, load ? "block->watch[i][l] = one->watch[i];" : "one->watch[i] = block->watch[i][l];");
+    }
+    for (size_t a = 0; a < sizeof array / sizeof *array; ++a) {
+        if (!array[a].used)
+            continue;
+        line(out, indent, "for (i = 0; i < %s%s%s; ++i)", array[a].factor, upper, array[a].size);
+        if (load)
+            line(out, indent + 4, "block->%s[i][l] = one->%s[i];", array[a].block, array[a].one);
+        else
+            line(out, indent + 4, "one->%s[i] = block->%s[i][l];", array[a].one, array[a].block);
+    }
+    if (load)
+        line(out, indent, "block->recovered[l] = -(one->recovered == 1 + one->head.flip);");
+    else
+        line(out, indent, "one->recovered = block->recovered[l] != 0;");
+}
