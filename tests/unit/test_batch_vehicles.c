@@ -143,8 +143,110 @@ static void test_bits(void **state)
     assert_true(shifts > 2);
 }
 
+/* Lanes that fail in different ways, at once or on the way, have the status of one vehicle and disturb no other. */
+static void test_failures(void **state)
+{
+    static const Way dual = {0.006, GIC_AB3, 6, 0};
+    static hmmwv_vehicle car[N];
+    static hmmwv_vehicle_batch batch;
+    (void)state;
+    assert_int_equal(hmmwv_vehicle_batch_setup(&batch), GIC_OK);
+    for (int32_t i = 0; i < N; ++i) {
+        begin(&car[i], i);
+        steps(&car[i], &dual, 5);
+    }
+    car[1].state[HMMWV_VEHICLE_STATE_V_Y] = NAN;
+    car[2].state[HMMWV_VEHICLE_STATE_SPRING_F_L] += 0.5;
+    car[3].head.road = &broken.head;
+    car[4].discrete[HMMWV_VEHICLE_GEAR] = 99;
+    car[5].state[HMMWV_VEHICLE_STATE_E0] = 2;
+    car[6].state[HMMWV_VEHICLE_SLOW + HMMWV_VEHICLE_ENGINE] = 2e9;
+    for (int32_t i = 0; i < N; ++i)
+        hmmwv_vehicle_batch_load(&batch, i, &car[i]);
+    assert_int_equal(batch_steps(&batch, &dual, 300), 2);
+    for (int32_t i = 0; i < N; ++i) {
+        steps(&car[i], &dual, 300);
+        assert_same(&batch, i, &car[i]);
+        assert_int_equal(hmmwv_vehicle_batch_status(&batch, i), car[i].head.status);
+    }
+    assert_int_equal(car[1].head.status, GIC_ERROR_INPUT);
+    assert_true(car[2].head.status < 0);
+    assert_int_equal(car[3].head.status, GIC_ERROR_ROAD);
+    assert_true(gic_time(&car[3]) > 0.1);
+    assert_int_equal(car[4].head.status, GIC_ERROR_INPUT);
+    assert_int_equal(car[5].head.status, GIC_ERROR_ORIENTATION);
+    assert_int_equal(car[6].head.status, GIC_ERROR_INPUT);
+}
+
+/* A place that is used again, by a vehicle that another one's failure has left it. */
+static void test_refill(void **state)
+{
+    static const Way dual = {0.006, GIC_AB3, 6, 0};
+    static hmmwv_vehicle car[2];
+    static hmmwv_vehicle_batch batch;
+    (void)state;
+    assert_int_equal(hmmwv_vehicle_batch_setup(&batch), GIC_OK);
+    assert_int_equal(batch_steps(&batch, &dual, 1), 0);
+    begin(&car[0], 1);
+    begin(&car[1], 3);
+    hmmwv_vehicle_batch_load(&batch, 0, &car[0]);
+    car[1].head.road = &broken.head;
+    hmmwv_vehicle_batch_load(&batch, 1, &car[1]);
+    assert_int_equal(batch_steps(&batch, &dual, 200), 1);
+    assert_int_equal(hmmwv_vehicle_batch_status(&batch, 1), GIC_ERROR_ROAD);
+    assert_int_equal(hmmwv_vehicle_batch_status(&batch, 2), GIC_BATCH_EMPTY);
+    begin(&car[1], 2);
+    hmmwv_vehicle_batch_load(&batch, 1, &car[1]);
+    assert_int_equal(batch_steps(&batch, &dual, 100), 2);
+    steps(&car[0], &dual, 300);
+    steps(&car[1], &dual, 100);
+    for (int32_t i = 0; i < 2; ++i)
+        assert_same(&batch, i, &car[i]);
+    /* orders that can't be: each vehicle's status says so */
+    assert_int_equal(hmmwv_vehicle_batch_step_dual(&batch, 0.006, 0, 0, 1), 0);
+    assert_int_equal(hmmwv_vehicle_batch_status(&batch, 1), GIC_ERROR_ARGUMENT);
+    assert_int_equal(hmmwv_vehicle_batch_status(&batch, 2), GIC_BATCH_EMPTY);
+}
+
+/* Where wheels lose the road within a step, that step ends there and goes on; driven coordinates that the caller moves
+ * between steps. */
+static void test_events(void **state)
+{
+    static const Way dual = {0.006, GIC_AB3, 6, 0};
+    static hmmwv_vehicle car[N];
+    static hmmwv_vehicle_batch batch;
+    gic_real *input;
+    int64_t contacts = 0;
+    (void)state;
+    assert_int_equal(hmmwv_vehicle_batch_setup(&batch), GIC_OK);
+    for (int32_t i = 0; i < N; ++i) {
+        begin(&car[i], i);
+        car[i].head.locate = i % 2;
+        car[i].state[HMMWV_VEHICLE_STATE_R_Z] += 0.05 * i;
+        if (i > 3)
+            car[i].head.input_function = NULL;
+        hmmwv_vehicle_batch_load(&batch, i, &car[i]);
+    }
+    for (int round = 0; round < 40; ++round) {
+        assert_int_equal(batch_steps(&batch, &dual, 3), N);
+        for (int32_t i = 0; i < N; ++i) {
+            steps(&car[i], &dual, 3);
+            assert_same(&batch, i, &car[i]);
+            input = car[i].input + HMMWV_VEHICLE_INPUT_RACK;
+            if (i > 3 && round % 2) {
+                *input += 1e-4;
+                batch.block[i / HMMWV_VEHICLE_LANES].input[HMMWV_VEHICLE_INPUT_RACK][i % HMMWV_VEHICLE_LANES] = *input;
+            }
+        }
+    }
+    for (int32_t i = 0; i < N; ++i)
+        contacts += car[i].head.contact_count;
+    assert_true(contacts > 4);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits), cmocka_unit_test(test_failures),
+                                       cmocka_unit_test(test_refill), cmocka_unit_test(test_events)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
