@@ -298,7 +298,7 @@ $(driving:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/unit/%.o $(drive
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 
-batched := hmmwv steered quarter_car
+batched := hmmwv hmmwv_vehicle steered quarter_car
 
 # a static rule: as an implicit one it competes with the one above, and versions of make choose differently
 $(batched:%=$(code)/%_batch.c): $(code)/%_batch.c: $(code)/%.c
@@ -306,12 +306,16 @@ $(batched:%=$(code)/%_batch.c): $(code)/%_batch.c: $(code)/%.c
 
 # vectors are passed between functions of one file alone, so that an older gcc's way to do it is no matter
 $(batched:%=$(code)/%_batch.o): WARNINGS += -Wno-psabi
+# the elementary functions of the code for one vehicle, so that bits can be compared
+$(code)/hmmwv_vehicle_batch.o: WARNINGS += -DGIC_BATCH_LIBM
 
-$(BUILD)/tests/unit/test_batch.o: tests/unit/test_batch.c $(batched:%=$(code)/%_batch.c)
+batches := test_batch test_batch_vehicles
+
+$(batches:%=$(BUILD)/tests/unit/%.o): $(BUILD)/tests/unit/%.o: tests/unit/%.c $(batched:%=$(code)/%_batch.c)
 	@mkdir -p $(@D)
 	$(COMPILE) -I$(code) -c -o $@ $<
 
-$(BUILD)/check/test_batch: $(BUILD)/tests/unit/test_batch.o $(batched:%=$(code)/%.o) $(batched:%=$(code)/%_batch.o) \
+$(batches:%=$(BUILD)/check/%): $(BUILD)/check/%: $(BUILD)/tests/unit/%.o $(batched:%=$(code)/%.o) $(batched:%=$(code)/%_batch.o) \
     $(BUILD)/runtime/gic_runtime.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm

@@ -60,11 +60,18 @@ static void start(const Bench *bench, const Scene *scene, int vehicles, Batched 
 
 static void steps(const Scene *scene, int vehicles, const Batched *b, int count)
 {
-    if (b->many)
+    const bool dual = scene->method == GIC_AB3 && b->engine->code->fast_count > 0;
+    if (b->many && dual)
+        b->many->step_dual(b->batch, scene->step, scene->ratio, scene->steady, count);
+    else if (b->many)
         b->many->step(b->batch, scene->step, scene->method, count);
     for (int i = 0; i < vehicles && !b->many; ++i)
-        for (int k = 0; k < count; ++k)
-            gic_step(b->engine->code, b->car[i], scene->step, scene->method);
+        for (int k = 0; k < count; ++k) {
+            if (dual)
+                gic_step_steady(b->engine->code, b->car[i], scene->step, scene->ratio, scene->steady);
+            else
+                gic_step(b->engine->code, b->car[i], scene->step, scene->method);
+        }
 }
 
 /* A single thread is timed by its CPU time, several threads by the wall clock. */

@@ -191,8 +191,8 @@ GICL_API int gicl_restore(gicl_library *library, gicl_handle instance, const voi
 
 /* `vehicles` instances side by side, each with the bits that it has alone. Scene as above. lanes: 1: they make their
  * steps one after another; 2, 4, 8 or 16: so many at once, in the lanes of the processor's vectors, by code that the C
- * compiler makes, whatever the model's engine, and keeps in gicrun's cache; models with tires have none yet:
- * GICL_FAILED. */
+ * compiler makes, whatever the model's engine, and keeps in gicrun's cache; models with outputs of reactions have none
+ * yet: GICL_FAILED. */
 GICL_API int gicl_batch_new(gicl_library *library, gicl_handle model, const char *scene, int vehicles, int lanes,
                             gicl_handle *batch, gicl_messages *said);
 /* An array of all of them: number i of vehicle v is at data[v / lanes * stride + i * lanes + v % lanes]; i below

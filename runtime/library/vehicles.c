@@ -40,7 +40,7 @@ static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batc
     const Batch batch = {making->count, making->lanes};
     const char *why;
     const Engine *engine =
-        engine_batch(pool, model_for(model, pool), &model->options, &batch, "-O3 -march=native", many, &why);
+        engine_batch(pool, model_for(model, pool), &model->options, &batch, IN_LANES, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "no code for many vehicles at once: %s", why);
@@ -221,7 +221,9 @@ void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, in
         vehicle_of(vehicles, v)->status = GIC_ERROR_ARGUMENT;
     while (known && steps > 0) {
         const int32_t next = steps < INT32_MAX ? (int32_t)steps : INT32_MAX;
-        steps = many->step(vehicles->first, step, method, next) > 0 ? steps - next : 0;
+        const int32_t good = ratio > 1 && many->step_dual ? many->step_dual(vehicles->first, step, ratio, 0, next)
+                                                          : many->step(vehicles->first, step, method, next);
+        steps = good > 0 ? steps - next : 0;
     }
 }
 

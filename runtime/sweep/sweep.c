@@ -49,7 +49,7 @@ static const Engine *open_code(Pool *pool, const SweepRequest *request, const Mo
         return engine_open(pool, request->engine, model, &request->code);
     const bool tried = !why;
     if (tried)
-        engine = engine_batch(pool, model, &request->code, &batch, "-O3 -march=native", many, &why);
+        engine = engine_batch(pool, model, &request->code, &batch, IN_LANES, many, &why);
     if (engine)
         return engine;
     if (!request->quiet)

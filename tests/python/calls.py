@@ -312,7 +312,6 @@ outputs: {turn: {type: coordinate, coordinate: turn}}
         for call, kind, words in (
                 (lambda: self.model.batch(3, lanes=3), gicgen.WrongCall, "lanes are 1, 2, 4, 8 or 16, not 3"),
                 (lambda: self.model.batch(3, lanes=0), ValueError, "lanes: a whole number from 1 to 16"),
-                (lambda: gicgen.Model(TIRES).batch(3, lanes=4), gicgen.Error, "wheels with tires"),
                 (lambda: batch.states["bonce"], KeyError, "is 'bounce' meant"),
                 (lambda: batch.states.__setitem__("bounce", [1, 2]), ValueError, r"shape \(5,\) is wanted, not \(2,\)"),
                 (lambda: batch.states.__setitem__("bounce", math.nan), ValueError, "finite")):

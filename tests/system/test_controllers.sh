@@ -194,9 +194,11 @@ verdict $? 'rest'
 "$gicgen" --derivatives loop.veh -o derived.c && sed 's/"loop.h"/"derived.h"/' derived.c >d.c &&
     ${CC:-cc} -std=c99 -Wall -Wextra -Werror -pedantic -I. -I"$root/runtime" -c d.c -o d.o 2>err
 verdict $? 'code with derivatives'
-"$gicgen" --batch 4 loop.veh -o batch.c 2>said
-grep -q 'error: .*states of its own' said && [ ! -e batch.c ]
-verdict $? "many vehicles are refused: $(head -n 1 said)"
+"$gicgen" loop.veh -o loop.c && "$gicgen" --batch 4 loop.veh -o loop_batch.c &&
+    ${CC:-cc} -std=c11 -O1 -ffp-contract=off -DGIC_BATCH_LIBM -DBATCH=loop_batch_model -I. -I"$root/runtime" \
+        "$root/tests/data/embed/lanes.c" loop.c loop_batch.c "$root/runtime/gic_runtime.c" -lm -o lanes 2>said &&
+    [ "$(./lanes)" = '4 4 4 of 4' ]
+verdict $? "many vehicles at once: $(./lanes) $(head -n 1 said)"
 printf 'gicscene: 1\nstep: 0.01\nduration: 1\nsleep: {}\n' >sleep.scene
 "$gicrun" -q loop.veh sleep.scene -o none.csv 2>said
 [ $? -eq 1 ] && grep -q "controller 'servo' of 'loop' changes with time by itself" said

@@ -88,9 +88,11 @@ check "a scene's initial value: ${off:-no run}" within "${off:-1}" 1e-11
 "$gicsweep" -q steps.veh rk4.scene --vary state/one=0:1:3 -o sweep.csv 2>err
 [ $? -eq 0 ] && [ "$(wc -l <sweep.csv)" -ge 4 ]
 verdict $? 'a sweep over an initial value'
-"$gicgen" steps.veh -o steps.c && "$gicgen" --batch 4 steps.veh -o batch.c 2>said
-grep -q "error: .*states of its own" said && [ ! -e batch.c ]
-verdict $? "many vehicles are refused: $(head -n 1 said)"
+"$gicgen" steps.veh -o steps.c && "$gicgen" --batch 4 steps.veh -o steps_batch.c &&
+    ${CC:-cc} -std=c11 -O1 -ffp-contract=off -DGIC_BATCH_LIBM -DBATCH=steps_batch_model -I. -I"$root/runtime" \
+        "$root/tests/data/embed/lanes.c" steps.c steps_batch.c "$root/runtime/gic_runtime.c" -lm -o lanes 2>said &&
+    [ "$(./lanes)" = '4 4 4 of 4' ]
+verdict $? "many vehicles at once: $(./lanes) $(head -n 1 said)"
 for std in c99 c11; do
     cc -std=$std -Wall -Wextra -Werror -pedantic -fsyntax-only -I. -I"$root/runtime" steps.c 2>said
     verdict $? "no warnings, $std"

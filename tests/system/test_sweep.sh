@@ -224,7 +224,7 @@ tires() {
 }
 (tires 1 "$work/tires.csv")
 check "tires" [ "$(wc -l <"$work/tires.csv")" -eq 301 ]
-check "not yet in lanes" grep -q "note: each run by itself instead of lanes: .*tires" "$work/err"
+check "not yet in lanes" grep -q "note: each run by itself instead of lanes: .*fast steps" "$work/err"
 check "by one process" grep -q "300 runs in .*; each by itself, [0-9]" "$work/err"
 check "all of them good" [ "$(sed 1d "$work/tires.csv" | cut -d, -f3 | sort -u)" = 0 ]
 (tires 3 "$work/shared.csv")

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * Vehicles of any model (BATCH: its descriptor) with parameters and initial states of their own, in lanes and one by
- * one: prints for how many state, outputs and status are the same to the last bit, and how many there are. */
+ * one, at one rate and, where there are fast states, at two: prints for how many state, outputs and status are the same to the last bit, and how many there are. */
 #include "gic_batch.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS = 100, MOST = 100 };
+enum { STEPS = 100, DUAL = 20, RATIO = 4, MOST = 100 };
 
 extern const gic_batch_model BATCH;
 
@@ -36,7 +36,7 @@ static int begin(const gic_model *model, void *car, int i)
 int main(void)
 {
     const gic_model *const model = BATCH.model;
-    const size_t numbers = sizeof(gic_real) * (size_t)model->slow_count;
+    const size_t numbers = sizeof(gic_real) * (size_t)(model->slow_count + model->fast_count);
     void *const batch = aligned_alloc(BATCH.alignment, BATCH.size), *const copy = calloc(1, model->size);
     char *const car = calloc((size_t)BATCH.vehicles, model->size);
     int states = 0, outputs = 0, statuses = 0;
@@ -48,11 +48,15 @@ int main(void)
         BATCH.load(batch, i, car + (size_t)i * model->size);
     }
     BATCH.step(batch, GIC_R(0.001), GIC_AB3, STEPS);
+    if (BATCH.step_dual)
+        BATCH.step_dual(batch, GIC_R(0.002), RATIO, GIC_R(0.0), DUAL);
     for (int i = 0; i < BATCH.vehicles; ++i) {
         void *const one = car + (size_t)i * model->size;
         int status = GIC_OK;
         for (int k = 0; k < STEPS && status == GIC_OK; ++k)
             status = gic_step(model, one, GIC_R(0.001), GIC_AB3);
+        for (int k = 0; k < DUAL && status == GIC_OK && BATCH.step_dual; ++k)
+            status = gic_step_dual(model, one, GIC_R(0.002), RATIO);
         BATCH.store(batch, i, copy);
         states += !memcmp(array(one, model->state_offset), array(copy, model->state_offset), numbers);
         statuses += BATCH.status(batch, i) == status;
