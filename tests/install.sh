@@ -19,10 +19,10 @@ if ! command -v dpkg-query >/dev/null; then
     echo "This is no Debian system: make sure that it has what these packages hold: $packages" >&2
     exit 0
 fi
-# Frama-C takes 0.9 GB with all that it needs (0.2 GB to fetch), Wine 0.7 GB (0.1 GB), and not every release of Debian has
-# them
+# Frama-C takes 0.9 GB with all that it needs (0.2 GB to fetch), Wine 0.7 GB (0.1 GB), Slurm 0.05 GB, and not every release
+# of Debian has them
 optional=
-[ "$1" = test ] && optional="frama-c-base wine64"
+[ "$1" = test ] && optional="frama-c-base wine64 slurmctld slurmd slurm-client munge"
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The user's C compiler: its command, word by word, the folder that it works in, and what decides what it makes. */
 #define _DEFAULT_SOURCE /* mkdtemp */
+#include "base/file.h"
 #include "base/text.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
@@ -113,11 +114,22 @@ static void add_processor(Text *out)
     fclose(file);
 }
 
-const char *compiler_identity(Pool *pool, const char *const *words, int count)
+/* Where GCC and clang look for headers, libraries and their own parts, and the processor. */
+static void add_surroundings(Text *out)
 {
-    /* where GCC and clang look for headers, libraries and their own parts */
     static const char *const variables[] = {"CPATH", "C_INCLUDE_PATH", "LIBRARY_PATH", "COMPILER_PATH",
                                             "GCC_EXEC_PREFIX"};
+    for (size_t i = 0; i < sizeof variables / sizeof *variables; ++i) {
+        const char *value = getenv(variables[i]);
+        if (value)
+            text_print(out, "%s=%s\n", variables[i], value);
+    }
+    add_processor(out);
+    text_add(out, "", 0);
+}
+
+const char *compiler_identity(Pool *pool, const char *const *words, int count)
+{
     Text out = {.pool = pool};
     struct stat is;
     for (int i = 0; i < count; ++i) {
@@ -126,12 +138,21 @@ const char *compiler_identity(Pool *pool, const char *const *words, int count)
             text_print(&out, "%s %lld %lld %lld.%09ld\n", file, (long long)is.st_ino, (long long)is.st_size,
                        (long long)is.st_mtim.tv_sec, is.st_mtim.tv_nsec);
     }
-    for (size_t i = 0; i < sizeof variables / sizeof *variables; ++i) {
-        const char *value = getenv(variables[i]);
-        if (value)
-            text_print(&out, "%s=%s\n", variables[i], value);
+    add_surroundings(&out);
+    return out.s;
+}
+
+const char *compiler_contents(Pool *pool, const char *const *words, int count)
+{
+    Text out = {.pool = pool};
+    struct stat is;
+    for (int i = 0; i < count; ++i) {
+        size_t size;
+        const char *file = named_file(pool, words[i], &is);
+        const char *bytes = file && !access(file, R_OK) ? file_read(pool, file, TABLE_MOST, &size) : NULL;
+        if (bytes)
+            text_print(&out, "%016llx\n", (unsigned long long)text_hash(bytes, size));
     }
-    add_processor(&out);
-    text_add(&out, "", 0);
+    add_surroundings(&out);
     return out.s;
 }

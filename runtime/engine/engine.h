@@ -143,6 +143,8 @@ bool is_core(const Embedded *file);
 /* An identification of the compiler: programs and files that the words name (path, inode, size, time of change), the
  * environment, and the processor, which -march=native depends on. */
 const char *compiler_identity(Pool *pool, const char *const *words, int count);
+/* The same by the contents of these files, which are equal on all nodes of a cluster. */
+const char *compiler_contents(Pool *pool, const char *const *words, int count);
 
 /* engine_cc.c: generated code, compiled or taken from the cache, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);

@@ -5,45 +5,61 @@
 #include "host/gic.h"
 #include "host/host.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-static const char help[] = "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
-                           "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
-                           "\n"
-                           "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
-                           "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
-                           "values, the status (0: good, else the run ended at `time`, or was found unstable then),\n"
-                           "of each output of the scene the value at the end, the least and the greatest at output\n"
-                           "times.\n"
-                           "\n"
-                           "      --vary NAME=LOW:HIGH:COUNT\n"
-                           "                     a tunable parameter, an input (constant through the run), a number\n"
-                           "                     of the initial state, or `speed`, along the vehicle; where a name\n"
-                           "                     has several meanings parameter/NAME, input/NAME, state/NAME. In a\n"
-                           "                     grid the last one varies fastest\n"
-                           "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
-                           "                     once, in random order\n"
-                           "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
-                           "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
-                           "                     FILE.journal: the same command goes on where it was stopped\n"
-                           "      --engine NAME  each run by itself, by an engine of gicrun\n"
-                           "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
-                           "      --cflags FLAGS more options for it, after ours, in one word\n"
-                           "  -q, --quiet        neither progress nor summary\n"
-                           "  -h, --help         this text\n"
-                           "      --version      version\n"
-                           "\n"
-                           "Vehicles run in the lanes of vectors where compiler and model allow that, else each by\n"
-                           "itself, with the same digits; and in $OMP_NUM_THREADS processes, by default one for each\n"
-                           "processor.\n"
-                           "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
+static const char help[] =
+    "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
+    "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
+    "       gicsweep MODEL.veh SCENE --vary ... --slurm FOLDER | --shard I/N -o FOLDER\n"
+    "       gicsweep --merge FOLDER [-o results.csv]\n"
+    "\n"
+    "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
+    "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
+    "values, the status (0: good, else the run ended at `time`, or was found unstable then),\n"
+    "of each output of the scene the value at the end, the least and the greatest at output\n"
+    "times.\n"
+    "\n"
+    "      --vary NAME=LOW:HIGH:COUNT\n"
+    "                     a tunable parameter, an input (constant through the run), a number\n"
+    "                     of the initial state, or `speed`, along the vehicle; where a name\n"
+    "                     has several meanings parameter/NAME, input/NAME, state/NAME. In a\n"
+    "                     grid the last one varies fastest\n"
+    "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
+    "                     once, in random order\n"
+    "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
+    "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
+    "                     FILE.journal: the same command goes on where it was stopped\n"
+    "      --shard I/N    only part I of N of the runs, 1 to N, perhaps each on another machine;\n"
+    "                     -o names the folder of all parts, each of which goes on where it was\n"
+    "                     stopped\n"
+    "      --slurm FOLDER plan that: FOLDER/job.sh is an array of Slurm jobs, one for each part\n"
+    "      --chunk SECONDS\n"
+    "                     what a part takes one processor, as measured; default: 600\n"
+    "      --parts N      so many parts instead\n"
+    "      --merge FOLDER one table of all parts, with the bytes of one sweep; says what is\n"
+    "                     missing\n"
+    "      --engine NAME  each run by itself, by an engine of gicrun\n"
+    "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
+    "      --cflags FLAGS more options for it, after ours, in one word\n"
+    "  -q, --quiet        neither progress nor summary\n"
+    "  -h, --help         this text\n"
+    "      --version      version\n"
+    "\n"
+    "Vehicles run in the lanes of vectors where compiler and model allow that, else each by\n"
+    "itself, with the same digits; and in $OMP_NUM_THREADS processes, by default one for each\n"
+    "processor.\n"
+    "Exit status: 0 good, even if runs failed; 1 error in a file; 2 wrong usage.\n";
 
 /* What is asked for. */
 typedef struct Asked {
     const char *model;
     gicl_options options;
     gicl_sweep sweep;
-    const char **vary; /* [count of words] */
+    const char **vary;            /* [count of words] */
+    const char *planned, *merged; /* folders of --slurm and --merge; NULL: not asked for */
+    double chunk;                 /* s; 0: not given */
     bool quiet;
 } Asked;
 
@@ -63,6 +79,35 @@ static void read_seed(void *asked, char *word)
 {
     ((Asked *)asked)->sweep.seed =
         (uint64_t)usage_whole("gicsweep", "--seed takes a whole number from 0 on, not", word, 0, INT64_MAX);
+}
+
+static void read_shard(void *asked, char *word)
+{
+    gicl_sweep *sweep = &((Asked *)asked)->sweep;
+    static const char form[] = "--shard takes I/N, part I of N, 1 to N and N at most 10000, not";
+    char *end;
+    const long part = strtol(word, &end, 10), parts = *end == '/' ? strtol(end + 1, &end, 10) : 0;
+    if (*end || part < 1 || part > parts || parts > GICL_PARTS_MOST)
+        usage_fail("gicsweep", form, word);
+    sweep->part = (int)part;
+    sweep->parts = (int)parts;
+}
+
+static void read_chunk(void *asked, char *word)
+{
+    char *end;
+    const double seconds = strtod(word, &end);
+    if (end == word || *end || !(seconds > 0 && seconds <= 1e8))
+        usage_fail("gicsweep", "--chunk takes seconds above 0, not", word);
+    ((Asked *)asked)->chunk = seconds;
+}
+
+static void read_parts(void *asked, char *word)
+{
+    Asked *a = asked;
+    if (a->sweep.part)
+        usage_fail("gicsweep", "--shard says how many parts there are; without it:", word);
+    a->sweep.parts = (int)usage_whole("gicsweep", "--parts takes 1 to 10000, not", word, 1, GICL_PARTS_MOST);
 }
 
 static void read_engine(void *asked, char *word)
@@ -85,6 +130,11 @@ static void read_command_line(Asked *asked, int count, char **word)
         {"latin", .read = read_latin},
         {"seed", .read = read_seed},
         {"output", 'o', .text = &sweep->results},
+        {"shard", .read = read_shard},
+        {"slurm", .text = &asked->planned},
+        {"chunk", .read = read_chunk},
+        {"parts", .read = read_parts},
+        {"merge", .text = &asked->merged},
         {"engine", .read = read_engine},
         {"cc", .text = &asked->options.compiler},
         {"cflags", .text = &asked->options.flags},
@@ -92,6 +142,23 @@ static void read_command_line(Asked *asked, int count, char **word)
     };
     const int first =
         options_read("gicsweep", help, count, word, option, (int)(sizeof option / sizeof *option), asked, NULL);
+    if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned))
+        usage_fail("gicsweep", "--merge takes -o alone; all else is in the folder", asked->merged);
+    sweep->quiet = asked->quiet;
+    if (!sweep->results)
+        sweep->results = sweep->part ? NULL : asked->planned ? asked->planned : "sweep.csv";
+    else if (asked->planned)
+        usage_fail("gicsweep", "--slurm names a folder, and -o belongs to --merge, not", sweep->results);
+    if (asked->merged)
+        return;
+    if (sweep->part && asked->planned)
+        usage_fail("gicsweep", "--slurm plans all parts, --shard makes one of them", NULL);
+    if (!sweep->results)
+        usage_fail("gicsweep", "--shard needs the folder of all parts: -o FOLDER", NULL);
+    if ((asked->chunk > 0 && !asked->planned) || (sweep->parts && !sweep->part && !asked->planned))
+        usage_fail("gicsweep", "--chunk and --parts go with --slurm", NULL);
+    if (asked->chunk > 0 && sweep->parts)
+        usage_fail("gicsweep", "--chunk or --parts, not both", NULL);
     if (count - first != 2)
         usage_fail("gicsweep", "one model and one scene, please", NULL);
     if (!sweep->varied)
@@ -101,15 +168,48 @@ static void read_command_line(Asked *asked, int count, char **word)
     asked->model = word[first];
     sweep->scene = word[first + 1];
     sweep->vary = asked->vary;
-    sweep->quiet = asked->quiet;
+}
+
+/* The words that make one part, but for --shard and -o. Returns their number. */
+static int command_of(const Asked *asked, char *const *called, const char **word)
+{
+    static char self[4096];
+    static char number[2][24];
+    const gicl_sweep *sweep = &asked->sweep;
+    const ssize_t size = readlink("/proc/self/exe", self, sizeof self - 1);
+    int words = 0;
+    word[words++] = size > 0 ? self : called[0];
+    word[words++] = asked->model;
+    word[words++] = sweep->scene;
+    for (int v = 0; v < sweep->varied; ++v) {
+        word[words++] = "--vary";
+        word[words++] = sweep->vary[v];
+    }
+    if (sweep->latin) {
+        snprintf(number[0], sizeof number[0], "%lld", (long long)sweep->latin);
+        snprintf(number[1], sizeof number[1], "%llu", (unsigned long long)sweep->seed);
+        const char *const more[] = {"--latin", number[0], "--seed", number[1]};
+        memcpy(word + words, more, sizeof more);
+        words += 4;
+    }
+    const char *const pair[][2] = {{"--engine", sweep->alone ? asked->options.engine : NULL},
+                                   {"--cc", asked->options.compiler},
+                                   {"--cflags", asked->options.flags}};
+    for (size_t i = 0; i < sizeof pair / sizeof *pair; ++i)
+        if (pair[i][1]) {
+            word[words++] = pair[i][0];
+            word[words++] = pair[i][1];
+        }
+    return words;
 }
 
 int main(int count, char **word)
 {
-    const char *vary[count];
-    Asked asked = {.options = {.size = sizeof asked.options},
-                   .sweep = {.size = sizeof asked.sweep, .results = "sweep.csv", .seed = 1},
-                   .vary = vary};
+    enum { OTHERS = 13 };
+    const char *vary[count], *command[2 * count + OTHERS];
+    enum { CHUNK = 600 /* s */ };
+    Asked asked = {
+        .options = {.size = sizeof asked.options}, .sweep = {.size = sizeof asked.sweep, .seed = 1}, .vary = vary};
     read_command_line(&asked, count, word);
     const gicl_listener terminal = {
         .size = sizeof terminal, .program = program_place().source->path, .hear = terminal_hear, .signals = 1};
@@ -119,9 +219,18 @@ int main(int count, char **word)
     if (!library || !said)
         out_of_memory();
     int status = gicl_listen(library, &terminal, said);
+    if (status == GICL_OK && asked.merged) {
+        status = gicl_sweep_merge(library, asked.merged, asked.sweep.results, asked.quiet, said);
+        gicl_messages_free(said);
+        gicl_close(library);
+        return status;
+    }
     if (status == GICL_OK)
         status = gicl_model_open(library, asked.model, &asked.options, &model, said);
-    if (status == GICL_OK)
+    if (status == GICL_OK && asked.planned)
+        status = gicl_sweep_plan(library, model, &asked.sweep, asked.chunk > 0 ? asked.chunk : CHUNK, command,
+                                 command_of(&asked, word, command), said);
+    else if (status == GICL_OK)
         status = gicl_sweep_run(library, model, &asked.sweep, NULL, said);
     gicl_messages_free(said);
     gicl_close(library);

@@ -290,12 +290,28 @@ typedef struct gicl_sweep {
     uint64_t seed; /* of its random numbers */
     int alone;     /* 1: each run by itself, by the model's engine; 0: in lanes where compiler and model allow that */
     int quiet;     /* 1: neither progress nor notes */
+    /* Only part 1 to `parts` of the runs, in any order and on any machines: `results` is a folder then, in which each
+     * part keeps its finished runs. 0 and 0: all runs. */
+    int part, parts;
 } gicl_sweep;
 
 /* Runs are made in $OMP_NUM_THREADS processes, by default one for each processor. *result (result NULL: not wanted):
  * array "runs" with the columns of the file. */
 GICL_API int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *sweep, gicl_handle *result,
                             gicl_messages *said);
+
+enum { GICL_PARTS_MOST = 10000 };
+
+/* Plan a sweep into the folder sweep->results, in sweep->parts parts, or 0: in as many that each takes one processor
+ * like this one about `seconds`, 1000 at most; sweep->part is 0. Files: `plan`, which parts compare with theirs, and
+ * `job.sh`, an array of Slurm jobs: each calls the `words` words of `command` with --shard and -o after them. */
+GICL_API int gicl_sweep_plan(gicl_library *library, gicl_handle model, const gicl_sweep *sweep, double seconds,
+                             const char *const *command, int words, gicl_messages *said);
+
+/* One table of all parts in a folder, with the bytes of a sweep in one call. GICL_FAILED: a run is missing; the message
+ * names its part. */
+GICL_API int gicl_sweep_merge(gicl_library *library, const char *folder, const char *results, int quiet,
+                              gicl_messages *said);
 
 /* ---- what gicbench does -------------------------------------------------------------------------------------- */
 

@@ -16,6 +16,10 @@
 typedef struct Sweeping {
     OpenModel *open;
     const gicl_sweep *asked;
+    bool plan; /* plan it, with what follows */
+    double seconds;
+    const char *const *command;
+    int words;
     Pool *pool;
     SweepTable table;
     Result *result; /* NULL: not wanted */
@@ -40,9 +44,14 @@ static void sweep(void *context)
                             .varied = asked->varied,
                             .latin = asked->latin,
                             .seed = asked->seed,
+                            .part = asked->part,
+                            .parts = asked->parts,
                             .quiet = asked->quiet};
     request.code.quiet = asked->quiet;
-    sweep_all(s->pool, model, scene, &request, &s->table);
+    if (s->plan)
+        sweep_plan(s->pool, model, scene, &request, s->seconds, s->command, s->words, &s->table);
+    else
+        sweep_all(s->pool, model, scene, &request, &s->table);
 }
 
 /* The table in a pool of its own. */
@@ -76,10 +85,45 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
         return call_wrong(said, NULL, "a sweep needs a scene, a file for results, and what varies");
     if (asked->latin < 0 || asked->latin > GICL_SWEEP_MOST)
         return call_wrong(said, NULL, "runs of a Latin hypercube are 1 to %d, or 0: a grid", GICL_SWEEP_MOST);
+    if (asked->parts < 0 || asked->parts > GICL_PARTS_MOST || asked->part < 0 || asked->part > asked->parts)
+        return call_wrong(said, NULL, "parts are 1 to %d, or 0: no parts, and a part is one of them", GICL_PARTS_MOST);
     for (int v = 0; v < asked->varied; ++v)
         if (!asked->vary[v])
             return call_wrong(said, NULL, "number %d of what varies is NULL", v);
     return GICL_OK;
+}
+
+/* Both calls with a model. */
+static int call_sweep(gicl_library *library, gicl_handle model, Sweeping *s, gicl_handle *result, gicl_messages *said)
+{
+    const Use use = use_begin(library, model, THING_MODEL, said);
+    if (use.status != GICL_OK)
+        return use.status;
+    s->open = use.thing;
+    int status = check(s->asked, said);
+    if (status == GICL_OK && !s->plan && !s->asked->part && s->asked->parts)
+        status = call_wrong(said, NULL, "which of the %d parts is to be made?", s->asked->parts);
+    if (status == GICL_OK && s->plan && (s->asked->part || (!s->asked->parts && !(s->seconds > 0)) || !s->command))
+        status =
+            call_wrong(said, NULL, "a plan is of all parts, and needs their number or seconds above 0, and a command");
+    if (status == GICL_OK)
+        status = call_work(library, said, make_pool, s);
+    if (status != GICL_OK)
+        return use_end(&use, status);
+    status = call_work(library, said, sweep, s);
+    const bool made = status == GICL_OK;
+    if (made && result) /* names of signals are the engine's */
+        status = call_work(library, said, keep, s);
+    if (made)
+        engine_close(s->table.engine);
+    if (status == GICL_OK && result && !(*result = handle_new(library, THING_RESULT, s->result))) {
+        result_free(s->result);
+        status = call_wrong(said, NULL, "no memory for another handle");
+    }
+    if (s->table.engine && s->table.engine->library)
+        dlclose(s->table.engine->library);
+    pool_free(s->pool);
+    return use_end(&use, status);
 }
 
 int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *asked, gicl_handle *result,
@@ -87,27 +131,35 @@ int gicl_sweep_run(gicl_library *library, gicl_handle model, const gicl_sweep *a
 {
     if (result)
         *result = 0;
-    const Use use = use_begin(library, model, THING_MODEL, said);
-    if (use.status != GICL_OK)
-        return use.status;
-    Sweeping s = {.open = use.thing, .asked = asked};
-    int status = check(asked, said);
-    if (status == GICL_OK)
-        status = call_work(library, said, make_pool, &s);
-    if (status != GICL_OK)
-        return use_end(&use, status);
-    status = call_work(library, said, sweep, &s);
-    const bool made = status == GICL_OK;
-    if (made && result) /* names of signals are the engine's */
-        status = call_work(library, said, keep, &s);
-    if (made)
-        engine_close(s.table.engine);
-    if (status == GICL_OK && result && !(*result = handle_new(library, THING_RESULT, s.result))) {
-        result_free(s.result);
-        status = call_wrong(said, NULL, "no memory for another handle");
-    }
-    if (s.table.engine && s.table.engine->library)
-        dlclose(s.table.engine->library);
-    pool_free(s.pool);
-    return use_end(&use, status);
+    return call_sweep(library, model, &(Sweeping){.asked = asked}, result, said);
+}
+
+int gicl_sweep_plan(gicl_library *library, gicl_handle model, const gicl_sweep *asked, double seconds,
+                    const char *const *command, int words, gicl_messages *said)
+{
+    Sweeping s = {.asked = asked, .plan = true, .seconds = seconds, .command = command, .words = words};
+    return call_sweep(library, model, &s, NULL, said);
+}
+
+/* ---- one table ------------------------------------------------------------------------------------------------- */
+
+typedef struct Merging {
+    const char *folder, *results;
+    bool quiet;
+} Merging;
+
+static void merge(void *context)
+{
+    const Merging *m = context;
+    Pool *pool = pool_new();
+    folder_merge(pool, m->folder, m->results, m->quiet);
+    pool_free(pool);
+}
+
+int gicl_sweep_merge(gicl_library *library, const char *folder, const char *results, int quiet, gicl_messages *said)
+{
+    call_begin(library, said);
+    if (!folder || !results)
+        return call_wrong(said, NULL, "merging needs a folder and a file for results");
+    return call_work(library, said, merge, &(Merging){folder, results, quiet});
 }

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * The journal of a sweep: lines are appended, never changed, and written to the disk before the next batch begins.
- * The first line identifies the sweep; an incomplete last line is ignored. */
+ * The first line identifies the sweep. Each other line has a checksum: an incomplete or damaged one is ignored, so that
+ * its run is made again. */
 #include "base/catch.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/text.h"
 #include "host/host.h"
 #include "sweep/sweep.h"
 
@@ -35,9 +37,13 @@ static void append(Journal *journal, const char *bytes, size_t size)
 
 static void note(Journal *journal, const RunResult *result)
 {
-    if (journal->row[result->run])
+    const char **row = &journal->row[result->run - journal->first];
+    if (*row && strcmp(*row, result->row) != 0)
+        diag_fail(program_place(), "do all nodes have the same libraries? remove it, and make its runs again",
+                  "%s has two rows of run %lld that differ", journal->path, (long long)result->run);
+    if (*row)
         return;
-    journal->row[result->run] = result->row;
+    *row = result->row;
     ++journal->finished;
     journal->failed += result->status != GIC_OK;
     if (result->status != GIC_OK && (journal->first_status == GIC_OK || result->run < journal->first_failed)) {
@@ -47,45 +53,71 @@ static void note(Journal *journal, const RunResult *result)
     }
 }
 
-/* "run status row"; false: the line has another form. */
-static bool take_line(Journal *journal, const char *line)
+/* "checksum run status row" */
+static const char *line_of(Pool *pool, const RunResult *result)
+{
+    const char *text = pool_print(pool, "%lld %d %s", (long long)result->run, result->status, result->row);
+    return pool_print(pool, "%016llx %s\n", (unsigned long long)text_hash(text, strlen(text)), text);
+}
+
+/* Take a line without its end; a damaged one is passed over. */
+static void take_line(Journal *journal, const char *line)
 {
     char *end;
-    const long long run = strtoll(line, &end, 10);
-    if (end == line || *end != ' ' || run < 0 || run >= journal->runs)
-        return false;
-    const char *next = end + 1;
-    const long status = strtol(next, &end, 10);
-    if (end == next || *end != ' ')
-        return false;
-    note(journal, &(RunResult){run, (int)status, end + 1, NULL});
-    return true;
+    const unsigned long long sum = strtoull(line, &end, 16);
+    if (*end != ' ' || sum != text_hash(end + 1, strlen(end + 1)))
+        return;
+    const int64_t run = strtoll(end + 1, &end, 10);
+    const int status = (int)strtol(end, &end, 10);
+    if (*end == ' ' && run >= journal->first && run < journal->first + journal->runs)
+        note(journal, &(RunResult){run, status, end + 1, NULL});
 }
 
 static _Noreturn void refuse_foreign(const Journal *journal)
 {
-    diag_fail(program_place(), "remove it, or choose another place with -o",
-              "%s is of another sweep: another model, scene, file that they name, range, compiler or program",
-              journal->path);
+    diag_fail(
+        program_place(), "remove it, or choose another place with -o",
+        "%s is of another sweep: another model, scene, file that they name, range, compiler, processor or program",
+        journal->path);
 }
 
-/* What is in the file: whole lines. */
-static void take(Journal *journal, const char *first)
+/* Take what is in the file: whole lines. Returns the bytes up to the end of the last one. */
+static size_t take(Journal *journal, const char *first)
 {
     size_t size;
-    const char *bytes = file_read(journal->pool, journal->path, SIZE_MAX, &size);
-    char *text = pool_alloc(journal->pool, size + 1);
-    memcpy(text, bytes, size);
-    if (strncmp(text, first, strlen(first)) != 0)
-        refuse_foreign(journal);
+    char *text = file_read(journal->pool, journal->path, SIZE_MAX, &size);
     size_t good = strlen(first);
-    for (char *end; (end = strchr(text + good, '\n')); good = (size_t)(end + 1 - text)) {
+    if (size < good || memcmp(text, first, good) != 0)
+        refuse_foreign(journal);
+    for (char *end; (end = memchr(text + good, '\n', size - good)); good = (size_t)(end + 1 - text)) {
         *end = 0;
-        if (!take_line(journal, text + good))
-            break;
+        take_line(journal, text + good);
     }
-    if (ftruncate(journal->file, (off_t)good))
-        journal_fail(journal, "write");
+    return good;
+}
+
+static Journal journal_new(Pool *pool, const char *path, int64_t first, int64_t runs)
+{
+    Journal journal = {.pool = pool, .path = path, .file = -1, .first = first, .runs = runs};
+    journal.row = pool_alloc(pool, sizeof *journal.row * (size_t)(runs + 1));
+    return journal;
+}
+
+static const char *first_line(Pool *pool, const char *key)
+{
+    return pool_print(pool, "gicsweep journal %s\n", key);
+}
+
+Journal journal_read(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs)
+{
+    Journal journal = journal_new(pool, path, first, runs);
+    const char *line = first_line(pool, key);
+    struct stat is = {.st_size = 0};
+    if (stat(path, &is) && errno != ENOENT)
+        journal_fail(&journal, "read");
+    if (is.st_size >= (off_t)strlen(line)) /* a shorter one is being begun */
+        take(&journal, line);
+    return journal;
 }
 
 /* Where a failure ends a call and not the program. */
@@ -94,11 +126,10 @@ static void let_go(void *held)
     close(*(const int *)held);
 }
 
-Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs)
+Journal journal_open(Pool *pool, const char *path, const char *key, int64_t first_run, int64_t runs)
 {
-    Journal journal = {.pool = pool, .path = pool_print(pool, "%s.journal", results), .runs = runs};
-    const char *first = pool_print(pool, "gicsweep journal %s\n", key);
-    journal.row = pool_alloc(pool, sizeof *journal.row * (size_t)runs);
+    Journal journal = journal_new(pool, path, first_run, runs);
+    const char *first = first_line(pool, key);
     journal.file = open(journal.path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (journal.file < 0)
         journal_fail(&journal, "open");
@@ -120,8 +151,8 @@ Journal journal_open(Pool *pool, const char *results, const char *key, int64_t r
         if (ftruncate(journal.file, 0))
             journal_fail(&journal, "write");
         append(&journal, first, strlen(first));
-    } else {
-        take(&journal, first);
+    } else if (ftruncate(journal.file, (off_t)take(&journal, first))) {
+        journal_fail(&journal, "write");
     }
     return journal;
 }
@@ -130,7 +161,7 @@ void journal_add(Journal *journal, const RunResult *result, int results)
 {
     Text text = {.pool = journal->pool};
     for (int i = 0; i < results; ++i) {
-        text_print(&text, "%lld %d %s\n", (long long)result[i].run, result[i].status, result[i].row);
+        text_print(&text, "%s", line_of(journal->pool, &result[i]));
         note(journal, &result[i]);
     }
     append(journal, text.s, text.size);

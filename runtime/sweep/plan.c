@@ -121,16 +121,17 @@ static double next_share(uint64_t *state)
     return (double)(next_random(state) >> 11) * 0x1p-53;
 }
 
-/* Each number takes each of its `latin` equal parts once, in an order of its own. */
+/* Each number takes each of its `latin` equal parts once, in an order of its own. Only the runs of this part of the
+ * sweep are kept. */
 static void make_latin(Pool *pool, SweepPlan *plan)
 {
-    const size_t numbers = (size_t)plan->varied * (size_t)plan->latin;
+    const size_t numbers = (size_t)plan->varied * (size_t)plan->count + 1;
+    Pool *scratch = pool_new();
+    int32_t *place = pool_alloc(scratch, (size_t)plan->latin * sizeof *place);
     uint64_t state = plan->seed;
-    plan->runs = plan->latin;
     plan->place = pool_alloc(pool, numbers * sizeof *plan->place);
     plan->share = pool_alloc(pool, numbers * sizeof *plan->share);
     for (int v = 0; v < plan->varied; ++v) {
-        int32_t *place = plan->place + v * plan->latin;
         for (int64_t i = 0; i < plan->latin; ++i)
             place[i] = (int32_t)i;
         for (int64_t i = plan->latin - 1; i > 0; --i) {
@@ -139,9 +140,21 @@ static void make_latin(Pool *pool, SweepPlan *plan)
             place[i] = place[other];
             place[other] = kept;
         }
-        for (int64_t i = 0; i < plan->latin; ++i)
-            plan->share[v * plan->latin + i] = next_share(&state);
+        for (int64_t i = 0; i < plan->latin; ++i) {
+            const double share = next_share(&state);
+            const int64_t at = i - plan->first;
+            if (at < 0 || at >= plan->count)
+                continue;
+            plan->place[v * plan->count + at] = place[i];
+            plan->share[v * plan->count + at] = share;
+        }
     }
+    pool_free(scratch);
+}
+
+int64_t part_first(int64_t runs, int part, int parts)
+{
+    return runs / parts * (part - 1) + runs % parts * (part - 1) / parts;
 }
 
 void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine)
@@ -162,6 +175,16 @@ void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *e
             refuse("these are more than ten million runs; --latin takes fewer, not so many as", vary->name);
     }
     if (plan->latin)
+        plan->runs = plan->latin;
+    plan->count = plan->runs;
+    if (plan->parts > plan->runs)
+        diag_fail_call(program_place(), "choose fewer", "%d parts are more than the %lld runs of this sweep",
+                       plan->parts, (long long)plan->runs);
+    if (plan->part) {
+        plan->first = part_first(plan->runs, plan->part, plan->parts);
+        plan->count = part_first(plan->runs, plan->part + 1, plan->parts) - plan->first;
+    }
+    if (plan->latin)
         make_latin(pool, plan);
 }
 
@@ -169,7 +192,7 @@ double plan_value(const SweepPlan *plan, int varied, int64_t run)
 {
     const Vary *vary = &plan->vary[varied];
     if (plan->latin) {
-        const int64_t at = varied * plan->latin + run;
+        const int64_t at = varied * plan->count + run - plan->first;
         const double share = ((double)plan->place[at] + plan->share[at]) / (double)plan->latin;
         return vary->low + share * (vary->high - vary->low);
     }

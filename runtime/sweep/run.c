@@ -424,7 +424,7 @@ static void run_alone(Runner *r, const int64_t *run, int64_t count)
     }
 }
 
-bool sweep_run(const Sweep *sweep)
+static Runner runner_open(const Sweep *sweep)
 {
     Pool *pool = sweep->pool;
     Runner r = {.sweep = sweep, .slots = sweep->many ? sweep->many->vehicles : 1, .before = sweep->journal->finished};
@@ -440,10 +440,51 @@ bool sweep_run(const Sweep *sweep)
     if (r.batch)
         caught_own(free, r.batch);
     r.begun = clock_seconds(CLOCK_MONOTONIC);
-    int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(sweep->plan->runs + 1)), count = 0;
-    for (int64_t i = 0; i < sweep->plan->runs; ++i)
+    return r;
+}
+
+static void runner_close(const Runner *r)
+{
+    if (r->shown)
+        diag_progress("");
+    if (r->batch)
+        caught_disown(r->batch);
+    free(r->batch);
+}
+
+double sweep_seconds(const Sweep *sweep)
+{
+    enum { BATCHES = 16, LONG_ENOUGH = 2 /* s */ };
+    Journal nothing = {.pool = sweep->pool, .runs = sweep->plan->runs};
+    Sweep trial = *sweep;
+    trial.journal = &nothing;
+    trial.quiet = true;
+    Runner r = runner_open(&trial);
+    const int64_t count = sweep->plan->runs < r.slots ? sweep->plan->runs : r.slots;
+    int64_t run[count];
+    RunResult result[count];
+    double spent = 0;
+    int64_t made = 0;
+    for (int b = 0; b < BATCHES && spent < LONG_ENOUGH && !r.stopped; ++b) {
+        for (int64_t i = 0; i < count; ++i) /* spread over all of them */
+            run[i] = part_first(sweep->plan->runs, (int)(i * BATCHES + b + 1), (int)(count * BATCHES));
+        if (make_runs(&r, run, (int)count, result))
+            made += count;
+        spent = clock_seconds(CLOCK_MONOTONIC) - r.begun;
+    }
+    runner_close(&r);
+    return made && !r.stopped ? spent / (double)made : -1;
+}
+
+bool sweep_run(const Sweep *sweep)
+{
+    Pool *pool = sweep->pool;
+    const SweepPlan *plan = sweep->plan;
+    Runner r = runner_open(sweep);
+    int64_t *run = pool_alloc(pool, sizeof *run * (size_t)(plan->count + 1)), count = 0;
+    for (int64_t i = 0; i < plan->count; ++i)
         if (!sweep->journal->row[i])
-            run[count++] = i;
+            run[count++] = plan->first + i;
     /* equal parts if there are few runs for many processes */
     const int64_t part = (count + sweep->processes - 1) / sweep->processes;
     const int together = part < r.slots ? (int)part : r.slots;
@@ -451,13 +492,9 @@ bool sweep_run(const Sweep *sweep)
     const size_t processes = (size_t)(batches < sweep->processes ? batches : sweep->processes);
     const Share share = {count, run, sweep->journal->file, together, make_silently, take_results, &r};
     if (processes > 1)
-        r.stopped = !share_runs(pool, &share, processes) || sweep->journal->finished < sweep->plan->runs;
+        r.stopped = !share_runs(pool, &share, processes) || sweep->journal->finished < plan->count;
     else
         run_alone(&r, run, count);
-    if (r.shown)
-        diag_progress("");
-    if (r.batch)
-        caught_disown(r.batch);
-    free(r.batch);
+    runner_close(&r);
     return !r.stopped;
 }

@@ -91,7 +91,7 @@ static const char *sweep_key(Pool *pool, const Sweep *sweep, const EngineOptions
     const char **word = compiler_words(pool, code->compiler, build_flags, code->flags, &words);
     for (int i = 0; i < words; ++i)
         text_print(&text, " %s", word[i]);
-    return cache_key(pool, (const char *const[]){text.s, compiler_identity(pool, word, words), NULL});
+    return cache_key(pool, (const char *const[]){text.s, compiler_contents(pool, word, words), NULL});
 }
 
 /* The unit of a varied number. */
@@ -134,14 +134,14 @@ static void write_results(const Sweep *sweep, const char *path, const gic_signal
     for (int c = 0; c < columns; ++c)
         csv_name(&csv, signal[c].name, signal[c].unit);
     csv_end_row(&csv);
-    for (int64_t r = 0; r < sweep->plan->runs; ++r) {
+    for (int64_t r = 0; r < sweep->plan->count; ++r) {
         fputs(sweep->journal->row[r], csv.file);
         csv_end_row(&csv);
     }
     csv_close(&csv);
 }
 
-/* begun: when the sweep began, which compiles first; start: when the runs did. */
+/* begun: when the sweep began, which compiles first; start: when the runs did; results: where they are. */
 static void summary(const Sweep *sweep, int64_t before, double begun, double start, const char *results)
 {
     const double end = clock_seconds(CLOCK_MONOTONIC);
@@ -163,32 +163,48 @@ static void summary(const Sweep *sweep, int64_t before, double begun, double sta
     diag_note(text.s);
 }
 
+/* All that comes before the runs: names are looked up, code is compiled. */
+static void open_sweep(Sweep *sweep, const SweepRequest *request, SweepTable *table)
+{
+    Pool *pool = sweep->pool;
+    const Model *model = sweep->model;
+    const char *const journal_path = pool_print(pool, "%s.journal", request->results);
+    for (int v = 0; v < request->varied; ++v)
+        vary_read(pool, sweep->plan, request->vary[v]);
+    for (int i = 0; i < 2; ++i) {
+        source_keep(model->source, i ? journal_path : request->results);
+        source_keep(sweep->scene->source, i ? journal_path : request->results);
+    }
+    scene_no_rig(sweep->scene);
+    scene_no_implicit(sweep->scene, "a sweep");
+    sweep->scene = equilibrium_start(pool, model, sweep->scene, request->code.solve);
+    sweep->engine = open_code(pool, request, model, sweep->scene, &sweep->many);
+    table->engine = sweep->engine;
+    plan_close(pool, sweep->plan, model, sweep->engine);
+    table->signal = signals_of(sweep, &table->columns);
+}
+
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
 {
     const double begun = clock_seconds(CLOCK_MONOTONIC);
-    const char *const journal_path = pool_print(pool, "%s.journal", request->results);
-    SweepPlan plan = {.latin = request->latin, .seed = request->seed};
-    for (int v = 0; v < request->varied; ++v)
-        vary_read(pool, &plan, request->vary[v]);
-    for (int i = 0; i < 2; ++i) {
-        source_keep(model->source, i ? journal_path : request->results);
-        source_keep(scene->source, i ? journal_path : request->results);
-    }
-    scene_no_rig(scene);
-    scene_no_implicit(scene, "a sweep");
-    scene = equilibrium_start(pool, model, scene, request->code.solve);
+    SweepPlan plan = {.latin = request->latin, .seed = request->seed, .part = request->part, .parts = request->parts};
     Sweep sweep = {.pool = pool,
                    .model = model,
                    .scene = scene,
                    .plan = &plan,
                    .quiet = request->quiet,
                    .processes = share_processes()};
-    sweep.engine = open_code(pool, request, model, scene, &sweep.many);
-    table->engine = sweep.engine;
-    plan_close(pool, &plan, model, sweep.engine);
+    open_sweep(&sweep, request, table);
+    const FolderPlan parts = {sweep_key(pool, &sweep, &request->code), plan.runs, plan.parts, table->columns,
+                              (gic_signal *)table->signal};
 
     interrupt_hold();
-    Journal journal = journal_open(pool, request->results, sweep_key(pool, &sweep, &request->code), plan.runs);
+    if (plan.part)
+        folder_plan_write(pool, request->results, &parts);
+    const char *path = plan.part ? folder_journal(pool, request->results, plan.part)
+                                 : pool_print(pool, "%s.journal", request->results);
+    Journal journal =
+        journal_open(pool, path, plan.part ? folder_key(pool, &parts, plan.part) : parts.key, plan.first, plan.count);
     const int64_t before = journal.finished;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     sweep.journal = &journal;
@@ -199,12 +215,42 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
         journal_close(&journal);
         diag_fail_as(text);
     }
-    table->signal = signals_of(&sweep, &table->columns);
-    table->runs = plan.runs;
+    table->runs = plan.count;
     table->row = journal.row;
-    write_results(&sweep, request->results, table->signal, table->columns);
-    journal_remove(&journal);
+    if (plan.part) {
+        journal_close(&journal);
+    } else {
+        write_results(&sweep, request->results, table->signal, table->columns);
+        journal_remove(&journal);
+    }
     interrupt_release();
     if (!request->quiet)
-        summary(&sweep, before, begun, start, request->results);
+        summary(&sweep, before, begun, start, plan.part ? path : request->results);
+}
+
+void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, double seconds,
+                const char *const *command, int words, SweepTable *table)
+{
+    enum { JOBS = 1000 /* of an array, as Slurm has it without another setting */, SLACK = 4 };
+    SweepPlan plan = {.latin = request->latin, .seed = request->seed, .parts = request->parts};
+    Sweep sweep = {.pool = pool, .model = model, .scene = scene, .plan = &plan, .quiet = request->quiet};
+    open_sweep(&sweep, request, table);
+    interrupt_hold();
+    const double each = sweep_seconds(&sweep);
+    if (each < 0)
+        diag_fail_as(pool_print(pool, "%s: interrupted; nothing is planned\n", program_place().source->path));
+    const double all = each * (double)plan.runs;
+    const double wanted = plan.parts ? plan.parts : fmax(1, ceil(all / seconds)), most = fmin(JOBS, (double)plan.runs);
+    const int parts = (int)(plan.parts ? wanted : fmin(wanted, most));
+    folder_plan_write(pool, request->results,
+                      &(FolderPlan){sweep_key(pool, &sweep, &request->code), plan.runs, parts, table->columns,
+                                    (gic_signal *)table->signal});
+    job_write(pool, request->results, command, words, parts, SLACK * all / parts);
+    interrupt_release();
+    if (!request->quiet)
+        diag_note(pool_print(pool,
+                             "%s: %lld runs in %d parts of about %.3g s on one processor: sbatch %s/job.sh, then %s "
+                             "--merge %s -o results.csv\n",
+                             sweep.engine->code->name, (long long)plan.runs, parts, all / parts, request->results,
+                             program_place().source->path, request->results));
 }

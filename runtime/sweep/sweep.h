@@ -32,15 +32,19 @@ typedef struct SweepPlan {
     int64_t runs;
     int64_t latin; /* 0: a grid, the last number varies fastest */
     uint64_t seed;
-    int32_t *place; /* [varied][runs] which of `latin` equal parts of the range */
-    double *share;  /* [varied][runs] where within it */
+    int32_t *place;       /* [varied][count] which of `latin` equal parts of the range */
+    double *share;        /* [varied][count] where within it */
+    int part, parts;      /* part 1 to `parts` of the sweep, 0: all of it; parts 0: it is not planned in parts */
+    int64_t first, count; /* its runs */
 } SweepPlan;
 
 /* name=low:high or name=low:high:count; the name is looked up later. Mistakes end in diag_fail_call(). */
 void vary_read(Pool *pool, SweepPlan *plan, const char *word);
 /* Look names up, count the runs. */
 void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine);
-/* The value of a varied number in a run. */
+/* The first run of part 1 to `parts`; with part = parts + 1: the number of runs. */
+int64_t part_first(int64_t runs, int part, int parts);
+/* The value of a varied number in a run of this part. */
 double plan_value(const SweepPlan *plan, int varied, int64_t run);
 
 /* ---- share.c: runs shared out among processes ----------------------------------------------------------- */
@@ -80,16 +84,18 @@ bool share_runs(Pool *pool, const Share *share, size_t processes);
 typedef struct Journal {
     Pool *pool;
     const char *path;
-    int file, *held; /* held: the same, closed where a failure ends a call */
-    int64_t runs, finished, failed;
-    const char **row; /* [runs] text of each row; NULL: not finished */
-    int first_status; /* of the failed run with the lowest number; GIC_OK: none failed */
+    int file, *held;                       /* held: the same, closed where a failure ends a call */
+    int64_t first, runs, finished, failed; /* of runs from `first` on */
+    const char **row;                      /* [runs] text of each row; NULL: not finished */
+    int first_status;                      /* of the failed run with the lowest number; GIC_OK: none failed */
     int64_t first_failed;
     const char *first_reason; /* NULL: an earlier gicsweep recorded the failure */
 } Journal;
 
-/* Open the journal beside `results`: take what an earlier gicsweep with the same key finished, or begin one. */
-Journal journal_open(Pool *pool, const char *results, const char *key, int64_t runs);
+/* Open a journal: take what an earlier gicsweep with the same key finished, or begin one. */
+Journal journal_open(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs);
+/* Only read it, perhaps while another process writes it; no file: no run is finished. */
+Journal journal_read(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs);
 /* Rows of runs, into the file and onto the disk; texts stay in use. */
 void journal_add(Journal *journal, const RunResult *result, int results);
 /* Keep it for later. */
@@ -111,19 +117,53 @@ typedef struct Sweep {
     bool quiet;
 } Sweep;
 
-/* All runs that are not finished. False: someone asked to stop. */
+/* All runs of this part that are not finished. False: someone asked to stop. */
 bool sweep_run(const Sweep *sweep);
+/* Seconds that one process takes for a run, measured with some that are spread over the sweep. Below 0: someone asked
+ * to stop. */
+double sweep_seconds(const Sweep *sweep);
+
+/* ---- folder.c: a sweep in parts ----------------------------------------------------------------------------
+ *
+ * A folder holds the file `plan`, and of each part its journal, part_I.journal. Parts know nothing of each other;
+ * whoever starts them, on whatever machine and how often, a part goes on where its journal ends. */
+
+enum { SWEEP_PARTS_MOST = 10000 };
+
+/* What the file `plan` says. */
+typedef struct FolderPlan {
+    const char *key; /* of all that determines the results */
+    int64_t runs;
+    int parts, columns;
+    gic_signal *signal; /* [columns] of the table */
+} FolderPlan;
+
+/* Write the plan into a folder, which is made; where there is a plan it must be the same. */
+void folder_plan_write(Pool *pool, const char *folder, const FolderPlan *plan);
+FolderPlan folder_plan_read(Pool *pool, const char *folder);
+/* The journal of a part, and its key. */
+const char *folder_journal(Pool *pool, const char *folder, int part);
+const char *folder_key(Pool *pool, const FolderPlan *plan, int part);
+/* Make one table of what the parts made. Fails if a run is missing, and says in which part. */
+void folder_merge(Pool *pool, const char *folder, const char *results, bool quiet);
+
+/* ---- job.c ------------------------------------------------------------------------------------------------- */
+
+/* Write folder/job.sh, an array of Slurm jobs, one for each part; command: what makes the runs but for --shard and -o.
+ * seconds: what a part may take. */
+void job_write(Pool *pool, const char *folder, const char *const *command, int words, int parts, double seconds);
 
 /* ---- sweep.c: all of it ---------------------------------------------------------------------------------- */
 
 typedef struct SweepRequest {
-    const char *results; /* a file, beside which the journal is */
+    const char *results; /* a file, beside which the journal is; of a sweep in parts a folder */
     const char *engine;  /* each run by itself; NULL: lanes where they can be had */
     EngineOptions code;
     const char *const *vary; /* [varied] words for vary_read() */
     int varied;
     int64_t latin; /* 0: a grid */
     uint64_t seed;
+    int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */
     bool quiet;
 } SweepRequest;
 
@@ -138,5 +178,9 @@ typedef struct SweepTable {
 
 /* Make the runs and write the results. Ends in diag_fail where that can't be. */
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table);
+/* Plan it into the folder request->results, in request->parts parts, or in such as take one process about `seconds`.
+ * command: for job_write(). */
+void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, double seconds,
+                const char *const *command, int words, SweepTable *table);
 
 #endif
