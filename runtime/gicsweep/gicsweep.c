@@ -28,6 +28,11 @@ static const char help[] =
     "                     grid the last one varies fastest\n"
     "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
     "                     once, in random order\n"
+    "      --metric 'NAME [UNIT]=FUNCTION(FORMULA)'\n"
+    "                     one more column: end, min, max, mean, rms, integral, time_of_min,\n"
+    "                     time_of_max, crossing or overshoot of a formula of outputs, inputs and\n"
+    "                     parameters, over output times; rms(FORMULA, WEIGHT) and\n"
+    "                     crossing(FORMULA, LEVEL), too: models/SCENE.md section 6\n"
     "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
     "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
     "                     FILE.journal: the same command goes on where it was stopped\n"
@@ -57,7 +62,7 @@ typedef struct Asked {
     const char *model;
     gicl_options options;
     gicl_sweep sweep;
-    const char **vary;            /* [count of words] */
+    const char **vary, **metric;  /* [count of words] */
     const char *planned, *merged; /* folders of --slurm and --merge; NULL: not asked for */
     double chunk;                 /* s; 0: not given */
     bool quiet;
@@ -67,6 +72,12 @@ static void read_vary(void *asked, char *word)
 {
     Asked *a = asked;
     a->vary[a->sweep.varied++] = word;
+}
+
+static void read_metric(void *asked, char *word)
+{
+    Asked *a = asked;
+    a->metric[a->sweep.metrics++] = word;
 }
 
 static void read_latin(void *asked, char *word)
@@ -128,6 +139,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     const Option option[] = {
         {"vary", .read = read_vary},
         {"latin", .read = read_latin},
+        {"metric", .read = read_metric},
         {"seed", .read = read_seed},
         {"output", 'o', .text = &sweep->results},
         {"shard", .read = read_shard},
@@ -168,6 +180,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     asked->model = word[first];
     sweep->scene = word[first + 1];
     sweep->vary = asked->vary;
+    sweep->metric = asked->metric;
 }
 
 /* The words that make one part, but for --shard and -o. Returns their number. */
@@ -184,6 +197,10 @@ static int command_of(const Asked *asked, char *const *called, const char **word
     for (int v = 0; v < sweep->varied; ++v) {
         word[words++] = "--vary";
         word[words++] = sweep->vary[v];
+    }
+    for (int m = 0; m < sweep->metrics; ++m) {
+        word[words++] = "--metric";
+        word[words++] = sweep->metric[m];
     }
     if (sweep->latin) {
         snprintf(number[0], sizeof number[0], "%lld", (long long)sweep->latin);
@@ -206,10 +223,12 @@ static int command_of(const Asked *asked, char *const *called, const char **word
 int main(int count, char **word)
 {
     enum { OTHERS = 13 };
-    const char *vary[count], *command[2 * count + OTHERS];
+    const char *vary[count], *metric[count], *command[2 * count + OTHERS];
     enum { CHUNK = 600 /* s */ };
-    Asked asked = {
-        .options = {.size = sizeof asked.options}, .sweep = {.size = sizeof asked.sweep, .seed = 1}, .vary = vary};
+    Asked asked = {.options = {.size = sizeof asked.options},
+                   .sweep = {.size = sizeof asked.sweep, .seed = 1},
+                   .vary = vary,
+                   .metric = metric};
     read_command_line(&asked, count, word);
     const gicl_listener terminal = {
         .size = sizeof terminal, .program = program_place().source->path, .hear = terminal_hear, .signals = 1};

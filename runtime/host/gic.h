@@ -293,6 +293,8 @@ typedef struct gicl_sweep {
     /* Only part 1 to `parts` of the runs, in any order and on any machines: `results` is a folder then, in which each
      * part keeps its finished runs. 0 and 0: all runs. */
     int part, parts;
+    const char *const *metric; /* [metrics] NAME=FUNCTION(FORMULA) */
+    int metrics;
 } gicl_sweep;
 
 /* Runs are made in $OMP_NUM_THREADS processes, by default one for each processor. *result (result NULL: not wanted):

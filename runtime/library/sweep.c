@@ -4,6 +4,7 @@
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/gic.h"
+#include "host/host.h"
 #include "library/library_private.h"
 #include "library/result_private.h"
 #include "scene/scene.h"
@@ -36,12 +37,21 @@ static void sweep(void *context)
     const gicl_sweep *asked = s->asked;
     const OpenModel *open = s->open;
     const Model *model = model_once(s->open, s->pool);
+    Metric *metric = pool_alloc(s->pool, sizeof *metric * (size_t)(asked->metrics + 1));
+    for (int m = 0; m < asked->metrics; ++m) {
+        model = metric_read(s->pool, model, asked->metric[m], &metric[m]);
+        for (int k = 0; k < m; ++k)
+            if (!strcmp(metric[k].name, metric[m].name))
+                diag_fail_call(program_place(), "give it another name", "there are two metrics '%s'", metric[m].name);
+    }
     const Scene *scene = scene_read(s->pool, asked->scene, model, open->integrator, open->tolerance);
     SweepRequest request = {.results = asked->results,
                             .engine = asked->alone ? open->engine_name : NULL,
                             .code = open->options,
                             .vary = asked->vary,
                             .varied = asked->varied,
+                            .metrics = asked->metrics,
+                            .metric = metric,
                             .latin = asked->latin,
                             .seed = asked->seed,
                             .part = asked->part,
@@ -87,6 +97,11 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
         return call_wrong(said, NULL, "runs of a Latin hypercube are 1 to %d, or 0: a grid", GICL_SWEEP_MOST);
     if (asked->parts < 0 || asked->parts > GICL_PARTS_MOST || asked->part < 0 || asked->part > asked->parts)
         return call_wrong(said, NULL, "parts are 1 to %d, or 0: no parts, and a part is one of them", GICL_PARTS_MOST);
+    if (asked->metrics < 0 || (asked->metrics && !asked->metric))
+        return call_wrong(said, NULL, "'metrics' is the number of words in 'metric'");
+    for (int m = 0; m < asked->metrics; ++m)
+        if (!asked->metric[m])
+            return call_wrong(said, NULL, "number %d of the metrics is NULL", m);
     for (int v = 0; v < asked->varied; ++v)
         if (!asked->vary[v])
             return call_wrong(said, NULL, "number %d of what varies is NULL", v);

@@ -1,93 +1,16 @@
 /* SPDX-License-Identifier: MIT
  * The formula of --gradient as the only output of a model. */
-#include "base/message.h"
-#include "base/yaml.h"
+#include "base/pool.h"
+#include "run/formula_output.h"
 #include "run/gradient.h"
-
-#include <string.h>
-
-static const char what[] = "the formula of --gradient";
-
-/* What stands between the parentheses of NAME(...); NULL: the text is another one. */
-static const char *inside(Pool *pool, const char *text, const char *name)
-{
-    const size_t head = strlen(name), size = strlen(text);
-    int depth = 1;
-    if (strncmp(text, name, head) != 0 || text[head] != '(' || text[size - 1] != ')')
-        return NULL;
-    for (const char *c = text + head + 1; c < text + size - 1; ++c) {
-        depth += (*c == '(') - (*c == ')');
-        if (depth == 0)
-            return NULL;
-    }
-    return pool_print(pool, "%.*s", (int)(size - head - 2), text + head + 1);
-}
-
-/* The signal of a name: an entry of `signals`, or a component of an output, which becomes one. -1: there is none. */
-static int find_signal(Pool *pool, Model *model, const Model *from, const char *name)
-{
-    for (int i = 0; i < model->signals; ++i)
-        if (!strcmp(model->signal[i].name, name))
-            return i;
-    for (int i = 0; i < from->outputs; ++i)
-        for (int k = 0; k < from->output[i].count; ++k) {
-            const Output *output = &from->output[i];
-            if (strcmp(output->component[k], name) != 0)
-                continue;
-            if (output->type == OUTPUT_SIGNAL)
-                return output->index;
-            *POOL_PUSH(pool, model->signal, model->signals) =
-                (Signal){.name = name, .unit = output->unit[k], .at = output->at, .output = *output, .component = k};
-            return model->signals - 1;
-        }
-    return -1;
-}
-
-/* Signals that the formula names. */
-static void find_signals(Pool *pool, Model *model, const Model *from, const SignalReads *reads)
-{
-    const char **known = NULL;
-    int count = 0;
-    for (int i = 0; i < from->signals; ++i)
-        *POOL_PUSH(pool, known, count) = from->signal[i].name;
-    for (int i = 0; i < from->outputs; ++i)
-        for (int k = 0; k < from->output[i].count; ++k)
-            *POOL_PUSH(pool, known, count) = from->output[i].component[k];
-    for (int i = 0; i < reads->count; ++i) {
-        const SignalRead *read = &reads->read[i];
-        read->law->index = find_signal(pool, model, from, read->name);
-        read->law->number = 1;
-        if (read->law->index < 0)
-            law_name_unknown(pool, &read->names, what, read->name, read->at, known, count);
-    }
-}
 
 Scalar scalar_read(Pool *pool, const Model *from, const char *text)
 {
-    Model *model = pool_alloc(pool, sizeof *model);
-    *model = *from;
-    model->signal = NULL;
-    model->signals = 0;
-    for (int i = 0; i < from->signals; ++i)
-        *POOL_PUSH(pool, model->signal, model->signals) = from->signal[i];
-    const char *integral = inside(pool, text, "integral"), *maximum = inside(pool, text, "maximum");
+    const char *integral = formula_inside(pool, text, "integral"), *maximum = formula_inside(pool, text, "maximum");
     const char *formula = integral ? integral : maximum ? maximum : text;
-    const Source *source = source_text(pool, "--gradient", formula, strlen(formula));
-    const Item item = {.kind = ITEM_SCALAR, .at = {source, 1, 1}, .text = formula};
-    SignalReads reads = {0};
-    const LawNames names = {.model = from, .reads = &reads};
-    const Law *law = law_parse(pool, &item, what, &names);
-    find_signals(pool, model, from, &reads);
-    *POOL_PUSH(pool, model->signal, model->signals) =
-        (Signal){.name = "gradient", .unit = "1", .at = item.at, .law = law};
-    model->output = pool_alloc(pool, sizeof *model->output);
-    *model->output = (Output){.name = "gradient",
-                              .at = item.at,
-                              .type = OUTPUT_SIGNAL,
-                              .index = model->signals - 1,
-                              .count = 1,
-                              .component = {"gradient"},
-                              .unit = {"1"}};
+    Model *model = formula_output(pool, from, "--gradient", "gradient", formula);
+    model->output += model->outputs - 1;
     model->outputs = model->output_components = 1;
+    model->output->hidden = false;
     return (Scalar){integral ? SCALAR_INTEGRAL : maximum ? SCALAR_MAXIMUM : SCALAR_END, model};
 }

@@ -35,10 +35,11 @@ typedef struct Slot {
     int64_t run;
     Scene scene; /* its own; `user` of the instance */
     int status;
-    const char *reason; /* why it failed */
-    double time;        /* the time up to which it succeeded */
-    Range *range;       /* [columns] */
-    StepWatch *watch;   /* NULL: not watched */
+    const char *reason;  /* why it failed */
+    double time;         /* the time up to which it succeeded */
+    Range *range;        /* [columns] */
+    MetricState *metric; /* [metrics] */
+    StepWatch *watch;    /* NULL: not watched */
 } Slot;
 
 typedef struct Runner {
@@ -126,6 +127,18 @@ static void record(Slot *slot, int column, double value)
     range->greatest = first ? value : fmax(range->greatest, value);
 }
 
+/* All of a slot at an output time. value: of a signal of a vehicle. */
+static void record_all(const Sweep *sweep, Slot *slot, double (*value)(const void *of, int signal), const void *of)
+{
+    for (int c = 0; c < sweep->scene->columns; ++c)
+        record(slot, c, value(of, sweep->scene->column[c]));
+    for (int m = 0; m < sweep->metrics; ++m) {
+        const Metric *metric = &sweep->metric[m];
+        metric_see(metric, &slot->metric[m], slot->time, value(of, metric->signal),
+                   metric->other >= 0 ? value(of, metric->other) : 1);
+    }
+}
+
 static void add_number(Text *row, double value)
 {
     char digits[CSV_DIGITS];
@@ -146,6 +159,8 @@ static const char *row_text(Pool *pool, const Sweep *sweep, const Slot *slot)
         add_number(&row, slot->range[c].least);
         add_number(&row, slot->range[c].greatest);
     }
+    for (int m = 0; m < sweep->metrics; ++m)
+        add_number(&row, metric_value(&sweep->metric[m], &slot->metric[m]));
     return pool_print(sweep->journal->pool, "%s", row.s);
 }
 
@@ -207,6 +222,22 @@ static void judge(const Runner *r, Slot *slot)
 
 /* ---- batches -------------------------------------------------------------------------------------------------- */
 
+/* A vehicle in lanes. */
+typedef struct InLanes {
+    const Runner *r;
+    int place;
+} InLanes;
+
+/* Of a vehicle in lanes: instances don't take outputs with them, but inputs. */
+static double value_in_lanes(const void *of, int signal)
+{
+    const InLanes *in = of;
+    const Sweep *sweep = in->r->sweep;
+    const bool input = signal >= sweep->engine->code->output_count;
+    return input ? scene_value(sweep->engine->code, in->r->one, signal)
+                 : sweep->many->output(in->r->batch, in->place, signal);
+}
+
 /* Outputs of all slots that go on, at the present time. */
 static void look_at_batch(Runner *r)
 {
@@ -220,12 +251,8 @@ static void look_at_batch(Runner *r)
         many->store(r->batch, i, r->one);
         set_status(r, slot, many->status(r->batch, i), r->one);
         slot->time = gic_time(r->one);
-        for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c) {
-            const int column = sweep->scene->column[c]; /* instances don't take outputs with them, but inputs */
-            const bool input = column >= sweep->engine->code->output_count;
-            record(slot, c,
-                   input ? scene_value(sweep->engine->code, r->one, column) : many->output(r->batch, i, column));
-        }
+        if (slot->status == GIC_OK)
+            record_all(sweep, slot, value_in_lanes, &(InLanes){r, i});
     }
 }
 
@@ -316,6 +343,12 @@ static void run_lanes(Runner *r)
         judge(r, &r->slot[i]);
 }
 
+static double value_alone(const void *of, int signal)
+{
+    const Runner *r = of;
+    return scene_value(r->sweep->engine->code, r->copy, signal);
+}
+
 /* The present outputs of the only slot. */
 static void look_at_one(Runner *r)
 {
@@ -325,8 +358,8 @@ static void look_at_one(Runner *r)
     memcpy(r->copy, r->one, code->size); /* outputs are computed on a copy */
     slot->time = gic_time(r->one);
     set_status(r, slot, code->outputs(r->copy), r->copy);
-    for (int c = 0; c < sweep->scene->columns && slot->status == GIC_OK; ++c)
-        record(slot, c, scene_value(code, r->copy, sweep->scene->column[c]));
+    if (slot->status == GIC_OK)
+        record_all(sweep, slot, value_alone, r);
 }
 
 static void run_one(Runner *r)
@@ -369,6 +402,8 @@ static void take_up(Runner *r, Slot *slot, int64_t run)
     slot->reason = NULL;
     for (int c = 0; c < sweep->scene->columns; ++c)
         slot->range[c] = (Range){NAN, NAN, NAN};
+    for (int m = 0; m < sweep->metrics; ++m)
+        slot->metric[m] = (MetricState){0};
 }
 
 /* The result of a slot's run; its texts live as long as the journal. */
@@ -429,8 +464,10 @@ static Runner runner_open(const Sweep *sweep)
     Pool *pool = sweep->pool;
     Runner r = {.sweep = sweep, .slots = sweep->many ? sweep->many->vehicles : 1, .before = sweep->journal->finished};
     r.slot = pool_alloc(pool, sizeof *r.slot * (size_t)r.slots);
-    for (int i = 0; i < r.slots; ++i)
+    for (int i = 0; i < r.slots; ++i) {
         r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
+        r.slot[i].metric = pool_alloc(pool, sizeof(MetricState) * (size_t)(sweep->metrics + 1));
+    }
     r.one = instance_new(pool, sweep->engine);
     r.copy = instance_new(pool, sweep->engine);
     r.theory = step_theory_new(pool, sweep->model);

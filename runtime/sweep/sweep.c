@@ -87,6 +87,8 @@ static const char *sweep_key(Pool *pool, const Sweep *sweep, const EngineOptions
     for (int v = 0; v < plan->varied; ++v)
         text_print(&text, " %s=%.17g:%.17g:%lld", plan->vary[v].name, plan->vary[v].low, plan->vary[v].high,
                    (long long)plan->vary[v].count);
+    for (int m = 0; m < sweep->metrics; ++m)
+        text_print(&text, " %s", sweep->metric[m].word);
     int words;
     const char **word = compiler_words(pool, code->compiler, build_flags, code->flags, &words);
     for (int i = 0; i < words; ++i)
@@ -105,14 +107,14 @@ static const char *unit_of(const Sweep *sweep, const Vary *vary)
     }
 }
 
-/* Columns: the number of the run, the varied numbers, status and time, three of each output of the scene. */
+/* Columns: the number of the run, the varied numbers, status and time, three of each output of the scene, metrics. */
 static gic_signal *signals_of(const Sweep *sweep, int *count)
 {
     static const char *const part[] = {"end", "min", "max"};
     enum { OTHERS = 3, PARTS = sizeof part / sizeof *part };
     Pool *pool = sweep->pool;
     const int varied = sweep->plan->varied;
-    *count = OTHERS + varied + PARTS * sweep->scene->columns;
+    *count = OTHERS + varied + PARTS * sweep->scene->columns + sweep->metrics;
     gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)*count), *next = signal;
     *next++ = (gic_signal){"run", NULL};
     for (int v = 0; v < varied; ++v)
@@ -124,6 +126,8 @@ static gic_signal *signals_of(const Sweep *sweep, int *count)
         for (int p = 0; p < PARTS; ++p)
             *next++ = (gic_signal){pool_print(pool, "%s.%s", of->name, part[p]), of->unit};
     }
+    for (int m = 0; m < sweep->metrics; ++m)
+        *next++ = (gic_signal){sweep->metric[m].name, sweep->metric[m].unit};
     return signal;
 }
 
@@ -192,6 +196,8 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
                    .model = model,
                    .scene = scene,
                    .plan = &plan,
+                   .metrics = request->metrics,
+                   .metric = request->metric,
                    .quiet = request->quiet,
                    .processes = share_processes()};
     open_sweep(&sweep, request, table);
@@ -233,7 +239,13 @@ void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepR
 {
     enum { JOBS = 1000 /* of an array, as Slurm has it without another setting */, SLACK = 4 };
     SweepPlan plan = {.latin = request->latin, .seed = request->seed, .parts = request->parts};
-    Sweep sweep = {.pool = pool, .model = model, .scene = scene, .plan = &plan, .quiet = request->quiet};
+    Sweep sweep = {.pool = pool,
+                   .model = model,
+                   .scene = scene,
+                   .plan = &plan,
+                   .metrics = request->metrics,
+                   .metric = request->metric,
+                   .quiet = request->quiet};
     open_sweep(&sweep, request, table);
     interrupt_hold();
     const double each = sweep_seconds(&sweep);

@@ -47,6 +47,48 @@ int64_t part_first(int64_t runs, int part, int parts);
 /* The value of a varied number in a run of this part. */
 double plan_value(const SweepPlan *plan, int varied, int64_t run);
 
+/* ---- metric.c: numbers of a run by formula --------------------------------------------------------------- */
+
+typedef enum MetricKind {
+    METRIC_END,
+    METRIC_MIN,
+    METRIC_MAX,
+    METRIC_MEAN,
+    METRIC_RMS,
+    METRIC_INTEGRAL,
+    METRIC_TIME_OF_MIN,
+    METRIC_TIME_OF_MAX,
+    METRIC_CROSSING,
+    METRIC_OVERSHOOT,
+    METRIC_KINDS
+} MetricKind;
+
+/* By the definitions of models/SCENE.md section 6, over output times. */
+typedef struct Metric {
+    const char *name, *unit; /* unit: NULL: not known */
+    const char *word;        /* as the user wrote it */
+    MetricKind kind;
+    int signal, other; /* of the formula; of the weight of METRIC_RMS or the level of METRIC_CROSSING, -1: none */
+} Metric;
+
+/* What a metric knows of a run so far. */
+typedef struct MetricState {
+    int samples;
+    double time, value, other; /* of the last sample, */
+    double begin, first;       /* and time and value of the first */
+    double least, greatest, time_of_least, time_of_greatest;
+    double integral, weight; /* of the value, of its square times the weight, or of the weight */
+    double crossing;         /* NAN: none yet */
+} MetricState;
+
+/* Read NAME=FUNCTION(FORMULA) or NAME [UNIT]=..., and add its formulas to the outputs of the model. Ends in diag_fail.
+ */
+const Model *metric_read(Pool *pool, const Model *model, const char *word, Metric *metric);
+/* The next sample of a run, from its start on. */
+void metric_see(const Metric *metric, MetricState *state, double time, double value, double other);
+/* NAN: the run has no such number. */
+double metric_value(const Metric *metric, const MetricState *state);
+
 /* ---- share.c: runs shared out among processes ----------------------------------------------------------- */
 
 /* The result of a run. */
@@ -112,7 +154,9 @@ typedef struct Sweep {
     SweepPlan *plan;
     const Engine *engine;
     const gic_batch_model *many; /* NULL: no lanes */
-    int processes;               /* most processes */
+    int metrics;
+    const Metric *metric;
+    int processes; /* most processes */
     Journal *journal;
     bool quiet;
 } Sweep;
@@ -161,7 +205,9 @@ typedef struct SweepRequest {
     EngineOptions code;
     const char *const *vary; /* [varied] words for vary_read() */
     int varied;
-    int64_t latin; /* 0: a grid */
+    int metrics;
+    const Metric *metric; /* read before the scene: the model has their formulas */
+    int64_t latin;        /* 0: a grid */
     uint64_t seed;
     int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */
     bool quiet;
