@@ -475,6 +475,13 @@ static void compare_attitude(Comparison *c, Kind which, const Output *output, co
         compare(c, which, output->name, upright && i % 3 ? 0 : A[i] - B[i], 1);
 }
 
+/* A formula that has no value at a state, such as the root of a negative number, is the same on both sides when neither
+ * has one. */
+static bool has_no_value(const Output *output, double value, double right)
+{
+    return output->type == OUTPUT_SIGNAL && !isfinite(value) && !isfinite(right);
+}
+
 /* Compare an output's components, at column k, with given values. */
 void compare_output(Comparison *c, Kind which, const Output *output, Values *given, const double *right)
 {
@@ -486,7 +493,8 @@ void compare_output(Comparison *c, Kind which, const Output *output, Values *giv
         return;
     }
     for (int j = 0; j < output->count; ++j)
-        compare(c, which, output->component[j], value[j] - right[j], output_scale(c, output, right, j));
+        if (!has_no_value(output, value[j], right[j]))
+            compare(c, which, output->component[j], value[j] - right[j], output_scale(c, output, right, j));
 }
 
 static void compare_outputs(Comparison *c, bool reactions)

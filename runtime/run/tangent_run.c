@@ -12,6 +12,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "run/engines.h"
+#include "run/formula_blame.h"
 #include "run/knot.h"
 #include "scene/profile.h"
 #include "tape/engine_tape.h"
@@ -27,12 +28,14 @@ typedef struct Both {
 
 struct TangentRun {
     Pool *pool;
+    const Model *model; /* of the vehicle */
+    Solve solve;
     const Engine *engine; /* tape */
     const Scene *scene;
     const Linear *linear;
     const gic_model *code; /* of the vehicle */
     Instance *self, *copy; /* the vehicle at the state and time that were evaluated last; for looks */
-    gic_model model;       /* of both */
+    gic_model descriptor;  /* of both */
     Both *both;
     int variables;
     RunVariable *variable;
@@ -188,7 +191,7 @@ static void take_state(const TangentRun *run, double time, const double *state)
     head->steps = 0;
     head->ahead = run->both->head.ahead;
     memcpy(tape_array(run->self, run->code->state_offset), state, (size_t)run->states * sizeof *state);
-    memcpy(tape_array(run->self, run->code->input_offset), array_of(run->both, run->model.input_offset),
+    memcpy(tape_array(run->self, run->code->input_offset), array_of(run->both, run->descriptor.input_offset),
            (size_t)run->inputs * sizeof *state);
 }
 
@@ -198,7 +201,7 @@ static int slope_along(const TangentRun *run, const double *state, int k, int ou
     const Direction *along = &run->linear->along;
     const RunVariable *v = &run->variable[k];
     memcpy(along->y, state + run->states * (1 + k), (size_t)run->states * sizeof *state);
-    memcpy(along->u, array_of(run->both, run->model.input_offset) + run->inputs * (1 + k),
+    memcpy(along->u, array_of(run->both, run->descriptor.input_offset) + run->inputs * (1 + k),
            (size_t)run->inputs * sizeof *state);
     memset(along->port, 0, (size_t)run->code->port_count * sizeof *along->port);
     memset(along->p, 0, (size_t)run->code->parameter_count * sizeof *along->p);
@@ -215,6 +218,8 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     int status = run->code->rhs(run->self, time, own, rate);
     for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, 0);
+        if (status == GIC_OK && !gic_finite(run->linear->drate, run->states))
+            status = GIC_ERROR_RESULT;
         memcpy(rate + run->states * (1 + k), run->linear->drate, (size_t)run->states * sizeof *rate);
     }
     return status;
@@ -242,7 +247,7 @@ static void make_both(TangentRun *run)
     const size_t all = (size_t)(run->states * (1 + run->variables));
     const size_t inputs = (size_t)(run->inputs * (1 + run->variables));
     size_t at = sizeof(Both);
-    gic_model *model = &run->model;
+    gic_model *model = &run->descriptor;
     *model = (gic_model){.abi_version = GIC_ABI_VERSION,
                          .real_size = sizeof(double),
                          .name = run->code->name,
@@ -317,6 +322,16 @@ void tangent_fail(const TangentRun *run, int status)
     if (run->shifted)
         diag_fail((Place){run->scene->source, 0, 0}, "end the run before, or keep the gear by its selector",
                   "a gear changes at t = %.6g s: gradients through changes of gear are not found", tangent_time(run));
+    Blame blame;
+    if (status == GIC_ERROR_RESULT &&
+        formula_blame(run->pool, run->model, run->solve, run->self, &run->linear->along, &blame))
+        diag_fail(blame.at,
+                  blame.has_value
+                      ? "keep away from ends of roots and powers: sqrt(abs(x) + 1e-6) for sqrt(abs(x)), for one"
+                      : "keep what is under a root or logarithm above 0, by max(x, 0.001) for one, and what "
+                        "is divided by away from 0",
+                  "%s has no finite %s at t = %.6g s", blame.what, blame.has_value ? "derivative" : "value",
+                  gic_time(run->self));
     diag_fail((Place){run->scene->source, 0, 0}, "run the scene by itself: the message at its end says more",
               "the run with its derivatives ends at t = %.6g s: %s", tangent_time(run),
               instance_status(run->pool, run->code, &run->self->head, status));
@@ -329,6 +344,8 @@ TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Sol
     TangentRun *run = pool_alloc(pool, sizeof *run);
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .quiet = true});
     *run = (TangentRun){.pool = pool,
+                        .model = model,
+                        .solve = solve,
                         .engine = engine,
                         .scene = scene,
                         .linear = linear_open(pool, engine),
@@ -364,12 +381,12 @@ double tangent_time(const TangentRun *run)
 
 int tangent_begin(TangentRun *run, const Scene *scene)
 {
-    double *state = array_of(run->both, run->model.state_offset);
-    double *input = array_of(run->both, run->model.input_offset);
+    double *state = array_of(run->both, run->descriptor.state_offset);
+    double *input = array_of(run->both, run->descriptor.input_offset);
     run->scene = scene;
     run->shifted = false;
     gic_restart(run->both, 0);
-    memset(state, 0, (size_t)run->model.slow_count * sizeof *state);
+    memset(state, 0, (size_t)run->descriptor.slow_count * sizeof *state);
     int status = scene_start(run->engine, scene, &run->self->head);
     run->self->head.input_function = NULL;
     if (status != GIC_OK)
@@ -389,17 +406,17 @@ int tangent_begin(TangentRun *run, const Scene *scene)
 
 int tangent_look(TangentRun *run, double *value, double *slope)
 {
-    const double *state = array_of(run->both, run->model.state_offset);
+    const double *state = array_of(run->both, run->descriptor.state_offset);
     take_state(run, gic_time(run->both), state);
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
     for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, run->outputs);
+        if (status == GIC_OK && !gic_finite(run->linear->drate, run->states + run->outputs))
+            status = GIC_ERROR_RESULT;
         for (int i = 0; i < run->outputs; ++i)
             slope[i * run->variables + k] = run->linear->drate[run->states + i];
     }
-    if (status == GIC_OK && !gic_finite(slope, run->outputs * run->variables))
-        status = GIC_ERROR_RESULT;
     return status;
 }
 
@@ -407,11 +424,11 @@ int tangent_look(TangentRun *run, double *value, double *slope)
 static bool gear_changes(const TangentRun *run)
 {
     memcpy(run->copy, run->self, run->code->size);
-    memcpy(tape_array(run->copy, run->code->state_offset), array_of(run->both, run->model.state_offset),
+    memcpy(tape_array(run->copy, run->code->state_offset), array_of(run->both, run->descriptor.state_offset),
            (size_t)run->states * sizeof(double));
     run->copy->head.start_time = gic_time(run->both);
     run->copy->head.steps = 0;
-    memcpy(tape_array(run->copy, run->code->input_offset), array_of(run->both, run->model.input_offset),
+    memcpy(tape_array(run->copy, run->code->input_offset), array_of(run->both, run->descriptor.input_offset),
            (size_t)run->inputs * sizeof(double));
     return run->code->shift && run->code->shift(run->copy);
 }
@@ -421,9 +438,9 @@ int tangent_step(TangentRun *run)
     gic_head *head = &run->both->head;
     const double start = gic_time(head);
     const int history = head->history;
-    int status = gic_step(&run->model, run->both, run->scene->step, run->scene->method);
+    int status = gic_step(&run->descriptor, run->both, run->scene->step, run->scene->method);
     if (status == GIC_OK)
-        status = knots_cross(&run->model, run->scene, head, start, history);
+        status = knots_cross(&run->descriptor, run->scene, head, start, history);
     if (status == GIC_OK && gear_changes(run)) {
         run->shifted = true;
         return GIC_ERROR_EVENTS;

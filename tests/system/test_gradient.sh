@@ -57,7 +57,29 @@ mistake 2 "there is no 'parameter/none'" --gradient chassis.x "$car" "$work/shor
 mistake 2 'no scene given' --gradient chassis.x "$car"
 mistake 2 'does not go with --engine' --engine cc --gradient chassis.x "$car" "$work/short.scene"
 mistake 2 'one of --eval' --modes --gradient chassis.x "$car" "$work/short.scene"
-mistake 1 'the run with its derivatives ends at t = 0 s' --gradient 'integral(sqrt(abs(rate(rack))))' "$car" "$work/short.scene"
+mistake 1 "1:1: error: signal 'gradient' has no finite derivative at t = 0 s" --gradient 'integral(sqrt(abs(rate(rack))))' "$car" "$work/short.scene"
+
+# ---- formulas past the end of a root or power, also at states of the validation
+spring=$work/spring.veh # which gradient.py left
+scene 'step: 0.01\ninitial: {coordinates: {x: 0.5}, rates: {x: 1}}'
+for formula in 'sqrt(x + 1)' '(x + 1)^0.5' '(x + 1)^1.5' 'log(x + 1)'; do
+    run --gradient "$formula" "$spring" "$work/bad.scene" initial/x -o "$work/root.csv"
+    check "$formula has a value in this run" exits 0
+    mistake 1 "1:1: error: signal 'gradient' has no finite value at t = 0" --gradient "integral($(echo "$formula" | sed 's/+ 1/- 0.25/'))" "$spring" "$work/bad.scene" initial/x
+done
+for law in 'sqrt(x)' 'x^0.5' '(x - 0.1)^1.5'; do
+    sed "s/\"-k \* x .*/\"-k * $law - c * rate(x) + push\"}/" "$spring" >"$work/root.veh"
+    mistake 1 "root.veh:18:3: error: force 'spring' has no finite value at t = 0." --gradient cart.x "$work/root.veh" "$work/bad.scene"
+    printf 'time [s],cart.x [m]\n0.2,0.4\n0.5,0.1\n1,0\n' >"$work/m.csv"
+    mistake 1 "root.veh:18:3: error: force 'spring' has no finite value at t = 0." --identify "$work/m.csv" "$work/root.veh" "$work/bad.scene" parameter/k
+done
+sed 's/"-k \* x .*/"-k * x * abs(rate(x) - 1)^0.5"}/' "$spring" >"$work/root.veh"
+mistake 1 "root.veh:18:3: error: force 'spring' has no finite derivative at t = 0 s" --gradient cart.x "$work/root.veh" "$work/bad.scene"
+sed 's/^outputs:/signals:\n  inner: "sqrt(x)"\n  outer: "2 * inner"\noutputs:\n  outer: {type: signal, signal: outer}/' "$spring" >"$work/root.veh"
+run -q "$work/root.veh" "$work/bad.scene" -o "$work/root.csv"
+check 'an output that is a root ends the run, not the validation' says 'a result is not a finite number'
+printf 'time [s],outer [1]\n0.2,0.4\n1,0\n' >"$work/m.csv"
+mistake 1 "root.veh:20:3: error: signal 'inner' has no finite value at t = " --identify "$work/m.csv" "$work/root.veh" "$work/bad.scene" parameter/k
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
