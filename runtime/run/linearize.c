@@ -80,28 +80,51 @@ static void link_subset(Instance *self, TapeLinks *links, int s, double *q, doub
     }
 }
 
+/* Which side of kinks; or the journal in which all is noted for the way back. */
+typedef struct Sides {
+    double near;
+    int *kinks;
+    TapeJournal *journal;
+} Sides;
+
+/* What link_subset() copied: the Newton start, on which the solution does not depend, and coordinates. */
+static void note_links(const Linear *linear, TapeLinks *slope, int s)
+{
+    const TapeEngine *engine = linear->engine;
+    const Subset *subset = &engine->formulation->sequence->subset[s];
+    double *all = tape_start(linear->slope), *xd = tape_array(linear->slope, engine->xd_offset);
+    memset(linear->q, 0, 7 * (size_t)subset->bodies * sizeof(double));
+    journal_copy(linear->journal, NULL, linear->q, 7 * subset->bodies);
+    journal_copy(linear->journal, NULL, slope->change, subset->deps);
+    for (int j = 0; j < subset->deps; ++j) {
+        journal_copy(linear->journal, all + subset->dep[j], &slope->x[j], 1);
+        journal_copy(linear->journal, xd + subset->dep[j], &slope->rate[j], 1);
+    }
+}
+
 /* Derivatives of all subsets; the configuration in `value` is recovered already. y, dy: the state and its change. */
-static int recover(const Linear *linear, const double *y, const double *dy, double near, int *kinks)
+static int recover(const Linear *linear, const double *y, const double *dy, const Sides *sides)
 {
     const TapeEngine *engine = linear->engine;
     const Sequence *sequence = engine->formulation->sequence;
-    const TapeWorld none = {.near = near, .kinks = kinks};
-    TapeLinks value = linear->value_links, slope = linear->slope_links;
-    double step[2], dstep[2];
+    const TapeWorld none = {.near = sides->near, .kinks = sides->kinks, .journal = sides->journal};
+    TapeLinks *value = linear->links[0], *slope = linear->links[1];
     if (engine->code.free_base) {
-        memcpy(value.turn, y + linear->places + 4, sizeof value.turn);
-        memcpy(slope.turn, dy + linear->places + 4, sizeof slope.turn);
+        memcpy(value->turn, y + linear->places + 4, sizeof value->turn);
+        memcpy(slope->turn, dy + linear->places + 4, sizeof slope->turn);
     }
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0)
             continue;
-        link_subset(linear->value, &value, s, engine->q, step);
-        link_subset(linear->slope, &slope, s, linear->q, dstep);
+        link_subset(linear->value, value, s, engine->q, linear->step[0]);
+        link_subset(linear->slope, slope, s, linear->q, linear->step[1]);
+        if (sides->journal)
+            note_links(linear, slope, s);
         const int corrections = engine->class[subset->class].closed ? 1 : 2;
         for (int i = 0; i < corrections; ++i) {
-            const int status = tape_play_dual(engine->class[subset->class].solve, engine->member[s], value.array,
-                                              slope.array, &none, engine->frame, linear->frame);
+            const int status = tape_play_dual(engine->class[subset->class].solve, engine->member[s], value->array,
+                                              slope->array, &none, engine->frame, linear->frame);
             if (status != GIC_OK)
                 return status;
         }
@@ -125,29 +148,30 @@ static void scatter(const Linear *linear, const double *dy, const double *du)
 
 /* A direction, in the instance of derivatives: what changes besides the state. Geometric parameters change the derived
  * numbers. */
-static int set_direction(const Linear *linear, const Direction *along)
+static int set_direction(const Linear *linear, const Direction *along, TapeJournal *journal)
 {
     const gic_model *code = &linear->engine->code;
     double *dp = tape_array(linear->slope, code->parameter_offset);
     memcpy(tape_array(linear->slope, code->input_offset), along->u, (size_t)code->input_count * sizeof(double));
     memcpy(tape_array(linear->slope, code->port_offset), along->port, (size_t)code->port_count * sizeof(double));
     memcpy(dp, along->p, (size_t)code->parameter_count * sizeof *dp);
-    bool tuned = false;
+    bool tuned = journal && linear->engine->derive;
     for (int i = 0; linear->engine->derive && i < code->parameter_count; ++i)
         tuned = tuned || dp[i] != 0;
-    return tuned ? tape_derive_dual(linear->value, linear->slope, linear->frame) : GIC_OK;
+    return tuned ? tape_derive_dual(linear->value, linear->slope, journal, linear->frame) : GIC_OK;
 }
 
 /* linear->drate: derivatives of the state's rate and of the outputs along linear->along, one-sided where `kinks` are
- * met; linear->rate: their values on that side. `self` has just been evaluated at its state. near: share of the
- * direction within which kinks are met. outputs: number of outputs; 0: they are not looked at. */
-static int rate_to_side(const Linear *linear, const Instance *self, double near, int outputs, int *kinks)
+ * met; linear->rate: their values on that side. `self` has just been evaluated at its state. sides: with the share of
+ * the direction within which kinks are met. outputs: number of outputs; 0: they are not looked at. */
+static int rate_to_side(const Linear *linear, const Instance *self, const Sides *sides, int outputs)
 {
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
-    const double time = gic_time(self), dtime = 0, *dy = linear->along.y;
+    const double time = gic_time(self), *dy = linear->along.y;
     const int states = code->slow_count + code->fast_count;
-    double e[4], de[4], *array[WHOLE_COUNT], *slope[WHOLE_COUNT];
+    double *e = linear->euler[0], *de = linear->euler[1], *array[WHOLE_COUNT], *slope[WHOLE_COUNT];
+    *linear->dtime = 0;
     memcpy(linear->value, self, code->size);
     memset(linear->slope, 0, code->size);
     linear->slope->context = engine;
@@ -155,23 +179,29 @@ static int rate_to_side(const Linear *linear, const Instance *self, double near,
     const double *y = tape_array(linear->value, code->state_offset);
     int status = orient(self, y, dy, e, de);
     if (status == GIC_OK)
-        status = set_direction(linear, &linear->along);
+        status = set_direction(linear, &linear->along, sides->journal);
     if (status != GIC_OK)
         return status;
     scatter(linear, dy, linear->along.u);
-    status = recover(linear, y, dy, near, kinks);
+    status = recover(linear, y, dy, sides);
     if (status != GIC_OK)
         return status;
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &linear->value->head, near, kinks};
+    const TapeWorld world = {.table = engine->table,
+                             .road = self->head.road,
+                             .lane = self->head.lane,
+                             .time = time,
+                             .head = &linear->value->head,
+                             .near = sides->near,
+                             .kinks = sides->kinks,
+                             .journal = sides->journal};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, linear->rate + states, array);
-    tape_arrays(linear->slope, &dtime, dy, de, linear->drate, NULL, linear->drate + states, slope);
+    tape_arrays(linear->slope, linear->dtime, dy, de, linear->drate, NULL, linear->drate + states, slope);
     if (engine->wheel)
         status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
     if (status == GIC_OK)
         status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
     if (status == GIC_OK && outputs && engine->wrenches)
-        status = tape_react_dual((Instance *const[]){linear->value, linear->slope},
-                                 (TapeLinks[]){linear->value_links, linear->slope_links}, &world, array, slope,
+        status = tape_react_dual((Instance *const[]){linear->value, linear->slope}, linear->links, &world, array, slope,
                                  linear->frame);
     if (status == GIC_OK && outputs)
         status = tape_play_dual(engine->outputs, 0, array, slope, &world, engine->frame, linear->frame);
@@ -212,13 +242,14 @@ static int rate_along(const Linear *linear, const Instance *self, double near, i
     const int count = linear->engine->code.slow_count + linear->engine->code.fast_count + outputs;
     double other_rate[count + 1], other[count + 1];
     int kinks = 0;
-    int status = rate_to_side(linear, self, near, outputs, &kinks);
+    const Sides sides = {near, &kinks, NULL};
+    int status = rate_to_side(linear, self, &sides, outputs);
     if (status != GIC_OK || !kinks)
         return status;
     memcpy(other_rate, linear->rate, (size_t)count * sizeof *other);
     memcpy(other, linear->drate, (size_t)count * sizeof *other);
     turn_round(linear);
-    status = rate_to_side(linear, self, near, outputs, &kinks);
+    status = rate_to_side(linear, self, &sides, outputs);
     *jump = *jump || is_jump(count, near, (const double *const[]){linear->rate, other_rate},
                              (const double *const[]){linear->drate, other});
     for (int i = 0; i < count; ++i)
@@ -366,8 +397,94 @@ void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int
 
 int linear_slope(const Linear *linear, const Instance *self, int outputs)
 {
-    int kinks = 0;
-    return rate_to_side(linear, self, 0, outputs, &kinks);
+    return rate_to_side(linear, self, &(Sides){.near = -1}, outputs);
+}
+
+/* From derivatives by what orient(), scatter() and recover() made of the state and inputs to those by these. */
+static void gather_back(const Linear *linear)
+{
+    const TapeEngine *engine = linear->engine;
+    const Plan *plan = engine->formulation->plan;
+    const double *dx = tape_array(linear->slope, engine->x_offset), *dxd = tape_array(linear->slope, engine->xd_offset);
+    const double *start = tape_start(linear->slope), *e = linear->euler[0], *de = linear->euler[1];
+    const Direction *along = &linear->along;
+    const gic_model *code = &engine->code;
+    memcpy(along->u, tape_array(linear->slope, code->input_offset), (size_t)code->input_count * sizeof(double));
+    memcpy(along->port, tape_array(linear->slope, code->port_offset), (size_t)code->port_count * sizeof(double));
+    memcpy(along->p, tape_array(linear->slope, code->parameter_offset), (size_t)code->parameter_count * sizeof(double));
+    for (int w = 0; w < plan->model->coordinates; ++w) {
+        const Coordinate *c = &plan->model->coordinate[w];
+        *(c->driven ? &along->u[c->input] : &along->y[plan->coordinate_state[w]]) += dx[w] + start[w];
+        *(c->driven ? &along->u[c->input + 1] : &along->y[plan->coordinate_rate[w]]) += dxd[w];
+    }
+    if (!code->free_base)
+        return;
+    int32_t dependent;
+    memcpy(&dependent, (const char *)linear->value + code->discrete_offset, sizeof dependent);
+    for (int i = 0; i < 3; ++i)
+        along->y[linear->places + 4 + i] += linear->links[1]->turn[i];
+    for (int i = 0; i < 4; ++i)
+        if (i != dependent)
+            along->y[3 + i] += de[i] - e[i] / e[dependent] * de[dependent];
+}
+
+/* The numbers of linear->along. */
+typedef struct Part {
+    double *number;
+    int count;
+} Part;
+
+enum { PARTS = 4 };
+
+static void parts_of(const Linear *linear, Part part[PARTS])
+{
+    const gic_model *code = &linear->engine->code;
+    const Direction *along = &linear->along;
+    part[0] = (Part){along->y, code->slow_count + code->fast_count};
+    part[1] = (Part){along->u, code->input_count};
+    part[2] = (Part){along->port, code->port_count};
+    part[3] = (Part){along->p, code->parameter_count};
+}
+
+/* True if the derivatives along a direction with everything in it are finite: then what has infinite factors does not
+ * change. The direction is lost. */
+static bool is_smooth(const Linear *linear, const Instance *self, int outputs, const Part part[PARTS])
+{
+    for (int k = 0; k < PARTS; ++k)
+        for (int i = 0; i < part[k].count; ++i)
+            part[k].number[i] = 1 + 0.1 * i / part[k].count;
+    return linear_slope(linear, self, outputs) == GIC_OK && gic_finite(linear->drate, part[0].count + outputs);
+}
+
+/* The same, and the direction stays as it was. */
+static bool stays_smooth(const Linear *linear, const Instance *self, int outputs, const Part part[PARTS])
+{
+    double kept[part[0].count + part[1].count + part[2].count + part[3].count + 1], *at = kept;
+    for (int k = 0; k < PARTS; at += part[k++].count)
+        memcpy(at, part[k].number, (size_t)part[k].count * sizeof *at);
+    const bool smooth = is_smooth(linear, self, outputs, part);
+    at = kept;
+    for (int k = 0; k < PARTS; at += part[k++].count)
+        memcpy(part[k].number, at, (size_t)part[k].count * sizeof *at);
+    return smooth;
+}
+
+int linear_pull(const Linear *linear, const Instance *self, int outputs)
+{
+    Part part[PARTS];
+    parts_of(linear, part);
+    double weight[part[0].count + outputs + 1];
+    memcpy(weight, linear->drate, (size_t)(part[0].count + outputs) * sizeof *weight);
+    for (int k = 0; k < PARTS; ++k)
+        memset(part[k].number, 0, (size_t)part[k].count * sizeof(double));
+    journal_begin(linear->journal);
+    const int status = rate_to_side(linear, self, &(Sides){.journal = linear->journal}, outputs);
+    if (status != GIC_OK)
+        return status;
+    memcpy(linear->drate, weight, (size_t)(part[0].count + outputs) * sizeof *weight);
+    const int infinite = journal_back(linear->journal);
+    gather_back(linear);
+    return !infinite || stays_smooth(linear, self, outputs, part) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
 int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
@@ -497,7 +614,13 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     int bodies = 0;
     for (int c = 0; c < f->sequence->classes; ++c)
         bodies = tape->class[c].layout->bodies > bodies ? tape->class[c].layout->bodies : bodies;
-    *linear = (Linear){.engine = tape, .value_links = tape_links_new(pool, f), .slope_links = tape_links_new(pool, f)};
+    *linear = (Linear){.engine = tape, .journal = journal_new(pool), .dtime = pool_alloc(pool, sizeof(double))};
+    for (int side = 0; side < 2; ++side) {
+        linear->links[side] = pool_alloc(pool, sizeof *linear->links[side]);
+        *linear->links[side] = tape_links_new(pool, f);
+        linear->step[side] = pool_alloc(pool, 2 * sizeof(double));
+        linear->euler[side] = pool_alloc(pool, 4 * sizeof(double));
+    }
     name_numbers(pool, linear);
     const size_t states = (size_t)(tape->code.slow_count + tape->code.fast_count + 1);
     const size_t results = states + (size_t)tape->code.output_count;

@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "subset/subset.h"
 #include "tape/engine_tape.h"
+#include "tape/journal.h"
 
 /* A direction in which the state of FORMAT.md section 10, inputs, ports and parameters change. */
 typedef struct Direction {
@@ -36,9 +37,10 @@ typedef struct Linear {
     double *piece;           /* [places] a small change: 0.1, or the change of a coordinate by which no body turns by
                               * more than 0.1 rad */
     Instance *value, *slope; /* work: an instance, and its derivatives in an instance's places */
-    TapeLinks value_links, slope_links;
-    Direction along; /* work */
-    double *frame, *q, *evaluated, *rate, *drate;
+    TapeLinks *links[2];     /* of both */
+    Direction along;         /* work */
+    TapeJournal *journal;
+    double *frame, *q, *step[2], *euler[2], *dtime, *evaluated, *rate, *drate;
 } Linear;
 
 /* linearize.c: `engine` is the engine tape. */
@@ -54,9 +56,14 @@ int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, 
 /* Set linear->along to the direction of one number; of a small motion at the state of the instance. */
 void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j);
 /* linear->drate: derivatives along linear->along, in Euler parameters, of the rate of the state at which the instance
- * has just been evaluated, and behind it of the first outputs. At kinks those of the side to which it goes. Returns a
+ * has just been evaluated, and behind it of the first outputs. At kinks those of the branch that is taken. Returns a
  * status. */
 int linear_slope(const Linear *linear, const Instance *self, int outputs);
+/* The same backwards: linear->along becomes the derivative, by each number of state, inputs, ports and parameters, of
+ * the sum of the rate and the first outputs with the weights in linear->drate, whose contents are lost. linear->rate:
+ * rate and outputs. The instance's bodies have been recovered at its state. GIC_ERROR_RESULT where a derivative is
+ * infinite. */
+int linear_pull(const Linear *linear, const Instance *self, int outputs);
 /* linear_model.c: the unit of one of the small motions. */
 const char *linear_unit(Pool *pool, const Linear *linear, int i);
 /* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:

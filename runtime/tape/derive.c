@@ -4,6 +4,7 @@
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "tape/engine_tape.h"
+#include "tape/journal.h"
 #include "tape/record.h"
 #include "vehicle/vehicle.h"
 
@@ -67,13 +68,13 @@ static int derive(Instance *self, double rest)
                : GIC_ERROR_GEOMETRY;
 }
 
-int tape_derive_dual(Instance *value, Instance *slope, double *slope_frame)
+int tape_derive_dual(Instance *value, Instance *slope, TapeJournal *journal, double *slope_frame)
 {
     const TapeEngine *engine = tape_of(value);
-    const TapeWorld world = {.table = engine->table, .head = &value->head};
+    const TapeWorld world = {.table = engine->table, .head = &value->head, .journal = journal};
     double rest[2] = {0}, *array[2][TUNED_COUNT];
     tuned_arrays(value, &rest[0], array[0]);
-    tuned_arrays(slope, &rest[1], array[1]);
+    tuned_arrays(slope, journal_numbers(&world, &rest[1], 1), array[1]);
     return tape_play_dual(engine->derive, 0, array[0], array[1], &world, engine->frame, slope_frame);
 }
 

@@ -90,7 +90,8 @@ int tape_whole(Instance *self, const Tape *tape, double time, const double *y, c
                double *acc, double *out)
 {
     const TapeEngine *engine = tape_of(self);
-    const TapeWorld world = {engine->table, self->head.road, self->head.lane, time, &self->head, 0, NULL};
+    const TapeWorld world = {
+        .table = engine->table, .road = self->head.road, .lane = self->head.lane, .time = time, .head = &self->head};
     double *array[WHOLE_COUNT];
     tape_arrays(self, &time, y, e, rate, acc, out, array);
     return tape_play(tape, 0, array, &world, engine->frame);

@@ -122,8 +122,8 @@ void tape_link(Instance *self, TapeLinks *links, const Subset *subset);
 int tape_assemble(Instance *self, const double turn[3]);
 bool tape_is_tuned(Instance *self);
 /* The derived numbers in dual numbers, from the parameters of `value` and their derivatives in `slope`. slope_frame: as
- * many numbers as the engine's frame. */
-int tape_derive_dual(Instance *value, Instance *slope, double *slope_frame);
+ * many numbers as the engine's frame. journal: as in a TapeWorld. */
+int tape_derive_dual(Instance *value, Instance *slope, struct TapeJournal *journal, double *slope_frame);
 /* Record the tapes for that, after all others. */
 void tape_record_derived(Pool *pool, TapeEngine *engine);
 
@@ -131,7 +131,7 @@ void tape_record_derived(Pool *pool, TapeEngine *engine);
 int tape_react(Instance *self, const double e[4]);
 /* The same in dual numbers, for an instance at the state and one for its derivatives, after tape_play_dual() of the
  * dynamics. links: of either; array, slope: arrays of tape_arrays(), with the rate. */
-int tape_react_dual(Instance *const self[2], TapeLinks links[2], const TapeWorld *world, double *const *array,
+int tape_react_dual(Instance *const self[2], TapeLinks *const links[2], const TapeWorld *world, double *const *array,
                     double *const *slope, double *slope_frame);
 
 /* engine_tape.c: coordinates of the instance and their rates, at a state. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The interpreter's loop once more, with the derivative of every number along one direction beside it. */
 #include "gic_runtime.h"
+#include "tape/journal.h"
+#include "tape/play_private.h"
 #include "tape/record.h"
 
 #include <math.h>
@@ -49,7 +51,7 @@ static bool is_positive(const TapeWorld *world, double x, double dx)
 }
 
 /* Slope of the piece of a table at x; at a point of it, that of the piece towards which x changes. */
-static double table_slope(const TapeWorld *world, const gic_table *table, double x, double dx)
+double tape_table_slope(const TapeWorld *world, const gic_table *table, double x, double dx)
 {
     const double *at = table->x, *y = table->y;
     int low = 0, high = table->count - 1;
@@ -73,8 +75,8 @@ static double table_slope(const TapeWorld *world, const gic_table *table, double
 /* How height and slopes of the road change when the point moves by dx, dy. That of the height is exact; roads tell no
  * second derivatives, so that of the slopes is a central difference of fourth order with a step of 1 mm, whose error is
  * some 1e-12 of the slope for waves of a metre and more. */
-static bool road_change(const TapeWorld *world, double x, double y, double dx, double dy, const double road[3],
-                        double out[3])
+bool tape_road_change(const TapeWorld *world, double x, double y, double dx, double dy, const double road[3],
+                      double out[3])
 {
     const double step = 1e-3, length = hypot(dx, dy);
     double side[4][3];
@@ -93,7 +95,7 @@ static bool road_change(const TapeWorld *world, double x, double y, double dx, d
 }
 
 /* How friction changes on the way: by the same difference. */
-static double friction_change(const TapeWorld *world, double x, double y, double dx, double dy)
+double tape_friction_change(const TapeWorld *world, double x, double y, double dx, double dy)
 {
     const double step = 1e-3, length = hypot(dx, dy);
     double side[4];
@@ -186,12 +188,12 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
                 f[at[0]] = f[taken];
             }
             break;
-        case OP_FRICTION: RUN_2(tape_friction(world, a, b), friction_change(world, a, b, da, db));
+        case OP_FRICTION: RUN_2(tape_friction(world, a, b), tape_friction_change(world, a, b, da, db));
         case OP_TABLE:
             for (; left; --left, at += 3) {
                 const gic_table *table = &world->table[at[2]];
                 const double a = f[at[1]];
-                d[at[0]] = chain(table_slope(world, table, a, d[at[1]]), d[at[1]]);
+                d[at[0]] = chain(tape_table_slope(world, table, a, d[at[1]]), d[at[1]]);
                 f[at[0]] = gic_table_value(table, a);
             }
             break;
@@ -199,7 +201,7 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
             for (; left; --left, at += 3) {
                 const double x = f[at[1]], y = f[at[2]], dx = d[at[1]], dy = d[at[2]];
                 on_road = tape_road(world, x, y, f + at[0]) && on_road;
-                on_road = road_change(world, x, y, dx, dy, f + at[0], d + at[0]) && on_road;
+                on_road = tape_road_change(world, x, y, dx, dy, f + at[0], d + at[0]) && on_road;
             }
             break;
         default: break;
@@ -211,6 +213,8 @@ static bool play_runs(const Tape *tape, const TapeWorld *world, double *f, doubl
 int tape_play_dual(const Tape *tape, int member, double *const *array, double *const *slope, const TapeWorld *world,
                    double *frame, double *rate)
 {
+    if (world->journal)
+        return journal_play(world->journal, tape, member, array, slope, world);
     memcpy(frame, tape->constant + member * tape->constants, (size_t)tape->constants * sizeof *frame);
     memset(rate, 0, (size_t)tape->constants * sizeof *rate);
     tape_load(tape, array, frame);

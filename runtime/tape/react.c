@@ -4,6 +4,7 @@
 #include "gic_runtime.h"
 #include "sequence/sequence.h"
 #include "tape/engine_tape.h"
+#include "tape/journal.h"
 #include "tape/record.h"
 #include "vehicle/vehicle.h"
 
@@ -53,19 +54,22 @@ int tape_react(Instance *self, const double e[4])
     return status;
 }
 
-int tape_react_dual(Instance *const self[2], TapeLinks links[2], const TapeWorld *world, double *const *array,
+int tape_react_dual(Instance *const self[2], TapeLinks *const links[2], const TapeWorld *world, double *const *array,
                     double *const *slope, double *slope_frame)
 {
     const TapeEngine *engine = tape_of(self[0]);
     const Sequence *sequence = engine->formulation->sequence;
     double spare[2][6] = {{0}};
+    double *const unused[] = {spare[0], journal_numbers(world, spare[1], 6)};
     int status = tape_play_dual(engine->wrenches, 0, array, slope, world, engine->frame, slope_frame);
     for (int s = sequence->subsets - 1; s >= 0 && status == GIC_OK; --s)
         if (reacts(engine, s)) {
             for (int side = 0; side < 2; ++side)
-                link_reaction(self[side], &links[side], s, spare[side]);
-            status = tape_play_dual(engine->class[sequence->subset[s].class].react, engine->member[s], links[0].array,
-                                    links[1].array, world, engine->frame, slope_frame);
+                link_reaction(self[side], links[side], s, unused[side]);
+            for (int j = 0; world->journal && j < sequence->subset[s].deps; ++j)
+                journal_copy(world->journal, tape_start(self[1]) + sequence->subset[s].dep[j], &links[1]->x[j], 1);
+            status = tape_play_dual(engine->class[sequence->subset[s].class].react, engine->member[s], links[0]->array,
+                                    links[1]->array, world, engine->frame, slope_frame);
         }
     return status;
 }

@@ -301,6 +301,7 @@ const Tape *tape_record(Pool *pool, const Block *block, const Element *array, in
                   .slot = pool_alloc(pool, nodes * sizeof(int)),
                   .free = pool_alloc(pool, nodes * sizeof(int)),
                   .tape = pool_alloc(pool, sizeof(Tape))};
+    r.tape->arrays = arrays;
     count_uses(&r);
     make_tasks(&r);
     place_constants(&r);

@@ -34,7 +34,7 @@ typedef struct TapeCheck {
 typedef struct Tape {
     int slots, constants;
     double *constant; /* [members][constants] */
-    int loads, runs, checks, stores;
+    int arrays, loads, runs, checks, stores;
     TapeMove *load, *store;
     TapeRun *run;
     uint32_t *operand;
@@ -48,8 +48,11 @@ typedef struct TapeWorld {
     int32_t lane;
     double time;
     gic_head *head; /* checks store their subset and number of the state here; NULL: no check has any */
-    double near;    /* of tape_play_dual(): a kink counts as met where this share of the direction reaches it */
+    double near;    /* of tape_play_dual(): a kink counts as met where this share of the direction reaches it; below 0:
+                       nowhere */
     int *kinks;     /* counts kinks that were met; NULL: not counted */
+    struct TapeJournal *journal; /* of tape_play_dual(), which notes the tape in it and has no derivatives itself:
+                                    journal.h; NULL: derivatives along a direction */
 } TapeWorld;
 
 /* record.c. `array`: an element of each array that the block reads and writes; tape_play() takes the addresses of the

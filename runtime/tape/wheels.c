@@ -4,6 +4,7 @@
 #include "gic_runtime.h"
 #include "model/model.h"
 #include "tape/engine_tape.h"
+#include "tape/journal.h"
 #include "tape/record.h"
 #include "vehicle/vehicle.h"
 #include "vehicle/wheel.h"
@@ -65,11 +66,11 @@ static void links_of(Instance *self, const double *y, const double *e, double *l
 /* One wheel; t->array[] has what belongs to it. */
 static int wheel_of(Turning *t, const TapeWheel *wheel, int member)
 {
-    double contact[2][CONTACT_NUMBERS], force[2][TIRE_FORCES] = {{0}};
-    for (int side = 0; side < 2; ++side) {
-        t->array[side][WHOLE_contact] = contact[side];
-        t->array[side][WHOLE_force] = force[side];
-    }
+    double contact[2][CONTACT_NUMBERS] = {{0}}, force[2][TIRE_FORCES] = {{0}};
+    t->array[0][WHOLE_contact] = contact[0];
+    t->array[0][WHOLE_force] = force[0];
+    t->array[1][WHOLE_contact] = journal_numbers(&t->world, contact[1], CONTACT_NUMBERS);
+    t->array[1][WHOLE_force] = journal_numbers(&t->world, force[1], TIRE_FORCES);
     int status = play(t, wheel->contact, member);
     if (status != GIC_OK)
         return status;
@@ -148,13 +149,15 @@ int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, doub
     const int slow = engine->code.slow_count, links = engine->formulation->wheels->links;
     const int torques = 2 * engine->formulation->wheels->count;
     double link[2][links + 1], torque[2][torques + 1];
+    double *const own_link[] = {link[0], journal_numbers(world, link[1], links)};
+    double *const own_torque[] = {torque[0], journal_numbers(world, torque[1], torques)};
     Turning all = {.engine = engine, .world = *world, .slope_frame = slope_frame};
     for (int side = 0; side < 2; ++side) {
         double **own = all.array[side];
         memcpy(own, side ? slope : array, sizeof all.array[side]);
-        own[WHOLE_link] = link[side];
+        own[WHOLE_link] = own_link[side];
         own[WHOLE_fast] = own[WHOLE_y] + slow;
-        own[WHOLE_torque] = torque[side];
+        own[WHOLE_torque] = own_torque[side];
         own[WHOLE_rate] += slow;
         own[WHOLE_grip] = own[WHOLE_GRIP];
         own[WHOLE_watch] = own[WHOLE_WATCH];
