@@ -2,6 +2,7 @@
  * The gradient of a number of a run: its end value, an integral or a maximum. */
 #include "run/gradient.h"
 #include "gic_runtime.h"
+#include "run/adjoint_run.h"
 
 static void begin(Gradient *gradient)
 {
@@ -18,27 +19,20 @@ static void add(Gradient *gradient, double weight, double value, const double *s
         gradient->derivative[k] += weight * slope[k];
 }
 
-const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
-                              const char *const *wanted, int count)
+/* Forwards: as many derivatives in each step as there are variables. */
+static int go_forwards(Gradient *gradient, TangentRun *run, ScalarKind kind, const Scene *scene, double *slope)
 {
-    TangentRun *run = tangent_open(pool, scalar->model, scene, solve, wanted, count);
-    Gradient *gradient = pool_alloc(pool, sizeof *gradient);
-    *gradient = (Gradient){.variables = 0};
-    gradient->variables = tangent_variables(run, &gradient->variable);
-    const size_t room = (size_t)(gradient->variables + 1) * sizeof(double);
-    double *slope = pool_alloc(pool, room), value = 0;
-    gradient->derivative = pool_alloc(pool, room);
-    begin(gradient);
+    double value = 0;
     const int64_t steps = scene->outputs * scene->per_output;
     int status = tangent_begin(run, scene);
     for (int64_t i = 0; i <= steps && status == GIC_OK; ++i) {
         const bool first = i == 0, last = i == steps;
-        if (scalar->kind != SCALAR_END || last)
+        if (kind != SCALAR_END || last)
             status = tangent_look(run, &value, slope);
-        if (scalar->kind == SCALAR_INTEGRAL) {
+        if (kind == SCALAR_INTEGRAL) {
             add(gradient, (first || last ? 0.5 : 1) * scene->step, value, slope);
             gradient->time = tangent_time(run);
-        } else if (scalar->kind == SCALAR_END ? last : first || value > gradient->value) {
+        } else if (kind == SCALAR_END ? last : first || value > gradient->value) {
             begin(gradient);
             add(gradient, 1, value, slope);
             gradient->time = tangent_time(run);
@@ -46,6 +40,63 @@ const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *sce
         if (status == GIC_OK && !last)
             status = tangent_step(run);
     }
+    return status;
+}
+
+/* What the number of a run is of the formula at the ends of steps. */
+typedef struct Sum {
+    ScalarKind kind;
+    double step;
+    int64_t steps, most; /* most: at whose end it is largest */
+} Sum;
+
+static double weight_of(const void *context, int64_t step)
+{
+    const Sum *sum = context;
+    if (sum->kind == SCALAR_INTEGRAL)
+        return (step == 0 || step == sum->steps ? 0.5 : 1) * sum->step;
+    return step == (sum->kind == SCALAR_END ? sum->steps : sum->most);
+}
+
+/* Backwards: all derivatives at once. */
+static int go_backwards(Gradient *gradient, TangentRun *run, ScalarKind kind, const Scene *scene)
+{
+    Sum sum = {kind, scene->step, scene->outputs * scene->per_output, 0};
+    double value = 0, most = 0;
+    int status = tangent_begin(run, scene);
+    for (int64_t i = 0; i <= sum.steps && status == GIC_OK; ++i) {
+        if (kind == SCALAR_MAXIMUM)
+            status = tangent_look(run, &value, NULL);
+        if (i == 0 || value > most) {
+            most = value;
+            sum.most = i;
+        }
+        if (kind != SCALAR_MAXIMUM || sum.most == i)
+            gradient->time = tangent_time(run);
+        if (status == GIC_OK && i < sum.steps)
+            status = tangent_step(run);
+    }
+    if (kind != SCALAR_MAXIMUM)
+        gradient->time = tangent_time(run);
+    return status == GIC_OK ? adjoint_find(run, weight_of, &sum, &gradient->value, gradient->derivative) : status;
+}
+
+const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
+                              const char *const *wanted, int count)
+{
+    const int few = 2; /* forwards they take less time */
+    const Model *model = scalar->model;
+    TangentRun *run = tangent_open_backwards(pool, model, scene, solve, wanted, count);
+    Gradient *gradient = pool_alloc(pool, sizeof *gradient);
+    *gradient = (Gradient){.variables = 0};
+    gradient->variables = tangent_variables(run, &gradient->variable);
+    const bool backwards = gradient->variables > few && adjoint_fits(model, scene);
+    if (!backwards)
+        run = tangent_open(pool, model, scene, solve, wanted, count);
+    const size_t room = (size_t)(gradient->variables + 1) * sizeof(double);
+    gradient->derivative = pool_alloc(pool, room);
+    const int status = backwards ? go_backwards(gradient, run, scalar->kind, scene)
+                                 : go_forwards(gradient, run, scalar->kind, scene, pool_alloc(pool, room));
     if (status != GIC_OK)
         tangent_fail(run, status);
     return gradient;

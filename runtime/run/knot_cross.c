@@ -12,8 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* By what a step of 1 s is too short per jump of the derivative, the knot being at a share s of it. */
-static double missing(int32_t method, double s)
+double knot_missing(int32_t method, double s)
 {
     const double end = fmin(s, 1 - s);
     return method == GIC_AB3 ? (s * s - s + 1.0 / 6) / 2 : end * end / 2 - end / 6;
@@ -36,8 +35,8 @@ int knot_cross(const gic_model *model, gic_head *self, double start, double knot
 {
     const int slow = model->slow_count, count = slow + model->fast_count, ratio = self->ratio;
     const double now = gic_time(self), h = now - start, share = (knot - start) / h, whole = floor(share * ratio);
-    const double of_slow = missing(self->method, share);
-    const double of_fast = missing(self->method, share * ratio - whole) / (ratio * ratio);
+    const double of_slow = knot_missing(self->method, share);
+    const double of_fast = knot_missing(self->method, share * ratio - whole) / (ratio * ratio);
     double *input = (double *)(void *)((char *)self + model->input_offset);
     double *state = (double *)(void *)((char *)self + model->state_offset);
     double kept[model->input_count], next[count], straight[count], bent[count];

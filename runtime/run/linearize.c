@@ -397,6 +397,11 @@ void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int
 
 int linear_slope(const Linear *linear, const Instance *self, int outputs)
 {
+    const int count = linear->engine->code.slow_count + linear->engine->code.fast_count + outputs;
+    int kinks = 0;
+    const int status = rate_to_side(linear, self, &(Sides){.kinks = &kinks}, outputs);
+    if (status != GIC_OK || !kinks || !gic_finite(linear->drate, count)) /* on one side already: sqrt(abs(x)) at 0 */
+        return status;
     return rate_to_side(linear, self, &(Sides){.near = -1}, outputs);
 }
 

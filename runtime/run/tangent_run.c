@@ -6,7 +6,7 @@
  *
  * Derivatives are those of the branches that the run takes. What changes the branch within a step as a jump, a gear for
  * one, is refused. */
-#include "run/tangent_run.h"
+#include "run/tangent_private.h"
 #include "base/message.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -19,29 +19,6 @@
 
 #include <math.h>
 #include <string.h>
-
-/* The instance of both: a head, then the arrays of the descriptor. */
-typedef struct Both {
-    gic_head head;
-    const TangentRun *run;
-} Both;
-
-struct TangentRun {
-    Pool *pool;
-    const Model *model; /* of the vehicle */
-    Solve solve;
-    const Engine *engine; /* tape */
-    const Scene *scene;
-    const Linear *linear;
-    const gic_model *code; /* of the vehicle */
-    Instance *self, *copy; /* the vehicle at the state and time that were evaluated last; for looks */
-    gic_model descriptor;  /* of both */
-    Both *both;
-    int variables;
-    RunVariable *variable;
-    bool shifted;                /* the run ended where a gear changes */
-    int states, inputs, outputs; /* of the vehicle */
-};
 
 static double *array_of(Both *both, size_t offset)
 {
@@ -166,20 +143,29 @@ static void add_variables(TangentRun *run, const double *f, const char *const *w
 
 /* ---- the model of both ------------------------------------------------------------------------------------ */
 
+int tangent_input(const RunVariable *v, double time, double change[3])
+{
+    const bool driven = v->profile && v->profile->driven;
+    change[0] = 1;
+    change[1] = change[2] = 0;
+    if (v->profile)
+        profile_at(v->profile, time, change);
+    return driven ? 3 : 1;
+}
+
 /* Inputs at a time, and how they change by each variable. A gic_input_function. */
 static void inputs_of_both(void *user, int32_t lane, double time, double *input)
 {
     const TangentRun *run = user;
     scene_inputs((void *)(uintptr_t)run->scene, lane, time, input);
-    for (int k = 0; k < run->variables; ++k) {
+    for (int k = 0; k < run->carried; ++k) {
         const RunVariable *v = &run->variable[k];
-        double *change = input + run->inputs * (1 + k), at[3] = {1, 0, 0};
+        double *change = input + run->inputs * (1 + k), at[3];
         memset(change, 0, (size_t)run->inputs * sizeof *change);
         if (v->kind != BY_INPUT)
             continue;
-        if (v->profile)
-            profile_at(v->profile, time, at);
-        memcpy(change + v->index, at, (v->profile && v->profile->driven ? 3 : 1) * sizeof *at);
+        const int count = tangent_input(v, time, at);
+        memcpy(change + v->index, at, (size_t)count * sizeof *at);
     }
 }
 
@@ -210,13 +196,43 @@ static int slope_along(const TangentRun *run, const double *state, int k, int ou
     return linear_slope(run->linear, run->self, outputs);
 }
 
+static int32_t dependent_of(const TangentRun *run)
+{
+    int32_t dependent;
+    memcpy(&dependent, (const char *)run->self + run->code->discrete_offset, sizeof dependent);
+    return dependent;
+}
+
+/* Events of the trail: a right-hand side, and a state that was settled. */
+static void note_call(const TangentRun *run, double time, const double *state)
+{
+    TrailEvent *event = trail_add(run->trail, run->states + run->inputs);
+    double *number = event->number;
+    *event = (TrailEvent){.time = time, .number = number, .step = run->step};
+    event->dependent = run->code->free_base ? dependent_of(run) : 0;
+    memcpy(number, state, (size_t)run->states * sizeof *state);
+    memcpy(number + run->states, array_of(run->both, run->descriptor.input_offset),
+           (size_t)run->inputs * sizeof *state);
+}
+
+static void note_settled(const TangentRun *run, const double *state, int32_t dependent)
+{
+    TrailEvent *event = trail_add(run->trail, run->code->free_base ? 4 : 0);
+    double *number = event->number;
+    *event = (TrailEvent){.number = number, .dependent = dependent, .step = run->step, .settled = true};
+    if (run->code->free_base)
+        memcpy(number, state + 3, 4 * sizeof *state);
+}
+
 static int rate_of_both(void *self, double time, const double *state, double *rate)
 {
     const TangentRun *run = ((Both *)self)->run;
     double *own = tape_array(run->self, run->code->state_offset);
     take_state(run, time, state);
+    if (run->trail)
+        note_call(run, time, state);
     int status = run->code->rhs(run->self, time, own, rate);
-    for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
+    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, 0);
         if (status == GIC_OK && !gic_finite(run->linear->drate, run->states))
             status = GIC_ERROR_RESULT;
@@ -225,15 +241,18 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     return status;
 }
 
-/* The dependent Euler parameter follows from the others, and so does its change. */
+/* The dependent Euler parameter follows from the others, and so does its change; then another one may be the dependent
+ * one. */
 static int settle_both(void *self, double *state)
 {
     const TangentRun *run = ((Both *)self)->run;
+    const int dependent = run->code->free_base ? dependent_of(run) : 0;
     const int status = run->code->settle(run->self, state);
+    if (status == GIC_OK && run->trail)
+        note_settled(run, state, dependent);
     if (status != GIC_OK || !run->code->free_base)
         return status;
-    const int dependent = *(const int32_t *)(const void *)((const char *)run->self + run->code->discrete_offset);
-    for (int k = 0; k < run->variables; ++k) {
+    for (int k = 0; k < run->carried; ++k) {
         double *change = state + run->states * (1 + k) + 3, sum = 0;
         for (int i = 0; i < 4; ++i)
             sum += i == dependent ? 0 : state[3 + i] * change[i];
@@ -244,8 +263,8 @@ static int settle_both(void *self, double *state)
 
 static void make_both(TangentRun *run)
 {
-    const size_t all = (size_t)(run->states * (1 + run->variables));
-    const size_t inputs = (size_t)(run->inputs * (1 + run->variables));
+    const size_t all = (size_t)(run->states * (1 + run->carried));
+    const size_t inputs = (size_t)(run->inputs * (1 + run->carried));
     size_t at = sizeof(Both);
     gic_model *model = &run->descriptor;
     *model = (gic_model){.abi_version = GIC_ABI_VERSION,
@@ -337,8 +356,8 @@ void tangent_fail(const TangentRun *run, int status)
               instance_status(run->pool, run->code, &run->self->head, status));
 }
 
-TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
-                         int count)
+static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
+                        int count, bool backwards)
 {
     check_scene(pool, model, scene);
     TangentRun *run = pool_alloc(pool, sizeof *run);
@@ -364,8 +383,22 @@ TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Sol
         tangent_fail(run, status);
     add_variables(run, f, wanted, count);
     check_names(run, wanted, count);
+    run->carried = backwards ? 0 : run->variables;
+    run->trail = backwards ? trail_new(pool) : NULL;
     make_both(run);
     return run;
+}
+
+TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
+                         int count)
+{
+    return open(pool, model, scene, solve, wanted, count, false);
+}
+
+TangentRun *tangent_open_backwards(Pool *pool, const Model *model, const Scene *scene, Solve solve,
+                                   const char *const *wanted, int count)
+{
+    return open(pool, model, scene, solve, wanted, count, true);
 }
 
 int tangent_variables(const TangentRun *run, const RunVariable **variable)
@@ -386,13 +419,16 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     run->scene = scene;
     run->shifted = false;
     gic_restart(run->both, 0);
+    if (run->trail)
+        trail_begin(run->trail);
+    run->step = -1;
     memset(state, 0, (size_t)run->descriptor.slow_count * sizeof *state);
     int status = scene_start(run->engine, scene, &run->self->head);
     run->self->head.input_function = NULL;
     if (status != GIC_OK)
         return status;
     memcpy(state, tape_array(run->self, run->code->state_offset), (size_t)run->states * sizeof *state);
-    for (int k = 0; k < run->variables; ++k)
+    for (int k = 0; k < run->carried; ++k)
         if (run->variable[k].kind == BY_INITIAL) {
             linear_direction(run->linear, run->self, LINEAR_MOTION, run->variable[k].index);
             memcpy(state + run->states * (1 + k), run->linear->along.y, (size_t)run->states * sizeof *state);
@@ -410,7 +446,7 @@ int tangent_look(TangentRun *run, double *value, double *slope)
     take_state(run, gic_time(run->both), state);
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
-    for (int k = 0; k < run->variables && status == GIC_OK; ++k) {
+    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, run->outputs);
         if (status == GIC_OK && !gic_finite(run->linear->drate, run->states + run->outputs))
             status = GIC_ERROR_RESULT;
@@ -438,6 +474,7 @@ int tangent_step(TangentRun *run)
     gic_head *head = &run->both->head;
     const double start = gic_time(head);
     const int history = head->history;
+    ++run->step;
     int status = gic_step(&run->descriptor, run->both, run->scene->step, run->scene->method);
     if (status == GIC_OK)
         status = knots_cross(&run->descriptor, run->scene, head, start, history);

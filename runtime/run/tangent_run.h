@@ -29,12 +29,15 @@ typedef struct TangentRun TangentRun;
  * names that are none. */
 TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
                          int count);
+/* The same for the way back: steps have no derivatives, and leave a trail for adjoint_run.h. */
+TangentRun *tangent_open_backwards(Pool *pool, const Model *model, const Scene *scene, Solve solve,
+                                   const char *const *wanted, int count);
 int tangent_variables(const TangentRun *run, const RunVariable **variable);
 /* Time 0 of the scene that it was opened for, which may have other initial values and parameters now. */
 int tangent_begin(TangentRun *run, const Scene *scene);
 /* A step of it. All of these return a status. */
 int tangent_step(TangentRun *run);
-/* The model's outputs now, and their derivatives [outputs][variables]. */
+/* The model's outputs now, and their derivatives [outputs][variables], none of those on the way back. */
 int tangent_look(TangentRun *run, double *value, double *slope);
 double tangent_time(const TangentRun *run);
 /* End with the message of a status. */

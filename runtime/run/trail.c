@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ * Events and their numbers in chunks, so that nothing is copied as the trail grows. */
+#include "run/trail.h"
+
+#include <stddef.h>
+
+enum { CHUNK_EVENTS = 1 << 10, CHUNK_NUMBERS = 1 << 16 };
+
+struct Trail {
+    Pool *pool;
+    TrailEvent **event;
+    double **number;
+    int chunks, parts; /* of both */
+    int events, part, used;
+};
+
+Trail *trail_new(Pool *pool)
+{
+    Trail *trail = pool_alloc(pool, sizeof *trail);
+    trail->pool = pool;
+    return trail;
+}
+
+void trail_begin(Trail *trail)
+{
+    trail->events = trail->part = trail->used = 0;
+}
+
+static double *numbers(Trail *trail, int count)
+{
+    if (trail->used + count > CHUNK_NUMBERS) {
+        ++trail->part;
+        trail->used = 0;
+    }
+    if (trail->part == trail->parts) {
+        const size_t room = (size_t)(count > CHUNK_NUMBERS ? count : CHUNK_NUMBERS);
+        *POOL_PUSH(trail->pool, trail->number, trail->parts) = pool_alloc(trail->pool, room * sizeof(double));
+    }
+    trail->used += count;
+    return trail->number[trail->part] + trail->used - count;
+}
+
+TrailEvent *trail_add(Trail *trail, int count)
+{
+    if (trail->events == trail->chunks * CHUNK_EVENTS)
+        *POOL_PUSH(trail->pool, trail->event, trail->chunks) =
+            pool_alloc(trail->pool, CHUNK_EVENTS * sizeof **trail->event);
+    TrailEvent *event = &trail->event[trail->events / CHUNK_EVENTS][trail->events % CHUNK_EVENTS];
+    event->number = numbers(trail, count);
+    ++trail->events;
+    return event;
+}
+
+int trail_events(const Trail *trail)
+{
+    return trail->events;
+}
+
+const TrailEvent *trail_event(const Trail *trail, int i)
+{
+    return &trail->event[i / CHUNK_EVENTS][i % CHUNK_EVENTS];
+}
