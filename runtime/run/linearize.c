@@ -425,7 +425,10 @@ static void gather_back(const Linear *linear)
     if (!code->free_base)
         return;
     int32_t dependent;
+    int64_t switches = 0;
+    double again[4];
     memcpy(&dependent, (const char *)linear->value + code->discrete_offset, sizeof dependent);
+    gic_orientation(tape_array(linear->value, code->state_offset) + 3, &dependent, &switches, again);
     for (int i = 0; i < 3; ++i)
         along->y[linear->places + 4 + i] += linear->links[1]->turn[i];
     for (int i = 0; i < 4; ++i)

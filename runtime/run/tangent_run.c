@@ -241,13 +241,12 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     return status;
 }
 
-/* The dependent Euler parameter follows from the others, and so does its change; then another one may be the dependent
- * one. */
+/* The dependent Euler parameter follows from the others, and so does its change. */
 static int settle_both(void *self, double *state)
 {
     const TangentRun *run = ((Both *)self)->run;
-    const int dependent = run->code->free_base ? dependent_of(run) : 0;
     const int status = run->code->settle(run->self, state);
+    const int dependent = run->code->free_base ? dependent_of(run) : 0;
     if (status == GIC_OK && run->trail)
         note_settled(run, state, dependent);
     if (status != GIC_OK || !run->code->free_base)

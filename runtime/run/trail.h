@@ -12,7 +12,7 @@
 /* A right-hand side, or a state that was settled. */
 typedef struct TrailEvent {
     double time, *number; /* number: state and inputs; of a state that was settled its Euler parameters after that */
-    int32_t dependent;    /* Euler parameter, before that */
+    int32_t dependent;    /* Euler parameter: before a right-hand side, after settling */
     int64_t step;         /* in which it was */
     bool settled;
 } TrailEvent;

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """gradient.py GICRUN MODELS WORK: what `gicrun --gradient` finds. A mass on a spring in closed form; a pendulum and the same
 mass by the steps of AB3 and RK4 written again here in 50 digits and differentiated by differences of 1e-20, so that it is the
-derivative of the very steps; whole runs of vehicles by Taylor remainders, which shrink with the square of the change."""
+derivative of the very steps; whole runs of vehicles by Taylor remainders, which shrink with the square of the change; all variables at once, which is
+backwards through the run, against one by one, which is forwards."""
 import csv
 import math
 import re
@@ -255,6 +256,69 @@ for i, name in enumerate(name for name in at if name.startswith("parameter/")):
     scene += f"  {name.split('/')[1]}: P{i}P\n"
 check("parameters that are geometric", len(chosen) >= 15)
 taylor("tunable geometry", "chassis.z", car, scene, chosen, 0.02)
+
+# ---- backwards and forwards -----------------------------------------------------------------------------------------------------
+
+
+def both_ways(what, formula, model, scene):
+    value, back = gradient(formula, model, scene)
+    check(f"{what}: more variables than go forwards", len(back) > 2)
+    sizes = {}
+    for name in back:
+        again, one = gradient(formula, model, scene, name)
+        near(f"{what}: the value with {name}", again, value, 1e-12 * max(1, abs(value)))
+        sizes[name] = one[name]
+    kinds = {name: name.split("/")[0] + name.endswith(".rate") * "r" for name in back}
+    for name, number in sizes.items():
+        largest = max(abs(sizes[n]) for n in back if kinds[n] == kinds[name])
+        near(f"{what}: {name} both ways", back[name], number, 1e-12 * abs(number) + 1e-13 * largest)
+
+
+for method in ("ab3", "rk4"):
+    path = f"{work}/both.scene"
+    text = start.replace("METHOD", method).replace("STATES", states).replace("duration: 1.5", "duration: 0.6")
+    for mark, value, unit in numbers.values():
+        text = text.replace(mark, repr(value))
+    Path(path).write_text(text)  # the rack has knots, and their corrections a way back
+    for formula in ("chassis.y", "integral(chassis.x * chassis.y)", "maximum(chassis_attitude.roll)"):
+        if method == "ab3" or formula == "chassis.y":
+            both_ways(f"tires, {method}, {formula}", formula, f"{models}/hmmwv_tires.veh", path)
+Path(f"{work}/tuned.scene").write_text(f"""gicscene: 1
+duration: 0.3
+step: 0.002
+initial: {{position: [0, 0, 0.49], velocity: [8, 0, 0], coordinates: {{{held}}}}}
+""")
+both_ways("tunable geometry", "integral(chassis.z^2)", car, f"{work}/tuned.scene")
+
+# a body that tumbles: each Euler parameter becomes the dependent one
+tumbler = f"{work}/tumbler.veh"
+Path(tumbler).write_text("""gicgen: 1
+model: tumbler
+gravity: [0, 0, -9.81]
+base: rock
+bodies:
+  rock: {mass: 2, com: [0.1, 0, 0.05], inertia: [1, 2, 2.5]}
+outputs:
+  rock: {type: position, body: rock, point: [1, 1, 1]}
+""")
+tumble = """gicscene: 1
+duration: 3
+step: 0.05
+integrator: METHOD
+initial: {velocity: [1, 2, 3], angular_velocity: [WX, 1, 3]}
+"""
+for method in ("ab3", "rk4"):
+    path = f"{work}/tumble.scene"
+
+    def end(wx):
+        Path(path).write_text(tumble.replace("METHOD", method).replace("WX", repr(wx)))
+        return gradient("rock.x", tumbler, path, "initial/roll.rate")
+
+    small = 1e-5  # the state changes its dependent parameter in the same steps
+    side = [end(2 + k * small)[0] for k in (-2, -1, 1, 2)]
+    slope = (side[0] - side[3] + 8 * (side[2] - side[1])) / (12 * small)
+    near(f"tumbling, {method}: steps that turn far, against differences", end(2.0)[1]["initial/roll.rate"], slope, 1e-8)
+    both_ways(f"tumbling, {method}", "rock.x", tumbler, path)
 
 # ---- a run of gicrun ends there -------------------------------------------------------------------------------------------------
 
