@@ -18,17 +18,19 @@
 #include <string.h>
 
 /* Frames: 50 a second; more in a run so short that it would have less than FEWEST, fewer in one so long that it would
- * have more than MOST. FEWEST: smooth at a tenth of the speed; MOST: 3 MB for two minutes of the HMMWV. */
+ * have more than MOST. FEWEST: smooth at a tenth of the speed; MOST: 6 MB for two minutes of the HMMWV. */
 enum { FEWEST = 600, MOST = 6000 };
 
 static const double frame_rate = 50;
 
-enum { POSE = 7, WHEEL_CHANNELS = 7 }; /* angle, force, contact */
+enum { POSE = 7, WHEEL_CHANNELS = 10 }; /* angle, force, contact; load, longitudinal slip, slip angle */
 
 /* Indices in output[] of a wheel's outputs, -1: none. */
 typedef struct WheelOutputs {
     int wheel, tire, contact; /* fz, deflection, its rate, height; fx, fy, ...; x, y, z */
 } WheelOutputs;
+
+enum { TIRE_KAPPA = 5 }; /* component of OUTPUT_TIRE; alpha follows */
 
 struct Animation {
     Page page; /* first: animate_json.c looks at it */
@@ -40,10 +42,11 @@ struct Animation {
     int64_t times, every; /* output times so far; one in `every` is a frame */
     int frames, channels;
     int wheels, curves;    /* index of their first channels, after those of the bodies */
+    int *signal, signals;  /* of the scene, all that are not hidden; those of its `plot` first */
     const CsvTable *other; /* results of another run; NULL: none */
     const char *other_name;
     int others;         /* curves that it has, their channels after those of the curves */
-    int *column, *mine; /* [others] column of it; index among the scene's curves */
+    int *column, *mine; /* [others] column of it; index in signal[] */
     Ghost *ghost;       /* its vehicle; NULL: none */
     int ghosts;         /* index of its first channel: poses, and angles of wheels */
     WheelOutputs *told; /* [wheels] */
@@ -51,16 +54,38 @@ struct Animation {
     double *value;      /* [frames][channels] */
 };
 
+/* What the scene plots, then everything else that results could have. */
+static void add_signals(Animation *a)
+{
+    const Model *model = a->model;
+    const Scene *scene = a->scene;
+    a->signal =
+        pool_alloc(a->pool, sizeof *a->signal * (size_t)(model->output_components + model->inputs + scene->curves + 1));
+    memcpy(a->signal, scene->curve, sizeof *a->signal * (size_t)scene->curves);
+    a->signals = scene->curves;
+    for (int at = 0, output = 0; at < model->output_components + model->inputs;) {
+        const bool input = output >= model->outputs, hidden = !input && model->output[output].hidden;
+        for (int last = at + (input ? 1 : model->output[output].count); at < last; ++at) {
+            bool plotted = hidden;
+            for (int i = 0; i < scene->curves; ++i)
+                plotted = plotted || scene->curve[i] == at;
+            if (!plotted)
+                a->signal[a->signals++] = at;
+        }
+        ++output;
+    }
+}
+
 /* The curves that another run has too, and its vehicle. */
 static void add_others(Animation *a, const Engine *engine, const CsvTable *other, const char *other_name)
 {
-    const size_t room = sizeof(int) * ((size_t)a->scene->curves + 1);
+    const size_t room = sizeof(int) * ((size_t)a->signals + 1);
     a->column = pool_alloc(a->pool, room);
     a->mine = pool_alloc(a->pool, room);
     a->other = other;
     a->other_name = other_name;
-    for (int i = 0; i < a->scene->curves; ++i) {
-        const int column = plot_column(a->pool, other, &a->scene->signal[a->scene->curve[i]]);
+    for (int i = 0; i < a->signals; ++i) {
+        const int column = plot_column(a->pool, other, &a->scene->signal[a->signal[i]]);
         if (column < 0)
             continue;
         a->column[a->others] = column;
@@ -111,7 +136,8 @@ Animation *animation_new(Pool *pool, const Model *model, const Engine *engine, c
     a->every = (int64_t)fmax(ceil((double)scene->outputs / most), 1);
     a->wheels = POSE * model->bodies;
     a->curves = a->wheels + WHEEL_CHANNELS * model->wheels;
-    a->channels = a->curves + scene->curves;
+    add_signals(a);
+    a->channels = a->curves + a->signals;
     if (other)
         add_others(a, engine, other, other_name);
     a->told = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *a->told);
@@ -213,6 +239,10 @@ static void set_wheel(const Animation *a, int w, const double *output, double sp
     a->spin[w] = spin;
     pose_point(pose_of(frame, wheel->body), a->shapes.center[w], contact);
     if (told->wheel >= 0)
+        channel[7] = output[told->wheel];
+    for (int i = 0; told->tire >= 0 && i < 2; ++i)
+        channel[8 + i] = output[told->tire + TIRE_KAPPA + i];
+    if (told->wheel >= 0)
         contact[2] = output[told->wheel + 3];
     if (told->contact >= 0)
         memcpy(contact, output + told->contact, 3 * sizeof *contact);
@@ -249,10 +279,10 @@ int animation_frame(Animation *a, const gic_model *code, gic_head *self)
         keep_sign(frame + POSE * b, before + POSE * b);
     for (int w = 0; w < a->model->wheels; ++w)
         set_wheel(a, w, output, a->model->wheel[w].tire >= 0 ? fast[a->model->wheel[w].fast] : 0, frame, before);
-    for (int i = 0; i < a->scene->curves; ++i)
-        frame[a->curves + i] = scene_value(code, self, a->scene->curve[i]);
+    for (int i = 0; i < a->signals; ++i)
+        frame[a->curves + i] = scene_value(code, self, a->signal[i]);
     for (int i = 0; i < a->others; ++i)
-        frame[a->curves + a->scene->curves + i] = other_value(a, i, gic_time(self));
+        frame[a->curves + a->signals + i] = other_value(a, i, gic_time(self));
     if (a->ghost)
         set_ghost(a, gic_time(self), frame, before);
     ++a->frames;
@@ -277,12 +307,15 @@ static double channel_unit(const Animation *a, int c, double length)
         return 1e-3;
     if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS == 0)
         return 1e-3;
-    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 3)
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 7)
+        return 1e-5;
+    if (c < a->curves && (c - a->wheels) % WHEEL_CHANNELS > 3 && (c - a->wheels) % WHEEL_CHANNELS < 7)
         return length;
     double most = 0;
     for (int k = 0; k < a->frames; ++k)
         most = fmax(most, fabs(a->value[(size_t)k * (size_t)a->channels + (size_t)c]));
-    return unit_for(most);
+    /* signals that nobody asked for may be zero but for rounding */
+    return c >= a->curves + a->scene->curves ? fmax(unit_for(most), 1e-9) : unit_for(most);
 }
 
 /* Second differences of smooth motion are short numbers. */
@@ -313,30 +346,34 @@ static void json_wheels(const Animation *a, Text *out)
         if (a->told[w].wheel >= 0 || a->told[w].tire >= 0)
             text_print(out, ",\"force\":[%d,%d,%d],\"contact\":[%d,%d,%d]", angle + 1, angle + 2, angle + 3, angle + 4,
                        angle + 5, angle + 6);
+        if (a->told[w].wheel >= 0)
+            text_print(out, ",\"load\":%d", angle + 7);
+        if (a->told[w].tire >= 0)
+            text_print(out, ",\"slip\":[%d,%d]", angle + 8, angle + 9);
         text_print(out, "}");
     }
     text_print(out, "],\n");
 }
 
-/* The curves of the scene's `plot`. */
+/* All signals, those of the scene's `plot` marked; then those of the other run. */
 static void json_curves(const Animation *a, Text *out)
 {
     text_print(out, "\"curves\":[");
-    for (int k = 0; k < a->scene->curves; ++k) {
-        const gic_signal *signal = &a->scene->signal[a->scene->curve[k]];
+    for (int k = 0; k < a->signals; ++k) {
+        const gic_signal *signal = &a->scene->signal[a->signal[k]];
         text_print(out, "%s\n{", k ? "," : "");
         json_key(out, "name", signal->name);
         json_key(out, "unit", signal->unit);
         json_key(out, "quantity", unit_quantity(signal->unit));
-        text_print(out, "\"values\":%d}", a->curves + k);
+        text_print(out, "\"values\":%d,\"plotted\":%s}", a->curves + k, k < a->scene->curves ? "true" : "false");
     }
     for (int k = 0; k < a->others; ++k) {
-        const gic_signal *signal = &a->scene->signal[a->scene->curve[a->mine[k]]];
+        const gic_signal *signal = &a->scene->signal[a->signal[a->mine[k]]];
         text_print(out, ",\n{");
         json_key(out, "name", pool_print(out->pool, "%s (%s)", signal->name, a->other_name));
         json_key(out, "unit", signal->unit);
         json_key(out, "quantity", unit_quantity(signal->unit));
-        text_print(out, "\"values\":%d,\"beside\":%d,\"until\":%.9g}", a->curves + a->scene->curves + k, a->mine[k],
+        text_print(out, "\"values\":%d,\"beside\":%d,\"until\":%.9g}", a->curves + a->signals + k, a->mine[k],
                    a->other->value[(a->other->rows - 1) * a->other->columns]);
     }
     text_print(out, "],\n");
@@ -406,17 +443,15 @@ static double *way_of(const Animation *a, int *count)
 
 static void json_run(const Animation *a, Text *out)
 {
-    double lowest, ahead[3], A[9];
+    double lowest;
     const double size = extent(a, &lowest), length = unit_for(size);
     const char *slash = strrchr(a->scene_path, '/');
     text_print(out, "{");
     json_key(out, "model", a->model->name);
     json_key(out, "description", a->model->description);
     json_key(out, "scene", slash ? slash + 1 : a->scene_path);
-    mat_from_euler(a->model->body[BODY_BASE].euler, A);
-    apply3_transposed(A, (const double[]){1, 0, 0}, ahead);
-    json_vector(out, "ahead", ahead);
-    text_print(out, ",\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
+    json_drawing(out, a->model);
+    text_print(out, "\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
                a->model->free_base ? "true" : "false", size, a->frames, (double)a->every * a->scene->output_step);
     json_bodies(out, a->model, &a->shapes);
     json_lines(out, &a->shapes);

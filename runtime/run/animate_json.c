@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What the pages of --animate and --drive have in common: shapes as JSON, and parts of the page. */
+#include "base/vec3.h"
 #include "emit/emit.h"
 #include "gic_runtime.h"
 #include "model/model.h"
@@ -34,6 +35,18 @@ void json_text(Text *out, const char *s)
 void json_vector(Text *out, const char *key, const double v[3])
 {
     text_print(out, "\"%s\":[%.6g,%.6g,%.6g]", key, v[0], v[1], v[2]);
+}
+
+void json_drawing(Text *out, const Model *model)
+{
+    double A[9], axis[3];
+    mat_from_euler(model->body[BODY_BASE].euler, A);
+    apply3_transposed(A, (const double[]){1, 0, 0}, axis);
+    json_vector(out, "ahead", axis);
+    text_print(out, ",");
+    apply3_transposed(A, (const double[]){0, 0, 1}, axis);
+    json_vector(out, "up", axis);
+    text_print(out, ",");
 }
 
 void json_key(Text *out, const char *key, const char *value)
@@ -155,6 +168,12 @@ static void write_curves(void *context, Text *out, int indent)
     part(context, "animate_curves.js.in", out);
 }
 
+static void write_wheels(void *context, Text *out, int indent)
+{
+    (void)indent;
+    part(context, "animate_wheels.js.in", out);
+}
+
 static void write_save(void *context, Text *out, int indent)
 {
     (void)indent;
@@ -191,6 +210,12 @@ static void write_drive_curves(void *context, Text *out, int indent)
     part(context, "drive_curves.js.in", out);
 }
 
+static void write_drive_gg(void *context, Text *out, int indent)
+{
+    (void)indent;
+    part(context, "drive_gg.js.in", out);
+}
+
 static void write_drive_page(void *context, Text *out, int indent)
 {
     (void)indent;
@@ -212,12 +237,14 @@ static const Insertion part_point[] = {{"style", write_style},
                                        {"mouse", write_mouse},
                                        {"ink", write_ink},
                                        {"curves", write_curves},
+                                       {"wheels", write_wheels},
                                        {"save", write_save},
                                        {"page", write_page},
                                        {"drive_motion", write_drive_motion},
                                        {"drive_ground", write_drive_ground},
                                        {"drive_input", write_drive_input},
                                        {"drive_curves", write_drive_curves},
+                                       {"drive_gg", write_drive_gg},
                                        {"drive_page", write_drive_page},
                                        {"worker", write_worker},
                                        {NULL, NULL}};

@@ -5,7 +5,6 @@
 
 #include "base/file.h"
 #include "base/message.h"
-#include "base/vec3.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
 #include "gic_road.h"
@@ -172,21 +171,20 @@ static void write_data(void *context, Text *out, int indent)
 {
     const DrivePage *p = context;
     const char *slash = strrchr(p->request->scene, '/');
-    double A[9], ahead[3];
     (void)indent;
     text_print(out, "{");
     json_key(out, "model", p->model->name);
     json_key(out, "description", p->model->description);
     json_key(out, "scene", slash ? slash + 1 : p->request->scene);
-    mat_from_euler(p->model->body[BODY_BASE].euler, A);
-    apply3_transposed(A, (const double[]){1, 0, 0}, ahead);
-    json_vector(out, "ahead", ahead);
-    text_print(out, ",\"free\":%s,\"size\":%.6g,\"lowest\":%.6g,\"level\":%s,\n",
-               p->model->free_base ? "true" : "false", p->size, p->lowest, is_level(p->scene->road) ? "true" : "false");
+    json_drawing(out, p->model);
+    text_print(out, "\"free\":%s,\"size\":%.6g,\"lowest\":%.6g,\"level\":%s,\n", p->model->free_base ? "true" : "false",
+               p->size, p->lowest, is_level(p->scene->road) ? "true" : "false");
     number(out, "step", p->scene->step);
     text_print(out, ",\"outputs\":%d,\"look\":%d,\"driver\":%s,\"states\":%d,\"gear\":%d,\n", p->code->output_count,
                hands_steps(p->scene->step), p->scene->driver ? "true" : "false",
                p->code->slow_count + p->code->fast_count, p->model->powertrain ? p->code->free_base : -1);
+    /* of the base: FORMAT.md section 10 */
+    text_print(out, "\"velocity\":%d,\n", p->code->slow_count / 2 + 1);
     json_bodies(out, p->model, &p->shapes);
     json_lines(out, &p->shapes);
     json_drive_wheels(p, out);
@@ -219,7 +217,7 @@ static void write_code(void *context, Text *out, int indent)
 static const Insertion page_point[] = {{"data", write_data}, {"code", write_code}, {NULL, NULL}};
 static const Insertions page_points = {
     (const char *const[]){"drive.html.in", "drive_motion.js.in", "drive_ground.js.in", "drive_input.js.in",
-                          "drive_curves.js.in", "drive_page.js.in", "drive_worker.js.in", NULL},
+                          "drive_curves.js.in", "drive_gg.js.in", "drive_page.js.in", "drive_worker.js.in", NULL},
     page_point, &animate_parts};
 
 /* Size and lowest point at the scene's start. */

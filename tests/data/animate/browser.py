@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html TWO.html: opens pages of `gicrun --animate` in chromium, uses
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html TWO.html TURNING.html TURNING.csv: opens pages of `gicrun --animate` in chromium, uses
 # them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
@@ -206,6 +206,86 @@ def second(browser, path):
     note('its results have ended', 'ended' in browser.text('facts'), browser.text('facts'))
 
 
+def turned(rows, name, at, s):
+    """A vector of a body's frame in the world, by the Euler parameters of an output."""
+    e0, *e = [rows['%s.e%d' % (name, k)][at] for k in range(4)]
+    cross = [e[1] * s[2] - e[2] * s[1], e[2] * s[0] - e[0] * s[2], e[0] * s[1] - e[1] * s[0]]
+    es = sum(a * b for a, b in zip(e, s))
+    return [(2 * e0 * e0 - 1) * s[k] + 2 * es * e[k] + 2 * e0 * cross[k] for k in range(3)]
+
+
+def readings(browser, path, results):
+    """The table of the wheels against outputs, by the definitions of models/KC.md section 3; to their last digit."""
+    rows = read_csv(results)
+    browser.open(path, 't=4.992')
+    browser.press('n', 'n')
+    browser.wait('!state.changed && !document.getElementById("wheel_table").hidden', 5)
+    at = min(range(len(rows['time'])), key=lambda k: abs(rows['time'][k] - browser.ask('state.time')))
+    table = browser.ask('[...document.querySelectorAll("#wheel_table tr")].slice(1).map((r) => [...r.children].map((c) => c.textContent))')
+    note('a row a wheel', [row[0] for row in table] == ['tire_f_l', 'tire_f_r', 'tire_r_l', 'tire_r_r'], str(table))
+    for name, *cells in table:
+        place, side = name.replace('tire_', ''), 1 if name.endswith('l') else -1
+        s = turned(rows, 'turn_' + place, at, (0, 1, 0))
+        s_x, s_y, s_z = [sum(a * b for a, b in zip(s, turned(rows, 'chassis_orientation', at, axis)))
+                         for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+        told = [rows[name + '.fz'][at] / 1000, math.degrees(-side * math.asin(s_z)),
+                math.degrees(-side * math.atan2(-s_x, s_y)), 100 * rows['slip_%s.kappa' % place][at],
+                math.degrees(rows['slip_%s.alpha' % place][at])]
+        note('load, camber, toe and slips of ' + name,
+             all(abs(float(cell) - value) <= .51 * 10 ** -len(cell.split('.')[1]) + 2e-3 for cell, value in zip(cells, told)),
+             '%s instead of %s' % (cells, told))
+    browser.press('n', 'n')
+    note('the table goes by N', browser.wait('document.getElementById("wheel_table").hidden', 5), '')
+
+
+def choice(browser, path, results):
+    """Any signal becomes a curve, by keys alone, with the value that results have; and goes again."""
+    rows = read_csv(results)
+    browser.open(path, 't=5')
+    names = browser.ask('[...document.getElementById("add").options].map((o) => o.textContent)')
+    note('all outputs can be chosen', all(any(name == n.split(' [')[0] for n in names) for name in rows if name != 'time'),
+         str(names[:4]))
+    count = browser.ask('shown_curves.length')
+    browser.ask('document.getElementById("add").focus()')
+    for letter in 'engine.sp':
+        browser.press(letter, letter)
+    browser.press('Enter')
+    if not browser.wait('shown_curves.length > %d' % count, 2):  # a list without a screen may not open
+        browser.ask('(() => {const list = document.getElementById("add"), k = run.curves.findIndex((c) => c.name === "drive.engine_speed");'
+                    'list.value = k; list.dispatchEvent(new Event("change")); return 1})()')
+    browser.wait('!state.changed && shown_curves.length === %d' % (count + 1), 5)
+    name = browser.ask('run.curves[shown_curves[shown_curves.length - 1]].name')
+    browser.wait('panels[panels.length - 1].curves[0].value.textContent !== ""', 5)
+    shown = browser.ask('[...document.querySelectorAll(".curve")].find((e) => e.textContent.startsWith("%s ")).querySelector(".value").textContent' % name)
+    at = min(range(len(rows['time'])), key=lambda k: abs(rows['time'][k] - 5))
+    size = max(map(abs, rows[name]))
+    note('%s as a curve has its value' % name, abs(float(shown) - rows[name][at]) < 1e-2 * size, '%s: %g' % (shown, rows[name][at]))
+    browser.ask('[...document.querySelectorAll(".curve button")].pop().focus()')
+    browser.press('Enter', '\r')
+    note('and goes', browser.wait('shown_curves.length === %d' % count, 5), browser.ask('String(shown_curves)'))
+
+
+def dark(browser, path):
+    """On a dark ground texts are light, with contrast, and so is what is light otherwise dark."""
+    def shine(colour):
+        def part(c):
+            return c / 3294.6 if c <= 10 else ((c / 255 + .055) / 1.055) ** 2.4
+        return sum(w * part(c) for w, c in zip((.2126, .7152, .0722), colour))
+    for scheme in 'dark', 'light':
+        browser.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': scheme}])
+        browser.open(path, 't=5')
+        rows = read_png(browser.picture())
+        mean = sum(map(sum, rows[TALL // 3])) / 3 / WIDTH
+        note('%s: the ground' % scheme, mean < 110 if scheme == 'dark' else mean > 150, '%g' % mean)
+        ink, panel = browser.ask('["--ink", "--quiet"].map((name) => {const e = document.createElement("i"); e.style.color = '
+                                 'style_color(name); document.body.append(e); const c = getComputedStyle(e).color.match(/[0-9.]+/g)'
+                                 '.slice(0, 3).map(Number); e.remove(); return c})'), rows[TALL - 16][WIDTH // 2]
+        for name, colour in zip(('texts', 'quiet texts'), ink):
+            low, high = sorted((shine(colour), shine(panel)))
+            note('%s: contrast of %s' % (scheme, name), (high + .05) / (low + .05) > 4.5, '%s on %s' % (colour, panel))
+    browser.call('Emulation.setEmulatedMedia', features=[])
+
+
 def save(browser, path, profile):
     """Picture and video arrive as files of their kind; the loop begins again."""
     folder = profile + '/saved'
@@ -245,7 +325,7 @@ def save(browser, path, profile):
 
 
 def main():
-    profile, run, results, spin, spin_results, odd, lanes, beside, two = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd, lanes, beside, two, turning, turned = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
     compare(browser, spin, spin_results)
@@ -254,9 +334,12 @@ def main():
     course(browser, lanes)
     save(browser, lanes, profile)
     second(browser, two)
+    readings(browser, turning, turned)
+    choice(browser, turning, turned)
+    dark(browser, lanes)
     browser.open(beside, 't=2')
-    pairs = browser.ask('panels.flatMap((p) => p.curves.filter((c) => c.until).map((c) => '
-                        'p.curves.some((d) => !d.until && d.ink === c.ink && c.name.startsWith(d.name))))')
+    pairs = browser.ask('panels.flatMap((p) => p.curves.map((c) => c.k === SPEED || c.other !== undefined && '
+                        'c.other.ink === c.ink && run.curves[run.curves.findIndex((d) => d.beside === c.k)].name.startsWith(c.name)))')
     note('curves of another run have the colour of their own', len(pairs) > 2 and all(pairs), str(pairs))
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
     browser.close()

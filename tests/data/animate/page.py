@@ -53,8 +53,11 @@ def check_motion(page, results):
     if run['frames'] != (len(rows['time']) - 1) // every + 1:
         sys.exit('%d frames' % run['frames'])
     names = [body['name'] for body in run['bodies']]
+    run['curves'] = [curve for curve in run['curves'] if curve['name'] in rows]  # not inputs
+    if not {name for name in rows if name != 'time'} <= {curve['name'] for curve in run['curves']}:
+        sys.exit('not all results can be shown as curves')
     for curve in run['curves']:
-        if run['channels'][curve['values']]['unit'] > 1.1e-4 * (max(map(abs, rows[curve['name']])) or 1e9):
+        if curve['plotted'] and run['channels'][curve['values']]['unit'] > 1.1e-4 * (max(map(abs, rows[curve['name']])) or 1e9):
             sys.exit('the curve of %s has few digits' % curve['name'])
     for i in range(0, run['frames'], 7):
         for k, axis in enumerate('xyz'):
@@ -199,7 +202,10 @@ def check_same(page, other, units):
     a, b = read_run(page), read_run(other)
     if a['frames'] != b['frames'] or len(a['channel']) != len(b['channel']):
         sys.exit('%d frames, %d frames' % (a['frames'], b['frames']))
+    others = {curve['values'] for curve in a['curves'] if not curve['plotted']}  # with as many digits as they have
     for k, (x, y) in enumerate(zip(a['channel'], b['channel'])):
+        if k in others:
+            continue
         for v, w in zip(x, y):
             close('channel %d' % k, v, w, (units + 0.1) * a['channels'][k]['unit'])
 

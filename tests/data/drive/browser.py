@@ -4,6 +4,7 @@
 # chromium by real keys, saves the recording; takes over from a driver and hands back in another one; and steps the vehicles of the other pages through their scenes, whose results
 # must be those of gicrun to DIGITS of the largest value of each column. Prints `good NAME` or `bad NAME: why` for each check.
 import json
+import math
 import os
 import sys
 import time
@@ -88,9 +89,14 @@ def use(browser, path, recording, profile):
     yaw = browser.ask('base_yaw[1]')
     keys.down('ArrowLeft')
     shows('it steers to the left', 'base_yaw[1] > %r' % (yaw + .15))
+    a = browser.ask('[live.ahead, live.left, ...["x", "y"].map((c) => live.signals[run.signals.findIndex('
+                    '({name}) => name === "chassis_acceleration." + c)])]')
+    note('accelerations of the g-g diagram are those of the outputs',
+         a[1] > .5 and abs(math.hypot(a[0], a[1]) - math.hypot(a[2], a[3])) < .1 + .05 * math.hypot(a[2], a[3]), str(a))
     keys.up('ArrowLeft')
     keys.up('w')
     keys.down('s')
+    shows('it is slowed down on the g-g diagram', 'live.ahead < -2')
     shows('it brakes', 'live.speed < 1')
     keys.up('s')
     shows('gears, speed and time are shown', '/gear [1-9N]/.test(document.getElementById("facts").textContent) && '
@@ -100,6 +106,15 @@ def use(browser, path, recording, profile):
     keys.down('ArrowUp')
     shows('it backs up', 'live.gear < 0 && live.speed > 0.5')
     keys.up('ArrowUp')
+
+    browser.press('n', 'n')
+    told = 'document.querySelector("#wheel_table td").textContent'
+    shows('the table of the wheels', 'Math.abs(%s - live.signals[run.wheels[0].told[0]] / 1000) < .2 && %s > 1' % (told, told))
+    browser.press('x', 'x')
+    shows('the g-g diagram', '!document.getElementById("gg_box").hidden && new Set(document.getElementById("gg")'
+          '.getContext("2d").getImageData(0, 0, 170, 170).data).size > 20 && document.getElementById("gg_left").textContent !== ""')
+    browser.press('x', 'x')
+    browser.press('n', 'n')
 
     # a moment that is kept, and what comes after it forgotten
     browser.press('k', 'k')
