@@ -35,11 +35,12 @@ typedef struct Shape {
     const BodyShape *mesh;
 } Shape;
 
-/* A line from a point of a body to one of another (BODY_GROUND: world). kind: "link", "spring" or "damper". */
+/* A line from a point of a body to one of another (BODY_GROUND: world). kind: "link", "spring", "damper" or "bushing",
+ * whose ring is at the first one and whose pin is at the second one, along axes of these. */
 typedef struct Line {
     const char *name, *kind;
     int body[2];
-    double point[2][3];
+    double point[2][3], axis[2][3];
 } Line;
 
 typedef struct Shapes {

@@ -6,6 +6,8 @@
 #include "model/model.h"
 #include "run/animate.h"
 
+#include <string.h>
+
 enum { POSE = 7 };
 
 int animate_output(const Model *model, OutputType type, int wheel)
@@ -90,6 +92,12 @@ void json_lines(Text *out, const Shapes *shapes)
         json_vector(out, "p", line->point[0]);
         text_print(out, ",");
         json_vector(out, "q", line->point[1]);
+        if (!strcmp(line->kind, "bushing")) {
+            text_print(out, ",");
+            json_vector(out, "u", line->axis[0]);
+            text_print(out, ",");
+            json_vector(out, "v", line->axis[1]);
+        }
         text_print(out, "}");
     }
     text_print(out, "],\n");

@@ -178,6 +178,12 @@ static void add_lines(const Shaper *shaper)
         Force *force = &model->force[f];
         if (force->type == FORCE_POINTS || force->type == FORCE_POINTS_LAW)
             add_line(shaper, force->name, is_elastic(model, force) ? "spring" : "damper", force->body, force->point);
+        if (force->type == FORCE_BUSHING) {
+            add_line(shaper, force->name, "bushing", force->body, force->point);
+            Line *line = &shaper->shapes->line[shaper->shapes->lines - 1];
+            for (int k = 0; k < 2; ++k) /* z of its frame */
+                apply3(force->bushing->frame[k], (const double[]){0, 0, 1}, line->axis[k]);
+        }
     }
 }
 

@@ -148,11 +148,14 @@ forces:
   pot: {type: spring_damper, coordinate: pot, stiffness: 0, damping: 10}
   strut: {type: spring_damper, bodies: [near, far], points: [[1, 0, 0.2], [3, 0, 0.1]], stiffness: 50, damping: 1}
   dash: {type: spring_damper, bodies: [near, far], points: [[1, 0.3, 0], [3, 0.4, 0]], stiffness: 0, damping: 1}
+  rubber: {type: bushing, bodies: [near, far], point: [2, 0, 0.3], orientation: {x: [0, 0, 1], z: [0, 1, 0]}, stiffness: [9, 9, 9, 0, 0, 0]}
 END
 printf 'gicscene: 1\nduration: 0.1\nstep: 0.01\n' >"$work/lines.scene"
 run --engine tape "$work/lines.veh" "$work/lines.scene" --animate "$work/lines.html"
-check 'springs and dampers are lines between their points' page lines "$work/lines.html" coil:spring:ground:0,0,0:near:0,0,0 \
-    pot:damper:ground:0,1,0:far:0,0,0 strut:spring:near:0,0,0.2:far:0,0,0.1 dash:damper:near:0,0.3,0:far:0,0.4,0
+check 'springs, dampers and bushings are at their points' page lines "$work/lines.html" coil:spring:ground:0,0,0:near:0,0,0 \
+    pot:damper:ground:0,1,0:far:0,0,0 strut:spring:near:0,0,0.2:far:0,0,0.1 dash:damper:near:0,0.3,0:far:0,0.4,0 \
+    rubber:bushing:near:1,0,0.3:far:-1,0,0.3
+check 'a bushing lies along z of its frame' grep -q '"name":"rubber".*"u":\[0,1,0\],"v":\[0,1,0\]' "$work/lines.html"
 
 # shapes that models name, and those of bodies of which little is known; wheels whose forces no output tells
 cat >"$work/shapes.scene" <<'END'

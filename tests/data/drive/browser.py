@@ -111,8 +111,8 @@ def use(browser, path, recording, profile):
     told = 'document.querySelector("#wheel_table td").textContent'
     shows('the table of the wheels', 'Math.abs(%s - live.signals[run.wheels[0].told[0]] / 1000) < .2 && %s > 1' % (told, told))
     browser.press('x', 'x')
-    shows('the g-g diagram', '!document.getElementById("gg_box").hidden && new Set(document.getElementById("gg")'
-          '.getContext("2d").getImageData(0, 0, 170, 170).data).size > 20 && document.getElementById("gg_left").textContent !== ""')
+    shows('the g-g diagram', '!document.getElementById("gg_box").hidden && document.getElementById("gg")'
+          '.toDataURL().length > 2500 && document.getElementById("gg_left").textContent !== ""')
     browser.press('x', 'x')
     browser.press('n', 'n')
 
