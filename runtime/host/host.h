@@ -127,6 +127,8 @@ typedef struct Plot {
     const char *title;
     int curves, panels, rows;
     const gic_signal *signal; /* [curves + 2 panels] the signals of a row, after the time */
+    const char **shown;       /* [curves + 2 panels] the units of `sample`, */
+    const double *factor;     /* and what numbers in the signals' units are multiplied by for these */
     double *sample;
     const CsvTable *other; /* results of another run, drawn in dots beside these where it has the signal; NULL: none */
     const char *other_name;
@@ -140,7 +142,7 @@ void plot_write(Pool *pool, const Plot *plot, const char *path);
 /* quantity.c: the quantity of a unit, "force"; "value" for an unknown unit. */
 const char *unit_quantity(const char *unit);
 /* "force [N]"; "no unit" for numbers without one */
-const char *quantity_text(Pool *pool, const char *unit);
+const char *quantity_text(Pool *pool, const char *unit, const char *shown);
 /* Exit with a message if gnuplot is missing; call before the run that the picture is of. */
 void plot_check(Pool *pool);
 /* For scripts of gnuplot: a text in quotes, with a blank between `]]` and a `>`. */

@@ -94,7 +94,8 @@ static void other_block(Text *script, const Plot *plot)
         const double *value = table->value + row * table->columns;
         text_print(script, "%.9g", value[0]);
         for (int k = 0; k < signals; ++k)
-            text_print(script, column[k] > 0 ? " %.9g" : " NaN", column[k] > 0 ? value[column[k]] : 0);
+            text_print(script, column[k] > 0 ? " %.9g" : " NaN",
+                       column[k] > 0 ? value[column[k]] * plot->factor[k] : 0);
         text_print(script, "\n");
     }
     text_print(script, "END\n");
@@ -161,7 +162,7 @@ static void panel(Text *script, const Plot *plot, int first, bool last)
     int columns;
     legend_rows(script->pool, plot, first, &columns);
     text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
-    plot_text(script, quantity_text(script->pool, plot->signal[first].unit));
+    plot_text(script, quantity_text(script->pool, plot->signal[first].unit, plot->shown[first]));
     text_print(script, "\nset key maxcols %d\nplot ", columns);
     for (int i = first, drawn = 0; i < plot->curves; ++i) {
         if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
@@ -179,10 +180,10 @@ static void panel(Text *script, const Plot *plot, int first, bool last)
     text_print(script, "\n");
 }
 
-static void axis_label(Text *script, char axis, const gic_signal *signal)
+static void axis_label(Text *script, const Plot *plot, char axis, int signal)
 {
     text_print(script, "set %clabel ", axis);
-    plot_text(script, pool_print(script->pool, "%s [%s]", signal->name, signal->unit));
+    plot_text(script, pool_print(script->pool, "%s [%s]", plot->signal[signal].name, plot->shown[signal]));
     text_print(script, "\n");
 }
 
@@ -198,8 +199,9 @@ static void limits(Pool *pool, const Plot *plot, int signal, double *low, double
     }
     const int column = plot->other ? plot_column(pool, plot->other, &plot->signal[signal]) : -1;
     for (int i = 0; column > 0 && i < plot->other->rows; ++i) {
-        *low = fmin(*low, plot->other->value[i * plot->other->columns + column]);
-        *high = fmax(*high, plot->other->value[i * plot->other->columns + column]);
+        const double value = plot->other->value[i * plot->other->columns + column] * plot->factor[signal];
+        *low = fmin(*low, value);
+        *high = fmax(*high, value);
     }
 }
 
@@ -237,8 +239,8 @@ static Frame frame_over(Pool *pool, const Plot *plot, int panel, int top)
 static void panel_over(Text *script, const Plot *plot, int panel, const Frame *frame)
 {
     const int x = plot->curves + 2 * panel, y = x + 1;
-    axis_label(script, 'x', &plot->signal[x]);
-    axis_label(script, 'y', &plot->signal[y]);
+    axis_label(script, plot, 'x', x);
+    axis_label(script, plot, 'y', y);
     for (int k = 0; k < 2 && frame->scale > 0; ++k)
         text_print(script, "set %crange [%.9g:%.9g]\nset %ctics %.9g\n", "xy"[k], frame -> low[k], frame -> high[k],
                    "xy"[k], frame -> tick);

@@ -29,12 +29,12 @@ const char *unit_quantity(const char *unit)
     return "value";
 }
 
-const char *quantity_text(Pool *pool, const char *unit)
+const char *quantity_text(Pool *pool, const char *unit, const char *shown)
 {
-    const size_t length = strlen(unit);
+    const size_t length = strlen(shown);
     if (!strcmp(unit, "1"))
         return unit_quantity(unit);
-    if (path_ends(unit, "^2"))
-        return pool_print(pool, "%s [%.*s\xc2\xb2]", unit_quantity(unit), (int)length - 2, unit);
-    return pool_print(pool, "%s [%s]", unit_quantity(unit), unit);
+    if (path_ends(shown, "^2"))
+        return pool_print(pool, "%s [%.*s\xc2\xb2]", unit_quantity(unit), (int)length - 2, shown);
+    return pool_print(pool, "%s [%s]", unit_quantity(unit), shown);
 }

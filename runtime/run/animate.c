@@ -451,6 +451,7 @@ static void json_run(const Animation *a, Text *out)
     json_key(out, "description", a->model->description);
     json_key(out, "scene", slash ? slash + 1 : a->scene_path);
     json_drawing(out, a->model);
+    json_units(out, a->scene);
     text_print(out, "\"free\":%s,\"size\":%.6g,\"frames\":%d,\"frame_step\":%.15g,\n",
                a->model->free_base ? "true" : "false", size, a->frames, (double)a->every * a->scene->output_step);
     json_bodies(out, a->model, &a->shapes);

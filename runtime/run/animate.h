@@ -85,6 +85,8 @@ void json_key(Text *out, const char *key, const char *value);
 void json_vector(Text *out, const char *key, const double v[3]);
 /* "ahead":[..],"up":[..],: directions x and z of the drawing in the frame of the base. */
 void json_drawing(Text *out, const Model *model);
+/* "units":{unit of SI:[shown unit, factor],...}, */
+void json_units(Text *out, const Scene *scene);
 /* "bodies":[..], whose poses are 7 channels each; "lines":[..],; the object of a wheel but for its end, whose angle is
  * a channel. */
 void json_bodies(Text *out, const Model *model, const Shapes *shapes);

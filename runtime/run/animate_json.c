@@ -51,6 +51,15 @@ void json_drawing(Text *out, const Model *model)
     text_print(out, ",");
 }
 
+void json_units(Text *out, const Scene *scene)
+{
+    text_print(out, "\"units\":{");
+    for (int i = 0; i < scene->units; ++i)
+        text_print(out, "%s\"%s\":[\"%s\",%.17g]", i ? "," : "", scene->unit[i]->of, scene->unit[i]->name,
+                   scene->unit[i]->factor);
+    text_print(out, "},\n");
+}
+
 void json_key(Text *out, const char *key, const char *value)
 {
     text_print(out, "\"%s\":", key);

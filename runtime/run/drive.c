@@ -177,6 +177,7 @@ static void write_data(void *context, Text *out, int indent)
     json_key(out, "description", p->model->description);
     json_key(out, "scene", slash ? slash + 1 : p->request->scene);
     json_drawing(out, p->model);
+    json_units(out, p->scene);
     text_print(out, "\"free\":%s,\"size\":%.6g,\"lowest\":%.6g,\"level\":%s,\n", p->model->free_base ? "true" : "false",
                p->size, p->lowest, is_level(p->scene->road) ? "true" : "false");
     number(out, "step", p->scene->step);

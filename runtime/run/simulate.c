@@ -207,9 +207,16 @@ static void prepare_plot(Run *run)
     run->plot.other_name = run->plot.other ? name_of(run->request->with) : NULL;
     const int drawn = scene->curves + 2 * scene->panels;
     gic_signal *signal = pool_alloc(run->pool, sizeof *signal * (size_t)(drawn + 1));
-    for (int i = 0; i < drawn; ++i)
+    double *factor = pool_alloc(run->pool, sizeof *factor * (size_t)(drawn + 1));
+    run->plot.shown = pool_alloc(run->pool, sizeof *run->plot.shown * (size_t)(drawn + 1));
+    for (int i = 0; i < drawn; ++i) {
         signal[i] = scene->signal[run->drawn[i]];
+        const ShownUnit *unit = scene_unit(scene, signal[i].unit);
+        run->plot.shown[i] = unit ? unit->name : signal[i].unit;
+        factor[i] = unit ? unit->factor : 1;
+    }
     run->plot.signal = signal;
+    run->plot.factor = factor;
     if (run->plot.other)
         check_other(run);
     run->every = (scene->outputs + MOST_POINTS) / MOST_POINTS;
@@ -269,7 +276,7 @@ static void record(Run *run)
         double *sample = run->plot.sample + run->plot.rows++ * (drawn + 1);
         *sample++ = time;
         for (int i = 0; i < drawn; ++i)
-            *sample++ = scene_value(run->model, run->copy, run->drawn[i]);
+            *sample++ = scene_value(run->model, run->copy, run->drawn[i]) * run->plot.factor[i];
     }
     run->constraint = fmax(run->constraint, run->copy->residual);
 }

@@ -34,6 +34,12 @@ typedef struct RoadCourse {
     int edges;
 } RoadCourse;
 
+/* A unit in which pictures and pages show numbers in `of`, of SI: so many of it are one of that. */
+typedef struct ShownUnit {
+    const char *name, *of;
+    double factor;
+} ShownUnit;
+
 typedef struct Scene {
     const Source *source;
     double duration, step, output_step; /* step is 0 if a scene of variable steps has none */
@@ -68,8 +74,10 @@ typedef struct Scene {
     int *column, *curve, (*panel)[2];
     int watches, *watched; /* signals that conditions see, indices as those */
     bool plotted;          /* the scene names the curves */
-    bool held;             /* the base is fixed at `position` and `euler` */
-    double massless;       /* kg: bodies below this mass lose it; 0: none does */
+    const ShownUnit **unit;
+    int units;
+    bool held;       /* the base is fixed at `position` and `euler` */
+    double massless; /* kg: bodies below this mass lose it; 0: none does */
     Place massless_at;
     double lost; /* from scene_rig(): see model_lost() */
     const char *massless_names;
@@ -117,6 +125,9 @@ double scene_longest_step(const Scene *scene, double time);
 double scene_quiet_until(const Scene *scene, double time);
 /* read_outputs.c: columns, curves and panels of a scene. */
 void scene_read_outputs(Pool *pool, const Item *root, const Model *model, Scene *scene);
+/* unit.c: units of pictures and pages; that for a unit of SI, NULL: SI. */
+void scene_read_units(Pool *pool, const Item *root, Scene *scene);
+const ShownUnit *scene_unit(const Scene *scene, const char *of);
 /* facts.c: facts about a run of the scene. path: of the scene; drawn: a picture is asked for. */
 const Facts *scene_facts(Pool *pool, const Model *model, const Scene *scene, const char *path, bool drawn);
 /* facts.c: the plane that a road is, NULL: it is none, or its friction is not the same everywhere. */

@@ -60,6 +60,31 @@ check 'results that do not tell where the base is: no vehicle' grep -q '"ghost":
 } >"$work/turning.veh"
 run -q "$work/turning.veh" "$later" -o "$work/turning.csv" --animate "$work/turning.html"
 
+# units: numbers of the picture and of the page, files as they are, and mistakes
+{
+    cat "$later"
+    echo '  - chassis_velocity.x'
+    echo 'units: [deg, km/h, g]'
+} | sed 's/^  - {x: chassis.x, y: chassis.y}//; s/^duration: 10/duration: 4.5/' >"$work/units.scene"
+sed '/^units/d' "$work/units.scene" >"$work/si.scene"
+mkdir "$work/bin"
+printf '#!/bin/sh\nif [ "$1" = - ]; then cat >"%s"; exec %s - <"%s"; fi\nexec %s "$@"\n' "$work/script" "$(command -v gnuplot)" \
+    "$work/script" "$(command -v gnuplot)" >"$work/bin/gnuplot"
+chmod +x "$work/bin/gnuplot"
+run -q "$root/models/hmmwv_vehicle.veh" "$work/si.scene" -o "$work/si.csv" --plot "$work/si.svg"
+PATH=$work/bin:$PATH run -q "$root/models/hmmwv_vehicle.veh" "$work/units.scene" -o "$work/units.csv" --plot "$work/units.svg" \
+    --animate "$work/units.html" --with "$work/si.csv"
+check 'units change no results' cmp "$work/units.csv" "$work/si.csv"
+check 'axes have the units' grep -q 'angle \[deg\]' "$work/units.svg"
+check 'the picture has the numbers in them, of both runs' page units "$work/script" "$work/units.csv" chassis_attitude.roll \
+    57.29577951308232 chassis_velocity.x 3.6 wheel_f_l.y 1
+for mistake in 'units: deg=units must be a list' 'units: [degree]=do not know the unit' "units: [rpm, deg/s]='rpm' and 'deg/s' are both"; do
+    { cat "$work/si.scene"; echo "${mistake%%=*}"; } >"$work/bad.scene"
+    run -q "$root/models/hmmwv_vehicle.veh" "$work/bad.scene" -o "$work/bad.csv"
+    check "mistake: ${mistake#*=}" exits 1
+    check "mistake: ${mistake#*=}: why" says "${mistake#*=}"
+done
+
 # to rounding, twice a unit, for the last digit may fall either way; partitioned coordinates are integrated themselves,
 # with errors of their own: more
 for engine in cc tape gic gcp1 gcp2; do
@@ -191,7 +216,7 @@ check 'edges of a lane that turns' page bend "$work/bend.html"
 
 run "$model" "$root/models/scenes/spin.scene" -o "$work/spin.csv" --animate "$work/spin.html"
 timeout 600 /usr/bin/python3 -B "$root/tests/data/animate/browser.py" "$work/profile" "$work/run.html" "$work/run.csv" \
-    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" "$work/beside.html" "$work/two.html" "$work/turning.html" "$work/turning.csv" >"$work/notes" 2>"$work/err"
+    "$work/spin.html" "$work/spin.csv" "$work/odd.html" "$work/lanes.html" "$work/beside.html" "$work/two.html" "$work/turning.html" "$work/turning.csv" "$work/units.html" "$work/units.csv" >"$work/notes" 2>"$work/err"
 check 'the browser is used to the end' [ $? -eq 0 ]
 while read -r how what; do
     check "$what" [ "$how" = good ]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html TWO.html TURNING.html TURNING.csv: opens pages of `gicrun --animate` in chromium, uses
+# browser.py PROFILE RUN.html RUN.csv SPIN.html SPIN.csv ODD.html LANES.html BESIDE.html TWO.html TURNING.html TURNING.csv UNITS.html UNITS.csv: opens pages of `gicrun --animate` in chromium, uses
 # them by mouse and keys, and looks at pictures of them. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
@@ -265,6 +265,21 @@ def choice(browser, path, results):
     note('and goes', browser.wait('shown_curves.length === %d' % count, 5), browser.ask('String(shown_curves)'))
 
 
+def shown_units(browser, path, results):
+    """Curves of both runs and the speed in the units of the scene."""
+    rows = read_csv(results)
+    browser.open(path, 't=4.2')
+    at = rows['time'].index(4.2)
+    for name, factor, unit in ('chassis_attitude.roll', 180 / math.pi, 'deg'), ('chassis_velocity.x', 3.6, 'km/h'), ('wheel_f_l.y', 1, 'm'):
+        text = browser.ask('[...document.querySelectorAll(".curve")].find((e) => e.textContent.startsWith("%s ")).textContent' % name)
+        words = text.replace(name, '').replace('\u00d7', '').split()
+        value = factor * rows[name][at]
+        note('%s in %s' % (name, unit), words[1::2] == [unit, unit] and
+             all(abs(float(w) - value) < .01 * abs(value) + .006 for w in words[::2]), '%s: %g' % (text, value))
+    note('the speed in km/h', browser.text('facts').split()[1] == 'km/h' and
+         abs(float(browser.text('facts').split()[0]) - 36) < 2, browser.text('facts'))
+
+
 def dark(browser, path):
     """On a dark ground texts are light, with contrast, and so is what is light otherwise dark."""
     def shine(colour):
@@ -325,7 +340,7 @@ def save(browser, path, profile):
 
 
 def main():
-    profile, run, results, spin, spin_results, odd, lanes, beside, two, turning, turned = sys.argv[1:]
+    profile, run, results, spin, spin_results, odd, lanes, beside, two, turning, turned, units, unit_rows = sys.argv[1:]
     browser = Browser(profile)
     look(browser, run, results)
     compare(browser, spin, spin_results)
@@ -337,6 +352,7 @@ def main():
     readings(browser, turning, turned)
     choice(browser, turning, turned)
     dark(browser, lanes)
+    shown_units(browser, units, unit_rows)
     browser.open(beside, 't=2')
     pairs = browser.ask('panels.flatMap((p) => p.curves.map((c) => c.k === SPEED || c.other !== undefined && '
                         'c.other.ink === c.ink && run.curves[run.curves.findIndex((d) => d.beside === c.k)].name.startsWith(c.name)))')

@@ -348,6 +348,20 @@ def check_ghost(page, other):
         sys.exit('both vehicles are the same')
 
 
+def check_units(script, results, *named):
+    """Columns of gnuplot's data, of both runs, are those of the results times a factor: NAME FACTOR ..., to 9 digits."""
+    rows, text = read_csv(results), open(script).read()
+    names = re.findall(r"\$data using 1:(\d+) with lines [^\n]*? title '([^']*)'", re.sub(r', \$', '\n$', text))
+    column = {name: int(k) - 1 for k, name in names}
+    for block in '$data', '$other':
+        table = re.search(re.escape(block) + r' << END\n(.*?)END', text, re.S).group(1).split('\n')[:-1]
+        for name, factor in zip(named[::2], map(float, named[1::2])):
+            for line, value in zip(table, rows[name]):
+                close(name, float(line.split()[column[name]]), factor * value, 1e-8 * (1 + abs(factor * value)))
+        if len(table) < 100:
+            sys.exit('%d rows' % len(table))
+
+
 def main():
     check, *words = sys.argv[1:]
     if check == 'motion':
@@ -356,6 +370,8 @@ def main():
         check_other(*words)
     elif check == 'ghost':
         check_ghost(*words)
+    elif check == 'units':
+        check_units(*words)
     elif check == 'tires':
         check_tires(words[0], words[1], *map(float, words[2:]))
     elif check == 'friction':
