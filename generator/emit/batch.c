@@ -415,15 +415,10 @@ static void write_fast_members(void *context, Text *out, int indent)
         write_batch_fast_members(&b->g, out, indent);
 }
 
-static const Insertion header_point[] = {{"banner", write_batch_banner},
-                                         {"guard", write_guard},
-                                         {"include", write_include},
-                                         {"sizes", write_sizes},
-                                         {"derived", write_derived},
-                                         {"work", write_work_type},
-                                         {"fast", write_fast_members},
-                                         {"dual", write_dual_step},
-                                         {NULL, NULL}};
+static const Insertion header_point[] = {
+    {"banner", write_batch_banner}, {"guard", write_guard},     {"include", write_include},
+    {"sizes", write_sizes},         {"derived", write_derived}, {"work", write_work_type},
+    {"fast", write_fast_members},   {"dual", write_dual_step},  {NULL, NULL}};
 
 static const Insertions header_points = {
     (const char *const[]){"batch.h.in", "batch_fast.h.in", "batch_dual.h.in", NULL}, header_point, NULL};
@@ -448,9 +443,8 @@ static void write_dual_step(void *context, Text *out, int indent)
 
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {
-        &batch_points,      &class_points,       &lanes_points,       &header_points,
-        &batch_fast_points, &batch_wheel_points, &batch_drive_points, NULL};
+    const Insertions *const points[] = {&batch_points,      &class_points,       &lanes_points,       &header_points,
+                                        &batch_fast_points, &batch_wheel_points, &batch_drive_points, NULL};
     templates_check(pool, templates, points);
 }
 

@@ -138,8 +138,7 @@ static void write_friction(void *context, Text *out, int indent)
     Generation *g = context;
     (void)indent;
     if (wheels_roll(g))
-        template_expand(g->pool, out, g->templates, "batch_friction.c.in", g->model->name, NULL, &batch_fast_points,
-                        g);
+        template_expand(g->pool, out, g->templates, "batch_friction.c.in", g->model->name, NULL, &batch_fast_points, g);
 }
 
 static void write_arrays(void *context, Text *out, int indent)

@@ -64,7 +64,7 @@ run 2 --batch 8 --lanes 3 "$model"
 says err "--lanes takes 2, 4, 8 or 16, not: 3"
 run 2 --lanes 4 --scene "$root/models/scenes/paper_run.scene" "$model"
 says err "--lanes and --scene are not for the same code"
-run 1 --batch 8 "$root/tests/data/tuning/car.veh"
+run 1 --batch 8 "$root/models/semitrailer.veh"
 says err "can't have outputs of reactions"
 run 1 missing.veh
 says err "missing.veh: error: can't open"

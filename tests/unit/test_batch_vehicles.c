@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Complete vehicles in lanes, with tires, brakes and powertrain, have the bits of the code for one vehicle where both call
- * libm (GIC_BATCH_LIBM), whatever the neighbours do: on their own roads, with their own inputs, gears and parameters. */
+ * Complete vehicles in lanes, with tires, brakes and powertrain, have the bits of the code for one vehicle where both
+ * call libm (GIC_BATCH_LIBM), whatever the neighbours do: on their own roads, with their own inputs, gears and
+ * parameters. */
 #include "hmmwv_vehicle_batch.h"
 
 #include <math.h>
@@ -37,7 +38,8 @@ static gic_real friction(const gic_road *road, int32_t lane, gic_real time, gic_
 
 static const Waves whole = {{height, friction}, INFINITY}, broken = {{height, NULL}, 4};
 
-/* Pull away, steer, brake until the wheels lock: each lane in its own way. Lane 0 stands still: all numbers are nice. */
+/* Pull away, steer, brake until the wheels lock: each lane in its own way. Lane 0 stands still: all numbers are nice.
+ */
 static void drive(void *user, int32_t lane, gic_real time, gic_real *input)
 {
     const gic_real hard = 0.25 * (lane % 4);

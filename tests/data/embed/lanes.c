@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Vehicles of any model (BATCH: its descriptor) with parameters and initial states of their own, in lanes and one by
- * one, at one rate and, where there are fast states, at two: prints for how many state, outputs and status are the same to the last bit, and how many there are. */
+ * one, at one rate and, where there are fast states, at two: prints for how many state, outputs and status are the same
+ * to the last bit, and how many there are. */
 #include "gic_batch.h"
 
 #include <stdio.h>
@@ -8,6 +9,10 @@
 #include <string.h>
 
 enum { STEPS = 100, DUAL = 20, RATIO = 4, MOST = 100 };
+
+#ifndef STEP
+#define STEP 0.001 /* s */
+#endif
 
 extern const gic_batch_model BATCH;
 
@@ -47,16 +52,16 @@ int main(void)
             return 1;
         BATCH.load(batch, i, car + (size_t)i * model->size);
     }
-    BATCH.step(batch, GIC_R(0.001), GIC_AB3, STEPS);
+    BATCH.step(batch, GIC_R(STEP), GIC_AB3, STEPS);
     if (BATCH.step_dual)
-        BATCH.step_dual(batch, GIC_R(0.002), RATIO, GIC_R(0.0), DUAL);
+        BATCH.step_dual(batch, GIC_R(STEP), RATIO, GIC_R(0.0), DUAL);
     for (int i = 0; i < BATCH.vehicles; ++i) {
         void *const one = car + (size_t)i * model->size;
         int status = GIC_OK;
         for (int k = 0; k < STEPS && status == GIC_OK; ++k)
-            status = gic_step(model, one, GIC_R(0.001), GIC_AB3);
+            status = gic_step(model, one, GIC_R(STEP), GIC_AB3);
         for (int k = 0; k < DUAL && status == GIC_OK && BATCH.step_dual; ++k)
-            status = gic_step_dual(model, one, GIC_R(0.002), RATIO);
+            status = gic_step_dual(model, one, GIC_R(STEP), RATIO);
         BATCH.store(batch, i, copy);
         states += !memcmp(array(one, model->state_offset), array(copy, model->state_offset), numbers);
         statuses += BATCH.status(batch, i) == status;
