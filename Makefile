@@ -49,7 +49,7 @@ models := $(basename $(notdir $(wildcard models/*.veh)))
 # programs are generator/*.c and runtime/gicrun/gicrun.c; all other files stand in folders, whose order is that of
 # tests/layers.txt, and go into one archive, from which a program takes what it uses
 programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c runtime/gicsweep/*.c runtime/gicbench/*.c \
-    runtime/plugin/*.c)
+    runtime/plugin/*.c runtime/examples/*.c)
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
 embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h \

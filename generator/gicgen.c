@@ -165,8 +165,8 @@ static Options read_options(int count, char **word)
         {"graph", .text = &graph},
         {"report", .text = &report},
     };
-    const int first = options_read("gicgen", usage, count, word, option, (int)(sizeof option / sizeof *option),
-                                   &options, usage_error);
+    const int first = options_read("gicgen", (const char *const[]){usage, NULL}, count, word, option,
+                                   (int)(sizeof option / sizeof *option), &options, usage_error);
     if (keys || schema) {
         print_tables(schema);
         exit(0);

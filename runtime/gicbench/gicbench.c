@@ -110,8 +110,8 @@ static void read_command_line(Asked *asked, int count, char **word)
         {"plot", .text = &bench->picture},       {"cc", .text = &bench->compiler},
         {"cflags", .text = &bench->flags},
     };
-    const int first =
-        options_read("gicbench", help, count, word, option, (int)(sizeof option / sizeof *option), asked, NULL);
+    const int first = options_read("gicbench", (const char *const[]){help, NULL}, count, word, option,
+                                   (int)(sizeof option / sizeof *option), asked, NULL);
     const int files = count - first;
     bench->file = (const char *const *)word + first;
     bench->files = files;

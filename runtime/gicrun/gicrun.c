@@ -8,10 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] =
+static const char usage[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
     "              [--with other.csv] [--animate page.html] [--replay recording.csv]\n"
     "       gicrun --drive page.html MODEL.veh SCENE\n"
+    "       gicrun --live PORT MODEL.veh SCENE [--inputs NAMES] [--seconds S] [-o results.csv]\n"
+    "              [--record inputs.csv]\n"
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
@@ -24,13 +26,20 @@ static const char help[] =
     "              [--report page.html]\n"
     "\n"
     "Runs a scene with a vehicle model, or studies the model.\n"
-    "\n"
+    "\n";
+
+static const char help[] =
     "  -o, --output FILE  results as CSV; - is standard output (default without a picture or page)\n"
     "      --plot FILE    draw the scene's `plot`, with gnuplot\n"
     "      --with FILE    draw other results too, in dots\n"
     "      --animate FILE write a page for a browser in which the model moves\n"
     "      --drive FILE   write a page in which one drives the model; needs clang and lld\n"
-    "      --replay FILE  repeat what it recorded\n"
+    "      --live PORT    run as fast as time passes, with inputs and outputs by UDP on this computer,\n"
+    "                     models/LIVE.md; 0: a port that is free\n"
+    "      --inputs NAMES of --live: those that packets give, between commas; else all\n"
+    "      --seconds S    of --live: so long; else until Ctrl-C\n"
+    "      --record FILE  of --live: the inputs as they were held\n"
+    "      --replay FILE  repeat what a page of --drive or --live recorded\n"
     "      --eval FILE    CSV of states to evaluate, a column a name; - is standard input\n"
     "      --equilibrium  static equilibrium near the initial state; -o: as a row that --eval reads\n"
     "      --modes        eigenvalues, frequencies and damping of small motions about it, with\n"
@@ -76,7 +85,7 @@ static const char help[] =
 /* What is asked for. */
 typedef struct Asked {
     const char *model;
-    bool rests, modes, linear, trim, kinematics, sheet, loads, general, quiet;
+    bool rests, modes, linear, trim, kinematics, sheet, loads, live, general, quiet;
     const char *animated, *driven, *report; /* --animate, --drive, --report */
     double at;                              /* --at; NAN: not given */
     gicl_options options;
@@ -108,6 +117,22 @@ static void read_travel(void *asked, char *word)
     if (*end || end == word || !(value > 0 && value <= 10))
         usage_fail("gicrun", "--travel must be a length in m, above 0 and at most 10, unlike", word);
     ((Asked *)asked)->study.travel = value;
+}
+
+static void read_live(void *asked, char *word)
+{
+    ((Asked *)asked)->live = true;
+    ((Asked *)asked)->study.port = (int)usage_whole(
+        "gicrun", "--live takes a port from 1 to 65535, or 0 for one that is free, unlike", word, 0, 65535);
+}
+
+static void read_seconds(void *asked, char *word)
+{
+    char *end;
+    const double value = strtod(word, &end);
+    if (*end || end == word || !(value > 0 && value <= 1e9))
+        usage_fail("gicrun", "--seconds must be a time in s, above 0 and at most 1e9, unlike", word);
+    ((Asked *)asked)->study.seconds = value;
 }
 
 /* Is a word one of those that an option may have? */
@@ -174,6 +199,10 @@ static Asked read_command_line(int count, char **word)
         {"with", .text = &study->with},
         {"animate", .text = &asked.animated},
         {"drive", .text = &asked.driven},
+        {"live", .read = read_live},
+        {"seconds", .read = read_seconds},
+        {"record", .text = &study->record},
+        {"inputs", .text = &study->inputs},
         {"replay", .text = &study->replay},
         {"eval", .text = &study->states},
         {"equilibrium", .on = &asked.rests},
@@ -203,8 +232,8 @@ static Asked read_command_line(int count, char **word)
         {"cflags", .text = &asked.options.flags},
         {"quiet", 'q', .on = &asked.quiet},
     };
-    const int first =
-        options_read("gicrun", help, count, word, option, (int)(sizeof option / sizeof *option), &asked, NULL);
+    const int first = options_read("gicrun", (const char *const[]){usage, help, NULL}, count, word, option,
+                                   (int)(sizeof option / sizeof *option), &asked, NULL);
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
@@ -295,6 +324,14 @@ static Asked read_command_line(int count, char **word)
                    NULL);
     if (asked.driven && !path_ends(asked.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.driven);
+    if (asked.live && (!runs || study->plot || asked.animated || asked.driven || study->replay))
+        usage_fail("gicrun",
+                   "--live is a run that time and packets drive: it goes neither with --plot, --animate, --drive and "
+                   "--replay nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, "
+                   "--kc, --sheet and --manoeuvre",
+                   NULL);
+    if (!asked.live && (study->record || study->inputs || study->seconds > 0))
+        usage_fail("gicrun", "--inputs, --record and --seconds go with --live", NULL);
     if (study->replay && !runs)
         usage_fail("gicrun",
                    "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "
@@ -307,7 +344,8 @@ static Asked read_command_line(int count, char **word)
     if (asked.trim && !asked.linear && study->results && strcmp(study->results, "-") != 0 &&
         !path_ends(study->results, ".csv") && !path_ends(study->results, ".scene"))
         usage_fail("gicrun", "the motion must end in .csv or .scene, unlike", study->results);
-    if (!study->results && !study->plot && !asked.animated && !asked.driven && (runs || study->states || asked.linear))
+    if (!study->results && !study->plot && !asked.animated && !asked.driven && !asked.live &&
+        (runs || study->states || asked.linear))
         study->results = "-";
     study->kind = study->states      ? "eval"
                   : asked.rests      ? "equilibrium"
@@ -320,6 +358,7 @@ static Asked read_command_line(int count, char **word)
                   : asked.sheet      ? "sheet"
                   : study->manoeuvre ? "manoeuvre"
                   : asked.driven     ? "drive"
+                  : asked.live       ? "live"
                                      : "run";
     study->page = asked.animated ? asked.animated : asked.driven ? asked.driven : asked.report;
     study->loads = asked.loads;
@@ -337,7 +376,8 @@ static void check_outputs(const Asked *asked)
     } output[] = {{study->plot, "--plot needs another file than the results, which go to"},
                   {asked->animated, "--animate needs another file than the results, which go to"},
                   {asked->report, "--report needs another file than the results, which go to"},
-                  {study->trace, "--trace needs another file than the results, which go to"}};
+                  {study->trace, "--trace needs another file than the results, which go to"},
+                  {study->record, "--record needs another file than the results, which go to"}};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i)
         if (files_are_one(output[i].path, study->results))
             usage_fail("gicrun", output[i].message, study->results);

@@ -152,8 +152,8 @@ static void read_command_line(Asked *asked, int count, char **word)
         {"cflags", .text = &asked->options.flags},
         {"quiet", 'q', .on = &asked->quiet},
     };
-    const int first =
-        options_read("gicsweep", help, count, word, option, (int)(sizeof option / sizeof *option), asked, NULL);
+    const int first = options_read("gicsweep", (const char *const[]){help, NULL}, count, word, option,
+                                   (int)(sizeof option / sizeof *option), asked, NULL);
     if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned))
         usage_fail("gicsweep", "--merge takes -o alone; all else is in the folder", asked->merged);
     sweep->quiet = asked->quiet;

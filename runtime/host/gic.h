@@ -251,8 +251,8 @@ GICL_API int gicl_array_get(gicl_library *library, gicl_handle result, int index
 typedef struct gicl_study {
     size_t size;         /* sizeof(gicl_study) */
     const char *kind;    /* "run", "drive", "eval", "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre",
-                          * "trim", "gradient", "identify" */
-    const char *scene;   /* a path; "run", "drive", "gradient" and "identify" need one, "manoeuvre" has none */
+                          * "trim", "gradient", "identify", "live" */
+    const char *scene;   /* a path; "run", "drive", "live", "gradient" and "identify" need one, "manoeuvre" has none */
     const char *results; /* -o: "eval" and "linearize" need it, "drive" writes none */
     const char *page;    /* of "run" --animate, of "drive" its page, of "kc" and "manoeuvre" --report */
     const char *plot, *with, *replay; /* of "run" */
@@ -267,8 +267,12 @@ typedef struct gicl_study {
     const char *const *key; /* [keys] words key=value of "manoeuvre" and "trim"; with them "linearize" is about
                              * the motion of "trim"; names of "gradient" and "identify" */
     int keys;
-    const char *trace; /* of "manoeuvre" */
-    int quiet;         /* 1: neither progress nor notes */
+    const char *trace;  /* of "manoeuvre" */
+    const char *record; /* of "live" */
+    const char *inputs; /* the same: names of those that packets give, between commas; NULL: all */
+    int port;           /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
+    double seconds; /* the same; 0: until a signal asks to stop, which a listener with `signals` must have left to it */
+    int quiet;      /* 1: neither progress nor notes */
 } gicl_study;
 
 /* What gicrun does. Tables for people are messages, GICL_TEXT. GICL_FAILED: a run that ends early has written its rows

@@ -40,11 +40,11 @@ typedef struct Option {
 
 typedef void UsageFail(const char *message, const char *word);
 
-/* Read the options of a program, in any order among its operands; -h, --help and --version print and end it, mistakes
- * end it with exit status 2, after the C library's message, or by `fail`, NULL: none. Returns where the operands begin
+/* Read the options of a program, in any order among its operands; -h and --help print the texts of `help`, which NULL
+ * ends (C11 promises 4095 characters of one literal), and --version the version, and end it; mistakes end it with exit status 2, after the C library's message, or by `fail`, NULL: none. Returns where the operands begin
  * in word[], which is put in order. */
-int options_read(const char *program, const char *help, int count, char **word, const Option *option, int options,
-                 void *context, UsageFail *fail);
+int options_read(const char *program, const char *const *help, int count, char **word, const Option *option,
+                 int options, void *context, UsageFail *fail);
 
 /* ---- process.c: other programs, and signals that ask to stop */
 
@@ -56,6 +56,8 @@ Place program_place(void);
  * results kept. Release unblocks them: one that has arrived ends the program there. */
 void interrupt_hold(void);
 bool interrupt_arrived(void);
+/* What has arrived is done with, for work that people end by a signal. */
+void interrupt_take(void);
 void interrupt_release(void);
 
 enum { PROCESS_NOT_STARTED = -1, PROCESS_INTERRUPTED = -2 };

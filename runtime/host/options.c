@@ -9,8 +9,8 @@
 
 enum { VERSION = 256, FIRST_LONG };
 
-int options_read(const char *program, const char *help, int count, char **word, const Option *option, int options,
-                 void *context, UsageFail *fail)
+int options_read(const char *program, const char *const *help, int count, char **word, const Option *option,
+                 int options, void *context, UsageFail *fail)
 {
     Pool *pool = pool_new();
     struct option *known = pool_alloc(pool, (size_t)(options + 3) * sizeof *known);
@@ -33,7 +33,10 @@ int options_read(const char *program, const char *help, int count, char **word, 
             if (found == known[i].val)
                 one = &option[i];
         if (found == 'h' || found == VERSION) {
-            fputs(found == 'h' ? help : pool_print(pool, "%s %s\n", program, GICGEN_VERSION), stdout);
+            for (int i = 0; found == 'h' && help[i]; ++i)
+                fputs(help[i], stdout);
+            if (found == VERSION)
+                printf("%s %s\n", program, GICGEN_VERSION);
             exit(0);
         } else if (!one && fail) {
             fail(found == ':' ? "an argument is missing after" : "unknown option", word[optind - 1]);

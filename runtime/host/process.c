@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -54,6 +55,15 @@ bool interrupt_arrived(void)
         if (sigismember(&set, signal_number) == 1 && sigismember(&pending, signal_number) == 1)
             return true;
     return false;
+}
+
+void interrupt_take(void)
+{
+    if (left_alone())
+        return;
+    const sigset_t set = stop_signals();
+    while (sigtimedwait(&set, NULL, &(struct timespec){0}) > 0)
+        continue;
 }
 
 void interrupt_release(void)

@@ -40,11 +40,12 @@ typedef enum Kind {
     TRIM,
     GRADIENT,
     IDENTIFY,
+    LIVE,
     KINDS
 } Kind;
 
-static const char *const kind_name[KINDS] = {"run", "drive", "eval",      "equilibrium", "modes",    "linearize",
-                                             "kc",  "sheet", "manoeuvre", "trim",        "gradient", "identify"};
+static const char *const kind_name[KINDS] = {"run",   "drive",     "eval", "equilibrium", "modes",    "linearize", "kc",
+                                             "sheet", "manoeuvre", "trim", "gradient",    "identify", "live"};
 
 /* ---- the call -------------------------------------------------------------------------------------------------- */
 
@@ -57,7 +58,8 @@ static const struct {
     size_t offset;
     int takes, needs;
 } word_of[] = {
-    {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE), IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY)},
+    {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE),
+     IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY) | IN(LIVE)},
     {"results", offsetof(gicl_study, results), ALL & ~IN(DRIVE), IN(EVAL) | IN(LINEARIZE)},
     {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(MANOEUVRE), IN(DRIVE)},
     {"plot", offsetof(gicl_study, plot), IN(RUN), 0},
@@ -70,6 +72,8 @@ static const struct {
     {"formula", offsetof(gicl_study, formula), IN(GRADIENT), IN(GRADIENT)},
     {"measured", offsetof(gicl_study, measured), IN(IDENTIFY), IN(IDENTIFY)},
     {"trace", offsetof(gicl_study, trace), IN(MANOEUVRE), 0},
+    {"record", offsetof(gicl_study, record), IN(LIVE), 0},
+    {"inputs", offsetof(gicl_study, inputs), IN(LIVE), 0},
 };
 
 static const char *word(const gicl_study *study, size_t i)
@@ -77,8 +81,8 @@ static const char *word(const gicl_study *study, size_t i)
     return *(const char *const *)(const void *)((const char *)study + word_of[i].offset);
 }
 
-/* GICL_OK, or GICL_WRONG with a message. */
-static int check_words(const gicl_study *study, Kind kind, gicl_messages *said)
+/* GICL_OK, or GICL_WRONG with a message. signals: those that ask to stop are the library's. */
+static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_messages *said)
 {
     for (size_t i = 0; i < sizeof word_of / sizeof *word_of; ++i) {
         const bool given = word(study, i);
@@ -95,6 +99,15 @@ static int check_words(const gicl_study *study, Kind kind, gicl_messages *said)
         return call_wrong(said, "leave them 0", "'travel' and 'loads' go with kc");
     if (study->travel != 0 && !(study->travel > 0 && study->travel <= 10))
         return call_wrong(said, NULL, "'travel' must be above 0 and at most 10 m");
+    if ((study->port != 0 || study->seconds != 0) && kind != LIVE)
+        return call_wrong(said, "leave them 0", "'port' and 'seconds' go with live");
+    if (study->port < 0 || study->port > 65535)
+        return call_wrong(said, NULL, "'port' must be from 1 to 65535, or 0 for one that is free");
+    if (!(study->seconds >= 0 && study->seconds <= 1e9))
+        return call_wrong(said, NULL, "'seconds' must be from 0 to 1e9");
+    if (kind == LIVE && study->seconds == 0 && !signals)
+        return call_wrong(said, "give it 'seconds', or a listener with 'signals'",
+                          "nothing would end a live run: no signal is the library's");
     const int keyed = IN(MANOEUVRE) | IN(TRIM) | IN(GRADIENT) | IN(IDENTIFY) | IN(LINEARIZE);
     if (study->keys < 0 || (study->keys && (!(keyed & IN(kind)) || !study->key)))
         return call_wrong(
@@ -126,8 +139,8 @@ typedef struct Writing {
 /* Refuse outputs that are inputs, or one file. */
 static void check_outputs(const Request *request, const Model *model, const Scene *scene)
 {
-    const char *const output[] = {request->results, request->picture, request->page,
-                                  request->driven,  request->report,  request->trace};
+    const char *const output[] = {request->results, request->picture, request->page,  request->driven,
+                                  request->report,  request->trace,   request->record};
     const Source states = {.path = request->states ? request->states : "-"};
     for (size_t i = 0; i < sizeof output / sizeof *output; ++i) {
         if (!output[i])
@@ -179,6 +192,10 @@ static Request request_of(const Writing *w)
                      .recovery = options->recovery,
                      .compiler = options->compiler,
                      .flags = options->flags,
+                     .record = s->record,
+                     .inputs = s->inputs,
+                     .port = s->port,
+                     .seconds = s->seconds,
                      .quiet = s->quiet};
 }
 
@@ -197,20 +214,27 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
 {
     Pool *pool = w->pool;
     const OpenModel *open = w->open;
-    const bool runs = w->kind == RUN || w->kind == DRIVE;
+    const bool runs = w->kind == RUN || w->kind == DRIVE || w->kind == LIVE;
+    LivePort *port = NULL;
     if (runs)
         scene = equilibrium_start(pool, model, scene, request->solve);
     if (w->study->replay)
         scene = scene_replay(pool, model, scene, w->study->replay);
+    if (w->kind == LIVE) {
+        scene = live_scene(pool, model, scene, request);
+        port = live_port_open(pool, request->port, model, scene); /* before the compiler has worked for nothing */
+    }
     EngineOptions options = open->options;
     options.quiet = request->quiet;
     /* a page shows whatever outputs tell; lanes are for code for all scenes */
-    const bool general = open->general || request->page || request->driven || w->study->replay || options.lanes;
+    const bool general = open->general || request->page || request->driven || w->study->replay || port || options.lanes;
     w->engine = runs ? engine_open_run(pool, open->engine_name, model, scene, general ? NULL : request->scene,
                                        request->picture, &options)
                      : engine_open(pool, open->engine_name, model, &options);
     if (w->kind == DRIVE)
         drive_write(pool, model, scene, w->engine, request);
+    else if (w->kind == LIVE)
+        live(pool, w->engine, model, scene, port, request);
     else if (w->kind == EVAL)
         evaluate(pool, w->engine, scene, request);
     else if (!runs)
@@ -288,9 +312,9 @@ int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study
             &use,
             call_wrong(said,
                        "one of run, drive, eval, equilibrium, modes, linearize, kc, sheet, manoeuvre, trim, gradient, "
-                       "identify",
+                       "identify, live",
                        "there is no study '%s'", study->kind ? study->kind : ""));
-    int status = check_words(study, w.kind, said);
+    int status = check_words(study, w.kind, said && said->list.listener && said->list.listener->signals, said);
     if (status != GICL_OK)
         return use_end(&use, status);
     status = call_work(library, said, make_pool, &w);

@@ -181,6 +181,17 @@ const gic_model *engine_faster(const Engine *engine, const gic_head *present)
     return code;
 }
 
+const gic_model *engine_settle(const Engine *engine, const gic_head *present)
+{
+    const Background *background = engine->background;
+    const gic_model *faster = NULL;
+    while (background && !background->done && !faster && !interrupt_arrived()) {
+        faster = engine_faster(engine, present);
+        nanosleep(&(struct timespec){.tv_nsec = 10 * 1000 * 1000}, NULL);
+    }
+    return faster;
+}
+
 const char *engine_remark(const Engine *engine)
 {
     return engine->background ? engine->background->remark : NULL;

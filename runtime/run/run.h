@@ -42,6 +42,10 @@ typedef struct Request {
     const struct CsvTable *other; /* what is in it */
     const char *page;             /* the same: a page that moves, or NULL */
     const char *driven;           /* of drive_write(): its page */
+    const char *record;           /* of live(): inputs as they were held; NULL: not wanted */
+    const char *inputs;           /* the same: names of those that packets give, between commas; NULL: all */
+    int port;                     /* the same: of UDP, 0: one that is free */
+    double seconds;               /* the same: of the run; 0: until it is interrupted */
     const char *engine;           /* of manoeuvres: one of engine_name */
     Solve solve;
     Recovery recovery;
@@ -69,6 +73,21 @@ void animation_write(Animation *animation, const char *path);
  * with a message when no compiler for it is there, or the page can't be written. */
 void drive_write(Pool *pool, const Model *model, const Scene *scene, const Engine *engine, const Request *request);
 
+/* ---- live.c: a scene as fast as time passes, with inputs and outputs by packets; models/LIVE.md */
+
+typedef struct LivePort LivePort;
+
+/* The scene with the inputs request->inputs from outside. Fails where steps are not constant, or there are no such
+ * inputs. */
+const Scene *live_scene(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+/* Run it at an open port (live_port_open()), which is closed then. A failure on the way keeps what was recorded, and
+ * ends in diag_fail. */
+void live(Pool *pool, const Engine *engine, const Model *model, const Scene *scene, LivePort *port,
+          const Request *request);
+/* A port of the loopback interface, 0: one that is free. Fails if it is taken, or if the names of inputs and outputs do
+ * not fit into a packet. */
+LivePort *live_port_open(Pool *pool, int port, const Model *model, const Scene *scene);
+
 /* ---- simulate.c, evaluate.c */
 
 /* Bring an instance to a scene's initial state, on its road and with its inputs. Returns the status of setup. */
@@ -95,6 +114,8 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
  * was made for. A failure on the way keeps what was computed, with the last good state, and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
               const Request *request);
+/* What to do about a run that ended with a status; NULL: nobody knows. */
+const char *run_remedy(int status);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

@@ -18,6 +18,7 @@
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"
+#include "scene/hold.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
@@ -410,7 +411,7 @@ static void summary(const Run *run, double total)
     diag_note(text.s);
 }
 
-static const char *remedy_of(int status)
+const char *run_remedy(int status)
 {
     switch (status) {
     case GIC_ERROR_REACH:
@@ -447,7 +448,7 @@ static const char *remedy_at_start(int status)
 {
     switch (status) {
     case GIC_ERROR_ASSUMPTION:
-    case GIC_ERROR_RESIDUAL: return remedy_of(status);
+    case GIC_ERROR_RESIDUAL: return run_remedy(status);
     case GIC_ERROR_RESULT:
         return "does a formula divide by zero there, or take a root of a negative number? Are initial velocities or "
                "loads too large?";
@@ -474,6 +475,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
         driver_start(scene->driver);
     if (scene->replay)
         replay_start(scene->replay);
+    if (scene->hold)
+        hold_start(scene->hold);
     scene_inputs(self->user, 0, 0, instance_array(self, model->input_offset));
     status = set_state(engine, scene, self);
     if (status == GIC_OK)
@@ -593,6 +596,8 @@ int scene_step(const Engine *engine, const gic_model *model, const Scene *scene,
 {
     if (scene->replay)
         replay_look(scene, gic_time(self), instance_array(self, model->input_offset));
+    if (scene->hold)
+        hold_look(scene, gic_time(self), instance_array(self, model->input_offset));
     if (scene->driver && driver_is_due(scene->driver, gic_time(self))) {
         const int status = look(engine, self, scene->driver);
         if (status != GIC_OK)
@@ -685,7 +690,7 @@ static const char *explain(Run *run, const Model *mechanism, const gic_head *fai
 {
     const char *said = instance_status(run->pool, run->engine->code, failed, status);
     const int subset = failed->subset;
-    *remedy = remedy_of(status);
+    *remedy = run_remedy(status);
     if (!run->scene->rest)
         record_last(run);
     if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Replay of what someone did on a page of gicrun --drive: its table has a row for each look at the targets. */
+ * Replay of what someone did on a page of gicrun --drive: its table has a row for each look at the targets. Recordings
+ * of gicrun --live are hold.c's. */
 #include "scene/replay.h"
 
 #include "host/host.h"
 #include "model/model.h"
+#include "scene/hold.h"
 #include "scene/scene.h"
 
 #include <math.h>
@@ -108,13 +110,18 @@ const Scene *scene_replay(Pool *pool, const Model *model, const Scene *scene, co
     const CsvTable *table = csv_read(pool, path, header, NULL);
     out->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));
     memcpy(out->parameter, scene->parameter, sizeof(double) * (size_t)model->tunables);
-    r->rows = table->rows;
-    r->time = read_times(pool, table, scene);
-    read_columns(pool, table, model, r, out->parameter);
-    out->replay = r;
+    if (hold_is(table)) {
+        out->hold = hold_recorded(pool, model, scene, table);
+        out->duration = out->hold->time[table->rows - 1];
+    } else {
+        r->rows = table->rows;
+        r->time = read_times(pool, table, scene);
+        read_columns(pool, table, model, r, out->parameter);
+        out->replay = r;
+        out->duration = r->time[r->rows - 1];
+    }
     out->actions = NULL;
     out->rest = NULL;
-    out->duration = r->time[r->rows - 1];
     out->outputs = (int64_t)floor(out->duration / scene->output_step + 1e-9);
     return out;
 }

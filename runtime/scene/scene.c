@@ -10,6 +10,7 @@
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"
+#include "scene/hold.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
@@ -489,6 +490,8 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
         driver_inputs(scene->driver, time, input);
     if (scene->replay)
         replay_inputs(scene->replay, time, input);
+    if (scene->hold)
+        hold_inputs(scene->hold, scene->driver, time, input);
 }
 
 double scene_next_kink(const Scene *scene, double time)

@@ -21,6 +21,7 @@ typedef struct Driver Driver;   /* driver.h */
 typedef struct Actions Actions; /* action.h */
 typedef struct Sleep Sleep;     /* sleep.h */
 typedef struct Replay Replay;   /* replay.h */
+typedef struct Hold Hold;       /* hold.h */
 
 /* A line on the road: its points, m, world. */
 typedef struct Mark {
@@ -66,6 +67,7 @@ typedef struct Scene {
     Driver *driver;     /* changes during the run; NULL: no driver */
     Sleep *rest;        /* changes during the run; NULL: the vehicle never sleeps */
     Replay *replay;     /* the same; NULL: nothing is replayed */
+    Hold *hold;         /* the same; NULL: inputs do not come from outside */
     Actions *actions;   /* the same; NULL: nothing depends on a condition */
     RoadCourse *course; /* cones and lanes for pages; NULL: none */
     /* All signals: components of outputs in the order of output[], then inputs. Indices into it: columns of the

@@ -222,10 +222,11 @@ class Model:
 
     def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
               axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
-              measured=None):
+              measured=None, record=None, inputs=None, port=0, seconds=0.0):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
-        "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient" or "identify"; others are gicrun's
-        options (page: of --animate, --drive or --report; formula: of --gradient; measured: of --identify). keys: of a
+        "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify" or "live"; others are
+        gicrun's options (page: of --animate, --drive or --report; formula: of --gradient; measured: of --identify; port: of
+        --live, which needs `seconds`). keys: of a
         manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names."""
         words = ([_bytes(f"{name}=" + (value if isinstance(value, str) else repr(_number(value, name))))
                   for name, value in keys.items()] if isinstance(keys, dict) else [_bytes(name) for name in keys or ()])
@@ -234,7 +235,8 @@ class Model:
                                _bytes(plot), _bytes(with_), _bytes(replay), _bytes(states), time, _bytes(axle),
                                _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
                                _bytes(measured),
-                               (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace), True)
+                               (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace),
+                               _bytes(record), _bytes(inputs), _count(port, "port", 0, 65535), _number(seconds, "seconds"), True)
         call("write", self._handle, ctypes.byref(study))
         self.warnings = _library.texts(_library.WARNING, _library.NOTE)
         return "".join(_library.texts(_library.TEXT))

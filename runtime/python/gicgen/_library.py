@@ -31,6 +31,7 @@ class Study(ctypes.Structure):
                 ("loads", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
                 ("formula", ctypes.c_char_p), ("measured", ctypes.c_char_p),
                 ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
+                ("record", ctypes.c_char_p), ("inputs", ctypes.c_char_p), ("port", ctypes.c_int), ("seconds", ctypes.c_double),
                 ("quiet", ctypes.c_int)]
 
 
