@@ -65,7 +65,7 @@ archive := $(BUILD)/gicgen.a
 # gicrun looks for it there, beside programs or beside their folder: runtime/compare/mumps_load.c
 plugin := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so)
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin) $(BUILD)/libgic.a $(BUILD)/libgic.so
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client
 
 $(archive): $(objects)
 	rm -f $@
@@ -82,6 +82,10 @@ $(BUILD)/gicsweep: $(BUILD)/runtime/gicsweep/gicsweep.o $(archive)
 
 $(BUILD)/gicbench: $(BUILD)/runtime/gicbench/gicbench.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
+
+# an example: a client of gicrun --live
+$(BUILD)/live_client: $(BUILD)/runtime/examples/live_client.o
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 # the library: runtime/host/gic.h alone is seen of it. All of the archive that it needs becomes one object
 library := $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/library/*.c))

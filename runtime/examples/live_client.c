@@ -36,7 +36,7 @@ static int ask(int to, gic_live_head *head)
         gic_live_put_head(packet, &question);
         if (send(to, packet, GIC_LIVE_HEAD, 0) > 0 && receive(to, GIC_LIVE_NAMES, head))
             return 1;
-        usleep(100000);
+        poll(NULL, 0, 100);
     }
     return 0;
 }

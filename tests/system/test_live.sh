@@ -82,7 +82,7 @@ check 'it took the pedals over and gave them back' says 'taken over           1 
 check 'nothing of it was dropped' says ' 0 dropped'
 check 'it replays: the driver steered meanwhile' again "$vehicle" "$lane"
 
-${CC:-cc} -std=c99 -D_DEFAULT_SOURCE -Wall -Wextra -Wpedantic -Werror -O2 -I"$root/runtime" \
+${CC:-cc} -std=c99 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wpedantic -Werror -O2 -I"$root/runtime" \
     "$root/runtime/examples/live_client.c" -o client -lm >said 2>&1
 verdict $? 'the client in C compiles'
 begin "$vehicle" "$lane" --inputs accelerator,brake --seconds 5 -o live.csv --record inputs.csv
