@@ -22,8 +22,8 @@ def fnv(text):
 
 
 class Vehicle:
-    """A vehicle at a port: `inputs` and `outputs` are names, in the order of packets; `units` has theirs, and `begin` the
-    values of inputs at time 0."""
+    """A vehicle at a port: `inputs` and `outputs` are names, in the order of packets; `units` has theirs, and `begin`
+    the values of inputs at time 0."""
 
     def __init__(self, port):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -58,8 +58,8 @@ class Vehicle:
         raise SystemExit("live_client: nobody answers there")
 
     def send(self, values, flags=0):
-        """Inputs, {name: value}; all of them. flags: BACK gives them back to the scene; EXACT: rates and accelerations of
-        driven coordinates, `name.rate` and `name.acceleration`, are meant as well."""
+        """Inputs, {name: value}; all of them. flags: BACK gives them back to the scene; EXACT: rates and accelerations
+        of driven coordinates, `name.rate` and `name.acceleration`, are meant as well."""
         self.number += 1
         head = HEAD.pack(b"gicI", VERSION, flags, self.number, self.hash, 0, len(self.inputs), 0)
         self.socket.send(head + struct.pack(f"<{len(self.inputs)}d", *(values[name] for name in self.inputs)))

@@ -41,8 +41,9 @@ typedef struct Option {
 typedef void UsageFail(const char *message, const char *word);
 
 /* Read the options of a program, in any order among its operands; -h and --help print the texts of `help`, which NULL
- * ends (C11 promises 4095 characters of one literal), and --version the version, and end it; mistakes end it with exit status 2, after the C library's message, or by `fail`, NULL: none. Returns where the operands begin
- * in word[], which is put in order. */
+ * ends (C11 promises 4095 characters of one literal), and --version the version, and end it; mistakes end it with exit
+ * status 2, after the C library's message, or by `fail`, NULL: none. Returns where the operands begin in word[], which
+ * is put in order. */
 int options_read(const char *program, const char *const *help, int count, char **word, const Option *option,
                  int options, void *context, UsageFail *fail);
 

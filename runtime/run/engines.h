@@ -31,7 +31,8 @@ const Engine *engine_auto(Pool *pool, const Model *model, const EngineOptions *o
 /* Call between two steps: faster code, which gives the same bits from the state of `present` on; NULL: not yet, or
  * never. The first call starts the compiler, so use it for long runs. */
 const gic_model *engine_faster(const Engine *engine, const gic_head *present);
-/* The same, once the compiler is through: for runs that can't wait later. NULL: there is none, or a signal has arrived. */
+/* The same, once the compiler is through: for runs that can't wait later. NULL: there is none, or a signal has arrived.
+ */
 const gic_model *engine_settle(const Engine *engine, const gic_head *present);
 /* The outcome of that, for people; NULL: not begun or not finished. */
 const char *engine_remark(const Engine *engine);

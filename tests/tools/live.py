@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""live.py WHAT PORT [COUNT]: someone at a port of gicrun --live, for tests/system/test_live.sh. Packets are written here by the
-page, models/LIVE.md section 2, and by no code of gicrun."""
+"""live.py WHAT PORT [COUNT]: someone at a port of gicrun --live, for tests/system/test_live.sh. Packets are written here by
+the page, models/LIVE.md section 2, and by no code of gicrun."""
 import random
 import socket
 import struct
