@@ -262,6 +262,7 @@ typedef struct Implicit {
     int32_t n, m; /* states, unknowns */
     int32_t *pivot;
     gic_real *jacobian;          /* [n][columns] */
+    gic_real *mass;              /* [mass_count] */
     gic_real *factor;            /* [m][m] */
     gic_real *increment;         /* [MOST_STAGES][n] u_i */
     gic_real *stage, *b, *drift; /* [n] */
@@ -278,7 +279,8 @@ static Implicit implicit_of(const gic_model *model, void *self)
     w.m = how->unknown_count;
     w.pivot = (int32_t *)(void *)((char *)self + how->pivot_offset);
     w.jacobian = array_at(self, how->number_offset);
-    w.factor = w.jacobian + w.n * how->columns;
+    w.mass = w.jacobian + w.n * how->columns;
+    w.factor = w.mass + how->mass_count;
     w.increment = w.factor + w.n * w.n;
     w.stage = w.increment + MOST_STAGES * w.n;
     w.b = w.stage + w.n;
@@ -293,7 +295,28 @@ static int is_method(const gic_model *model, int32_t method)
     return method == GIC_AB3 || method == GIC_RK4 || (model->implicit && (method == GIC_ROS2 || method == GIC_ROS3));
 }
 
-/* The matrix 1 - reach A of the unknowns, in factor[]. The number x whose rate is the unknown v has the row
+/* The unknown that is this state. */
+static int32_t unknown_of(const Implicit *w, int32_t state)
+{
+    int32_t i = 0;
+    while (w->how->unknown[i] != state)
+        ++i;
+    return i;
+}
+
+/* b = W b; stage[] is lost. */
+static void implicit_weigh(const Implicit *w)
+{
+    const int32_t *const row = w->how->mass_row;
+    for (int32_t k = 0; k < w->how->mass_count; ++k)
+        w->stage[row[k]] = GIC_R(0.0);
+    for (int32_t k = 0; k < w->how->mass_count; ++k)
+        w->stage[row[k]] += w->mass[k] * w->b[w->how->mass_column[k]];
+    for (int32_t k = 0; k < w->how->mass_count; ++k)
+        w->b[row[k]] = w->stage[row[k]];
+}
+
+/* The matrix W - reach A of the unknowns, in factor[]. The number x whose rate is the unknown v has the row
  * u_x = b_x + reach u_v, which is put into the others. */
 static void implicit_matrix(const Implicit *w, gic_real reach)
 {
@@ -304,6 +327,10 @@ static void implicit_matrix(const Implicit *w, gic_real reach)
             const gic_real far = position < 0 ? GIC_R(0.0) : reach * row[position];
             w->factor[w->m * i + k] = (i == k ? GIC_R(1.0) : GIC_R(0.0)) - reach * (row[w->how->unknown[k]] + far);
         }
+    }
+    for (int32_t k = 0; k < w->how->mass_count; ++k) {
+        const int32_t row = unknown_of(w, w->how->mass_row[k]), column = unknown_of(w, w->how->mass_column[k]);
+        w->factor[w->m * row + column] += w->mass[k] - (row == column ? GIC_R(1.0) : GIC_R(0.0));
     }
 }
 
@@ -343,7 +370,7 @@ static int32_t implicit_factorize(const Implicit *w)
     return -1;
 }
 
-/* (1 - reach A) u = b; b and stage[] are lost. */
+/* (W - reach A) u = b; b and stage[] are lost. */
 static void implicit_solve(const Implicit *w, gic_real reach, gic_real *u)
 {
     const int32_t m = w->m;
@@ -407,7 +434,7 @@ static int implicit_prepare(const Implicit *w, void *self, gic_real time, int32_
     return GIC_OK;
 }
 
-/* What the inputs change within a step, in drift[]: B du. Inputs are those of `time` afterwards. */
+/* What the inputs change within a step, in drift[]: B du, or W B du. Inputs are those of `time` afterwards. */
 static void implicit_drift(const gic_model *model, void *self, const Implicit *w, gic_real time, gic_real step)
 {
     const gic_head *head = (const gic_head *)self;
@@ -450,10 +477,13 @@ static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_rea
                 return status;
         }
         for (int32_t i = 0; i < w.n; ++i) {
-            w.b[i] = reach * (w.b[i] + r->drift[k] * w.drift[i]);
+            w.b[i] *= reach;
             for (int32_t j = 0; j < k; ++j)
                 w.b[i] += r->less[k][j] * w.increment[w.n * j + i];
         }
+        implicit_weigh(&w);
+        for (int32_t i = 0; i < w.n; ++i)
+            w.b[i] += reach * r->drift[k] * w.drift[i];
         implicit_solve(&w, reach, w.increment + w.n * k);
     }
     for (int32_t i = 0; i < w.n; ++i) {

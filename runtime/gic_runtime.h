@@ -229,13 +229,18 @@ typedef struct gic_implicit {
     size_t head_offset;      /* of a gic_implicit_head in the instance, bytes */
     size_t pivot_offset;     /* of unknown_count int32_t */
     size_t number_offset;    /* of GIC_IMPLICIT(n, columns) numbers: work space, and the Jacobian that is kept */
-    /* jacobian[columns * row + column]: derivatives of the rates by states and inputs at least */
+    /* jacobian[columns * row + column]: derivatives of the rates by states and inputs at least, or what stands near
+     * them; just after the rates of this state were computed */
     int (*jacobian)(void *self, gic_real time, const gic_real *state, gic_real *jacobian);
     /* Factors of 1 - reach A, A the columns of states, in an order that is known beforehand: 1, or 0 where a pivot is
      * too small for that, and the runtime factorizes with rows exchanged. factor: unknown_count^2 numbers. NULL: it
      * always does. And the solution of (1 - reach A) u = b, n numbers each. */
     int (*factorize)(const gic_real *jacobian, gic_real reach, gic_real *factor);
     void (*solve)(const gic_real *jacobian, gic_real reach, const gic_real *factor, const gic_real *b, gic_real *u);
+    /* Where mass_count > 0, rows of velocities are multiplied by the mass matrix, in the Jacobian and in 1 - reach A,
+     * which is W - reach A then, W the unit matrix but for these entries; their values stand behind the Jacobian. */
+    int32_t mass_count;
+    const int32_t *mass_row, *mass_column; /* [mass_count] indices in state[]; entries of the diagonal are among them */
 } gic_implicit;
 
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))

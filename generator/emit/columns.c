@@ -13,11 +13,30 @@
 
 const RateColumns *columns_of(Generation *g)
 {
-    if (!g->columns_made) {
-        g->columns_made = true;
-        g->columns = rate_columns(g->pool, g->formulation, columns_apart(g), jacobian_columns(g));
+    const bool weighed = g->weighing;
+    if (!g->columns_made[weighed]) {
+        const int columns = jacobian_columns(g), wanted = weighed ? states(g) + g->model->inputs : columns;
+        const bool *geometric = columns_apart(g);
+        bool *apart = pool_alloc(g->pool, (size_t)columns + 1);
+        for (int c = 0; c < columns; ++c)
+            apart[c] = c >= wanted || geometric[c];
+        g->columns_made[weighed] = true;
+        g->columns[weighed] = rate_columns(g->pool, g->formulation, apart, columns, weighed);
     }
-    return g->columns;
+    return g->columns[weighed];
+}
+
+const RateColumns *weighed_columns(Generation *g)
+{
+    g->weighing = true;
+    const RateColumns *columns = columns_of(g);
+    g->weighing = false;
+    return columns;
+}
+
+const char *columns_name(const Generation *g)
+{
+    return g->weighing ? "forces" : "columns";
 }
 
 /* ---- classes of subsets -------------------------------------------------------------------------------------- */
@@ -31,7 +50,7 @@ static void write_knowns(void *context, Text *out, int indent)
 {
     const Generation *g = ((Expansion *)context)->g;
     const Subset *first = &g->sequence->subset[g->sequence->class[g->class].member[0]];
-    const Block *block = &g->columns->motion[g->class]->block;
+    const Block *block = &g->columns[g->weighing]->motion[g->class]->block;
     for (int i = 0; i < first->knowns; ++i) {
         const char *name = g->model->body[first->known[i]].name;
         if (block_reads(block, ARRAY_known, i))
@@ -54,7 +73,7 @@ static void write_motions(void *context, Text *out, int indent)
         naming.scope = SCOPE_CLASS;
         style.naming = &naming;
     }
-    block_emit(out, &x->g->columns->motion[x->g->class]->block, &style, &x->constants, indent);
+    block_emit(out, &x->g->columns[x->g->weighing]->motion[x->g->class]->block, &style, &x->constants, indent);
 }
 
 static void write_class_columns(void *context, Text *out, int indent)
@@ -63,17 +82,18 @@ static void write_class_columns(void *context, Text *out, int indent)
     (void)indent;
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         const Class *class = &g->sequence->class[g->class];
-        if (!g->columns->motion[g->class]->size)
+        if (!g->columns[g->weighing]->motion[g->class]->size)
             continue;
         Expansion x = {.g = g};
         Text body = {.pool = g->pool};
         const char *member[class->members];
         for (int i = 0; i < class->members; ++i)
             member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
-        template_expand(g->pool, &body, g->templates, "columns_class.c.in", g->model->name, class->name,
-                        &columns_class_points, &x);
-        write_constants(g, out, pool_print(g->pool, "k_columns_%s", class->name), g->plan->formula[g->class]->dag,
-                        &x.constants, member);
+        const char *name = pool_print(g->pool, "%s_%s", columns_name(g), class->name);
+        template_expand(g->pool, &body, g->templates, "columns_class.c.in", g->model->name, name, &columns_class_points,
+                        &x);
+        write_constants(g, out, pool_print(g->pool, "k_%s", name), g->plan->formula[g->class]->dag, &x.constants,
+                        member);
         text_add(out, body.s, body.size);
     }
     g->class = 0;
@@ -96,14 +116,14 @@ static void write_calls(void *context, Text *out, int indent)
     Generation *g = context;
     for (int s = 0; s < g->sequence->subsets; ++s) {
         const Subset *subset = &g->sequence->subset[s];
-        if (subset->class < 0 || !g->columns->motion[subset->class]->size)
+        if (subset->class < 0 || !g->columns[g->weighing]->motion[subset->class]->size)
             continue;
         const Class *class = &g->sequence->class[subset->class];
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
         for (int i = 0; i < subset->knowns; ++i) {
             line(out, indent, "links.known[%d] = self->motion + %s;", i, body_motion_text(g, subset->known[i]));
             line(out, indent, "known[%d] = column + %d;", i,
-                 g->columns->offset[g->sequence->body_subset[subset->known[i]]]);
+                 g->columns[g->weighing]->offset[g->sequence->body_subset[subset->known[i]]]);
         }
         for (int j = 0; j < subset->deps; ++j) {
             const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
@@ -111,13 +131,14 @@ static void write_calls(void *context, Text *out, int indent)
         }
         if (g->plan->formula[subset->class]->derived)
             line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        if (block_reads(&g->columns->motion[subset->class]->block, ARRAY_acc, 0))
+        if (block_reads(&g->columns[g->weighing]->motion[subset->class]->block, ARRAY_acc, 0))
             write_accelerations_of(g, out, indent, subset);
         line(out, indent,
-             "%s_columns_%s(%s_k_columns_%s[%d], &links, known, act, start + %d, self->motion + %s, "
+             "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, self->motion + %s, "
              "self->inertia + %s, column + %d);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), g->plan->start_offset[s],
-             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s), g->columns->offset[s]);
+             g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
+             class_place(class, s), g->plan->start_offset[s], body_motion_text(g, subset->body[0]),
+             subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
     }
 }
 
@@ -128,6 +149,8 @@ static void write_accelerations(void *context, Text *out, int indent)
 {
     Generation *g = context;
     Constants none = {0};
+    if (g->weighing) /* forces don't follow accelerations */
+        return;
     block_emit(out, &columns_of(g)->accelerations, g->style, &none, indent);
     for (int i = 0; i < 6; ++i)
         if (g->model->free_base)
@@ -213,9 +236,45 @@ static void write_call_wheels(void *context, Text *out, int indent)
     if (!columns_of(g)->wheels)
         return;
     line(out, indent, "memset(part, 0, sizeof part);");
-    line(out, indent, "status = %s_columns_wheels(self, time, y, e, column, local, part);", g->model->name);
+    line(out, indent, "status = %s_%s_wheels(self, time, y, e, column, local, part);", g->model->name, columns_name(g));
     line(out, indent, "if (status != GIC_OK)");
     line(out, indent + 4, "return status;");
+}
+
+/* The function that puts all this together. */
+static void write_whole(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    template_expand(g->pool, out, g->templates, "columns_whole.c.in", g->model->name, columns_name(g), &columns_points,
+                    g);
+}
+
+void write_weighed_columns(Generation *g, Text *out)
+{
+    g->weighing = true;
+    template_expand(g->pool, out, g->templates, "columns_weighed.c.in", g->model->name, NULL, &columns_points, g);
+    g->weighing = false;
+}
+
+static void write_masses(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    line(out, indent, "enum { %s_MASSES = %d };", g->upper, columns_of(g)->masses);
+}
+
+static void write_mass_rows(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    for (int i = 0; i < columns_of(g)->masses; ++i)
+        line(out, indent, "%d,", columns_of(g)->mass_row[i]);
+}
+
+static void write_mass_columns(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    for (int i = 0; i < columns_of(g)->masses; ++i)
+        line(out, indent, "%d,", columns_of(g)->mass_column[i]);
 }
 
 static void write_euler(void *context, Text *out, int indent)
@@ -244,10 +303,15 @@ static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns apart", write_apart},
                                   {"columns work", write_work},
                                   {"columns euler", write_euler},
+                                  {"columns whole", write_whole},
+                                  {"columns masses", write_masses},
+                                  {"columns mass rows", write_mass_rows},
+                                  {"columns mass columns", write_mass_columns},
                                   {NULL, NULL}};
 
-const Insertions columns_points = {
-    (const char *const[]){"columns.c.in", "columns_free.c.in", "columns_apart.c.in", NULL}, point, NULL};
+const Insertions columns_points = {(const char *const[]){"columns.c.in", "columns_whole.c.in", "columns_weighed.c.in",
+                                                         "columns_free.c.in", "columns_apart.c.in", NULL},
+                                   point, NULL};
 
 void write_jacobian_columns(void *context, Text *out, int indent)
 {

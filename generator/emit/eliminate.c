@@ -5,6 +5,10 @@
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "vehicle/columns.h"
+#include "vehicle/vehicle.h"
 
 #include <string.h>
 
@@ -15,6 +19,8 @@ typedef struct Elimination {
     bool *entry;             /* [n][n] with what is filled in */
     int *slot;               /* [n][n] their places in f[] */
     const bool *pattern;     /* [states][states] */
+    const int *mass;     /* [states][states] places of the entries of the mass matrix in J[], 0: none; see columns.h */
+    const bool *weighed; /* [states] rows that this matrix has */
     int states;
 } Elimination;
 
@@ -22,7 +28,8 @@ typedef struct Elimination {
 static bool is_entry(const Elimination *z, int row, int column)
 {
     const bool *follows = z->pattern + z->states * z->unknown[row];
-    return row == column || follows[z->unknown[column]] || (z->position[column] >= 0 && follows[z->position[column]]);
+    return row == column || follows[z->unknown[column]] || (z->position[column] >= 0 && follows[z->position[column]]) ||
+           z->mass[z->states * z->unknown[row] + z->unknown[column]];
 }
 
 /* The unknown, of those that are left, that fills in the least: by the product of entries that its row and column have
@@ -45,6 +52,29 @@ static int cheapest(const Elimination *z, const bool *done)
     return best;
 }
 
+/* Entries of the matrices of weighed columns. */
+static void look_at_weighed(Generation *g, Elimination *z)
+{
+    const RateColumns *weighed = weighed_columns(g);
+    const int rows = z->states, columns = jacobian_columns(g);
+    int *mass = pool_alloc(g->pool, ((size_t)(rows * rows) + 1) * sizeof *mass);
+    bool *has = pool_alloc(g->pool, (size_t)rows + 1), *pattern = pool_alloc(g->pool, (size_t)(rows * rows) + 1);
+    z->mass = mass;
+    z->weighed = has;
+    if (!weighed)
+        return;
+    for (int i = 0; i < weighed->block.stores; ++i) {
+        const int at = weighed->block.store[i].target.index, row = at / columns, column = at % columns;
+        if (row < rows && column < rows)
+            pattern[rows * row + column] = true;
+    }
+    for (int i = 0; i < weighed->masses; ++i) {
+        mass[rows * weighed->mass_row[i] + weighed->mass_column[i]] = rows * columns + i;
+        has[weighed->mass_row[i]] = true;
+    }
+    z->pattern = pattern;
+}
+
 static Elimination *eliminate(Generation *g, int n, const int *unknown, const int *position)
 {
     Elimination *z = pool_alloc(g->pool, sizeof *z);
@@ -58,6 +88,7 @@ static Elimination *eliminate(Generation *g, int n, const int *unknown, const in
                        .states = states(g)};
     bool *done = pool_alloc(g->pool, count), *filled = pool_alloc(g->pool, square);
     int *order = pool_alloc(g->pool, count * sizeof *order), slots = 0;
+    look_at_weighed(g, z);
     memcpy(z->unknown, unknown, (size_t)n * sizeof *unknown);
     memcpy(z->position, position, (size_t)n * sizeof *position);
     for (int i = 0; i < n * n; ++i)
@@ -84,7 +115,7 @@ static Elimination *eliminate(Generation *g, int n, const int *unknown, const in
 
 /* More products than that are left to the loops of the runtime: of a matrix that is nearly full, code would be longer
  * than caches. */
-static const int most_products = 10000;
+static const int most_products = 20000;
 
 bool elimination_is_short(Generation *g, int unknowns, const int *unknown, const int *position)
 {
@@ -117,16 +148,26 @@ static void begin_term(Text *out, int indent, const char *target, int *terms)
     text_print(out, " - ");
 }
 
+/* What an entry is without the Jacobian: of the mass matrix, or 1, or nothing. */
+static const char *still_entry(const Generation *g, const Elimination *z, int row, int column)
+{
+    const int mass = z->mass[z->states * z->unknown[row] + z->unknown[column]];
+    if (z->weighed[z->unknown[row]])
+        return mass ? pool_print(g->pool, "J[%d]", mass) : "";
+    return row == column ? "R(1.0)" : "";
+}
+
 /* "1 - reach (J + reach J)", as far as there is anything. */
 static void add_entry(const Generation *g, const Elimination *z, Text *out, int row, int column)
 {
     const bool *follows = z->pattern + z->states * z->unknown[row];
     const int state = z->unknown[column], position = z->position[column];
     const bool fast = follows[state], far = position >= 0 && follows[position];
-    text_print(out, "%s", row == column ? "R(1.0)" : fast || far ? "" : "R(0.0)");
+    const char *still = still_entry(g, z, row, column);
+    text_print(out, "%s", *still ? still : fast || far ? "" : "R(0.0)");
     if (!fast && !far)
         return;
-    text_print(out, "%sr * ", row == column ? " + " : "");
+    text_print(out, "%sr * ", *still ? " + " : "");
     if (far)
         text_print(out, "(");
     if (fast)
@@ -164,7 +205,10 @@ void write_elimination_factors(Generation *g, Text *out, int indent, int unknown
                 line(out, indent, "%s *= f[%d];", target, z->slot[n * j + j]);
             if (i != j)
                 continue;
-            line(out, indent, "if (!(GIC_FABS(%s) > least))", target);
+            if (z->weighed[z->unknown[i]])
+                line(out, indent, "if (!(GIC_FABS(%s) > lightest * %s))", target, still_entry(g, z, i, i));
+            else
+                line(out, indent, "if (!(GIC_FABS(%s) > least))", target);
             line(out, indent + 4, "return 0;");
             line(out, indent, "%s = R(1.0) / %s;", target, target);
         }

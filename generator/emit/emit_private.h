@@ -24,8 +24,9 @@ typedef struct Generation {
     int class;            /* the one whose template is being expanded */
     Constants *constants; /* [classes] */
     Constants packed;     /* of the equations of motion in lanes */
-    bool columns_made;
-    const struct RateColumns *columns; /* columns_of() */
+    bool weighing;        /* columns_of() are weighed */
+    bool columns_made[2]; /* not weighed, weighed */
+    const struct RateColumns *columns[2]; /* columns_of() */
 } Generation;
 
 /* model_file.c: a checksum of the whole header, for g->pair. */
@@ -157,7 +158,12 @@ void write_tangent_header(void *context, Text *out, int indent);
  */
 extern const Insertions columns_points, columns_class_points;
 const struct RateColumns *columns_of(Generation *g);
+/* "columns", or "forces" while weighed ones are written. */
+const char *columns_name(const Generation *g);
 void write_jacobian_columns(void *context, Text *out, int indent);
+/* Those of implicit steps: forces, not accelerations; NULL: the model has none. The function for them. */
+const struct RateColumns *weighed_columns(Generation *g);
+void write_weighed_columns(Generation *g, Text *out);
 /* wheel_columns.c: the same through wheels; nothing for models without fast states. */
 extern const Insertions columns_wheels_points, columns_wheel_points;
 void write_wheel_columns(Generation *g, Text *out);

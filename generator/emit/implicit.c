@@ -6,6 +6,7 @@
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "model/model.h"
+#include "vehicle/columns.h"
 #include "vehicle/vehicle.h"
 
 /* The state that is the rate of a state; -1: none is. */
@@ -45,11 +46,13 @@ void write_implicit_sizes(const Generation *g, Text *out, int indent)
 
 void write_implicit_members(void *context, Text *out, int indent)
 {
-    const Generation *g = context;
+    Generation *g = context;
     if (!g->style->implicit)
         return;
+    const RateColumns *weighed = weighed_columns(g);
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
-    line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d)];", g->upper, jacobian_columns(g));
+    line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d];", g->upper, jacobian_columns(g),
+         weighed ? weighed->masses : 0);
     line(out, indent, "int32_t implicit_pivot[%s_IMPLICIT_UNKNOWNS];", g->upper);
 }
 
@@ -126,20 +129,44 @@ static void write_jacobian_call(void *context, Text *out, int indent)
 {
     Generation *g = context;
     const char *name = g->model->name;
-    if (columns_of(g))
-        line(out, indent, "return %s_jacobian_at_once((%s *)self, time, state, &along, jacobian);", name, name);
+    if (weighed_columns(g))
+        line(out, indent, "return %s_forces_at_once((%s *)self, time, state, jacobian);", name, name);
     else
+        line(out, indent, "%s_direction along; /* work space */", name);
+    if (!weighed_columns(g))
         line(out, indent,
              "return %s_tangent_columns((%s *)self, time, state, &along, %s_STATES, %s_STATES + %s_INPUTS, "
              "jacobian);",
              name, name, g->upper, g->upper, g->upper);
 }
 
-static const Insertion implicit_point[] = {
-    {"implicit jacobian", write_jacobian_call},     {"implicit elimination", write_elimination},
-    {"implicit functions", write_functions},        {"implicit factors", write_implicit_factors},
-    {"implicit solution", write_implicit_solution}, {"implicit unknowns", write_unknowns},
-    {"implicit positions", write_positions},        {NULL, NULL}};
+static void write_weighed(void *context, Text *out, int indent)
+{
+    (void)indent;
+    if (weighed_columns(context))
+        write_weighed_columns(context, out);
+}
+
+static void write_mass_tables(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    const RateColumns *weighed = weighed_columns(g);
+    if (weighed)
+        line(out, indent, "%s_MASSES, %s_mass_row, %s_mass_column,", g->upper, g->model->name, g->model->name);
+    else
+        line(out, indent, "0, NULL, NULL,");
+}
+
+static const Insertion implicit_point[] = {{"implicit weighed", write_weighed},
+                                           {"implicit masses", write_mass_tables},
+                                           {"implicit jacobian", write_jacobian_call},
+                                           {"implicit elimination", write_elimination},
+                                           {"implicit functions", write_functions},
+                                           {"implicit factors", write_implicit_factors},
+                                           {"implicit solution", write_implicit_solution},
+                                           {"implicit unknowns", write_unknowns},
+                                           {"implicit positions", write_positions},
+                                           {NULL, NULL}};
 
 const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "implicit_eliminate.c.in", NULL},
                                     implicit_point, NULL};

@@ -55,7 +55,7 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     Generation *g = context;
     const Wheels *wheels = g->formulation->wheels;
     (void)indent;
-    for (int c = 0; c < wheels->classes; ++c) {
+    for (int c = 0; c < wheels->classes && !g->weighing; ++c) { /* one function serves both */
         const WheelClass *class = &wheels->class[c];
         Expansion x = {.g = g, .columns = &columns_of(g)->wheels->class[c]};
         Text body = {.pool = g->pool};
@@ -150,6 +150,6 @@ const Insertions columns_wheels_points = {(const char *const[]){"columns_wheels.
 void write_wheel_columns(Generation *g, Text *out)
 {
     if (columns_of(g)->wheels)
-        template_expand(g->pool, out, g->templates, "columns_wheels.c.in", g->model->name, NULL, &columns_wheels_points,
-                        g);
+        template_expand(g->pool, out, g->templates, "columns_wheels.c.in", g->model->name, columns_name(g),
+                        &columns_wheels_points, g);
 }

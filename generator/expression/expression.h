@@ -81,7 +81,8 @@ typedef struct Table Table; /* base/table.h */
     X(part, "part", "derivatives of what moves wheels, and of fast rates, of one column as `right`") \
     X(local, "local", "derivatives of what wheels, own states and the powertrain do by what moves each of them") \
     X(half, "half", "derivatives of a wheel's contact and tire by what moves the wheel") \
-    X(factor, "factor", "factors of the mass matrix")
+    X(factor, "factor", "factors of the mass matrix") \
+    X(cut, "cut", "what an element exerts, as its derivatives are asked for; in no code")
 
 typedef enum Array {
 #define ARRAY_ENUM(name, text, what) ARRAY_##name,

@@ -188,7 +188,15 @@ static Givens moved_bodies(const Formula *f, int coordinate)
     return g;
 }
 
-static MotionColumns *columns_of(const Sequence *sequence, const Formula *formula, bool free_base, Column *column)
+/* Does the derivative of a number of a body's motion tell how far, or how fast, bodies move along the column, and not
+ * how the directions in which they move change? */
+static bool moves_along(Array column, int number)
+{
+    return column == ARRAY_x ? number < MOTION_OMEGA : number >= MOTION_OMEGA && number < MOTION_ALPHA;
+}
+
+static MotionColumns *columns_of(const Sequence *sequence, const Formula *formula, bool free_base, bool straight,
+                                 Column *column)
 {
     static const Array kind[3] = {ARRAY_x, ARRAY_rate, ARRAY_turn};
     Dag *dag = formula->dag;
@@ -215,8 +223,8 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
         const Seeds seeds = {.seed = seed, .context = column, .givens = g.count, .given = g.node, .slope = g.slope};
         const Ex *slope = subset_slopes(formula, &seeds, root, numbers + rows);
         for (int i = 0; i < numbers && c < 2 * deps; ++i)
-            m->slope[numbers * c + i] = slope[root[i]];
-        for (int i = 0; i < rows; ++i)
+            m->slope[numbers * c + i] = straight && !moves_along(column->array, i % size) ? 0 : slope[root[i]];
+        for (int i = 0; i < rows && !straight; ++i)
             m->slope[motions + rows * c + i] = slope[root[numbers + i]];
     }
     const Ex *image = subset_read_stored(formula, m->slope, all);
@@ -256,7 +264,8 @@ static bool is_uniform(const Sequence *sequence, const Class *class)
     return same;
 }
 
-MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base)
+MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base,
+                                bool straight)
 {
     MotionColumns **made = pool_alloc(pool, ((size_t)sequence->classes + 1) * sizeof *made);
     if (sequence->chained)
@@ -268,7 +277,7 @@ MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *c
         if (!is_uniform(sequence, &sequence->class[c]))
             return NULL;
         Column column = {.sequence = sequence, .formula = formula, .made = made, .class = &sequence->class[c]};
-        made[c] = columns_of(sequence, formula[c], free_base, &column);
+        made[c] = columns_of(sequence, formula[c], free_base, straight, &column);
     }
     return made;
 }

@@ -247,8 +247,11 @@ typedef struct MotionColumns {
                            * base, of the deps) and columns of the knowns */
 } MotionColumns;
 
-/* [classes]; NULL: a known stands for bodies of several classes. */
-MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base);
+/* [classes]; NULL: a known stands for bodies of several classes. straight: only poses by coordinates and velocities by
+ * rates, as if bodies went on in the directions S in which they move; everything else counts as 0, all residuals too.
+ */
+MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *const *formula, bool free_base,
+                                bool straight);
 /* Where the derivative of a residual is in column[]; -1: it is 0. */
 int motion_columns_residual(const MotionColumns *m, int column, int row);
 /* The local column of a coordinate, or of its rate, in a subset; -1: its motion does not depend on it. */

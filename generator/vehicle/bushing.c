@@ -142,6 +142,8 @@ BushingLoad bushing_load(Whole *whole, const Force *force)
         load.potential_rate = ex_add(dag, load.potential_rate, ex_mul(dag, elastic[i], rate));
         load.power = ex_add(dag, load.power, ex_mul(dag, other, rate));
     }
+    for (int i = 0; i < BUSHING_AXES; ++i)
+        Q[i] = load_part(whole, Q[i], load_is_internal(force));
     turned(dag, &turn, false, Q + 3, v);
     ex_apply_transposed(dag, axis[0], Q, load.force);
     ex_apply_transposed(dag, axis[0], v, load.torque);

@@ -22,6 +22,7 @@ typedef struct Differentiation {
     const Plan *plan;
     Origin from;
     bool *moved;             /* rows of part[] that it moves */
+    bool *pushed;            /* [unknowns] right-hand sides that it changes, but by what wheels do */
     const Ex *accelerations; /* [unknowns] their derivatives; NULL: they stand still */
 } Differentiation;
 
@@ -139,11 +140,74 @@ static bool push(const Differentiation *d, Dag *dag, const Ex *b, int lane, Bloc
         if (column >= 0)
             subtract_residuals(d, dag, s, column, right);
     }
-    for (int i = 0; i < n; ++i)
-        if (!ex_is(dag, right[i], 0))
+    for (int i = 0; i < n; ++i) {
+        d->pushed[i] = !ex_is(dag, right[i], 0);
+        if (d->pushed[i])
             block_store(out, right[i], element_of(ARRAY_right, lane, i));
+    }
     return out->stores > before;
 }
+
+/* ---- weighed columns: forces, each along its line ------------------------------------------------------------- */
+
+typedef struct Weights {
+    Whole *whole;
+    int n, parts;      /* unknowns; rows of part[] */
+    const Ex *M;       /* [n][n] upper triangle */
+    const bool *reads; /* [n][parts] what of part[] right-hand sides follow */
+    const Ex *lever;   /* [parts of loads][n] what right-hand sides have of a part of the loads */
+} Weights;
+
+static Ex unit_seed(const void *context, Dag *dag, Element element)
+{
+    return ex_literal(dag, element_same(element, *(const Element *)context));
+}
+
+static const Ex *slopes_by(Dag *dag, const Ex *b, int n, Element by)
+{
+    const Seeds seeds = {.seed = unit_seed, .context = &by};
+    return dag_slopes(dag, NULL, b, n, &seeds);
+}
+
+static const Ex *levers(const Whole *whole, const Ex *b, int n)
+{
+    Ex *lever = pool_alloc(whole->dag->pool, (size_t)(whole->loads->parts * n + 1) * sizeof *lever);
+    for (int k = 0; k < whole->loads->parts; ++k) {
+        const bool internal = whole->model->free_base && whole->loads->part[k].internal;
+        const Ex *slope = slopes_by(whole->dag, b, n, element_at(ARRAY_cut, k));
+        for (int i = internal ? 6 : 0; i < n; ++i)
+            lever[n * k + i] = slope[b[i]];
+    }
+    return lever;
+}
+
+/* As push(), with lines of action that stand still: lever is the derivative of a right-hand side by a part of the
+ * loads, as it is of that part's line by the unknown. */
+static bool push_parts(const Differentiation *d, const Weights *w, const Ex *b, int lane, Block *out)
+{
+    const Seeds seeds = {.seed = seed, .context = d};
+    const Loads *loads = w->whole->loads;
+    Dag *dag = w->whole->dag;
+    const int before = out->stores;
+    Ex value[loads->parts + 1], right[w->n + 1];
+    const Ex *by_input = slopes_by(dag, b, w->n, element_at(d->from.array, d->from.index));
+    for (int i = 0; i < w->n; ++i)
+        right[i] = d->from.array == ARRAY_u ? by_input[b[i]] : 0; /* accelerations that are inputs */
+    for (int k = 0; k < loads->parts; ++k)
+        value[k] = loads->part[k].value;
+    const Ex *slope = dag_slopes(dag, NULL, value, loads->parts, &seeds);
+    for (int k = 0; k < loads->parts; ++k)
+        for (int i = 0; i < w->n; ++i)
+            right[i] = ex_add(dag, right[i], ex_mul(dag, slope[value[k]], w->lever[w->n * k + i]));
+    for (int i = 0; i < w->n; ++i) {
+        d->pushed[i] = !ex_is(dag, right[i], 0);
+        if (d->pushed[i])
+            block_store(out, right[i], element_of(ARRAY_right, lane, i));
+    }
+    return out->stores > before;
+}
+
+/* ---- through wheels, and what accelerations do to rates ------------------------------------------------------- */
 
 /* What moves wheels, along one column. True where anything does. */
 static bool push_wheels(const Differentiation *d, WheelColumns *w, int lane)
@@ -167,21 +231,19 @@ static bool push_wheels(const Differentiation *d, WheelColumns *w, int lane)
     return w->link.stores > before;
 }
 
-/* The derivatives of the rates by one column, with those of the accelerations in right[] and of fast rates in part[];
- * lane -1: these are 0. */
-static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, int lane)
+/* The derivatives of the rates by one column, with those of fast rates in part[], lane -1: these are 0; and with those
+ * of the accelerations dz [unknowns]. */
+static Ex *pull(Differentiation *d, Dag *dag, const Block *rates, const Ex *dz, int lane)
 {
     const Seeds seeds = {.seed = seed, .context = d};
     const int slow = d->plan->states, fast = d->plan->model->fast_states;
-    Ex dz[d->plan->unknowns + 1], root[rates->stores + 1];
+    Ex root[rates->stores + 1];
     Ex *out = pool_alloc(dag->pool, (size_t)(slow + fast + 1) * sizeof *out);
     for (int i = 0; i < fast && lane >= 0; ++i) {
         const Element e = element_at(ARRAY_rate, i);
         if (wheel_columns_moves(d->all->wheels, e, d->moved))
             out[slow + i] = ex_input(dag, element_of(ARRAY_part, lane, wheel_columns_part(d->all->wheels, e)), NULL);
     }
-    for (int i = 0; i < d->plan->unknowns; ++i)
-        dz[i] = lane < 0 ? 0 : ex_input(dag, element_of(ARRAY_right, lane, i), NULL);
     d->accelerations = dz;
     for (int i = 0; i < rates->stores; ++i)
         root[i] = rates->store[i].value;
@@ -233,22 +295,23 @@ static bool is_local(const Dag *dag, Ex e)
     return dag->node[e].op == OP_INPUT && dag->node[e].element->array == ARRAY_local;
 }
 
-/* The solution of column c, in its place, of b [n] where there are wheels. What is the same for all columns is read
- * from factor[], where `residuals` stores it. Returns the number of these. */
-static int solve_column(Dag *dag, const Factors *f, const Ex *b, const WheelColumns *w, Block *residuals,
+/* The solution of column c, in its place, of b [n] where there are wheels; f NULL: with what wheels add, not solved.
+ * What is the same for all columns is read from factor[], where `residuals` stores it. Returns the number of these. */
+static int solve_column(Dag *dag, const Factors *f, const Ex *b, int n, const WheelColumns *w, Block *residuals,
                         Block *solution)
 {
-    const int n = f->n;
-    Ex z[n + 1], *from = NULL, *to = NULL;
+    Ex z[n + 1], right[n + 1], *from = NULL, *to = NULL;
     int count = 0;
     *solution = (Block){.dag = dag};
     for (int i = 0; i < n; ++i)
-        z[i] = ex_input(dag, element_of(ARRAY_right, -1, i), NULL);
+        z[i] = right[i] = ex_input(dag, element_of(ARRAY_right, -1, i), NULL);
     if (w)
         add_wheels(w, dag, b, n, z, solution);
-    linear_solve(dag, f, z, z);
+    if (f)
+        linear_solve(dag, f, z, z);
     for (int i = 0; i < n; ++i)
-        block_store(solution, z[i], element_of(ARRAY_right, -1, i));
+        if (f || z[i] != right[i])
+            block_store(solution, z[i], element_of(ARRAY_right, -1, i));
     Ex root[solution->stores + 1];
     for (int i = 0; i < solution->stores; ++i)
         root[i] = solution->store[i].value;
@@ -288,6 +351,96 @@ static void constrain(Whole *whole, Ex **column)
     }
 }
 
+/* ---- the mass matrix ------------------------------------------------------------------------------------------ */
+
+/* The state that is the rate of an unknown. Of the base's origin it is in world axes, the unknown in the base's. */
+static int velocity_of(const Whole *whole, int unknown)
+{
+    const Plan *plan = whole->plan;
+    if (whole->model->free_base && unknown < 6)
+        return 7 + plan->free_coordinates + (unknown + 3) % 6;
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_unknown[w] == unknown)
+            return plan->coordinate_rate[w];
+    return -1;
+}
+
+/* Components of a vector along the base, at z[3], become those in world axes. */
+static void turn_to_world(const Whole *whole, Ex *z)
+{
+    Ex turned[3];
+    if (!whole->model->free_base)
+        return;
+    ex_apply(whole->dag, whole->R, z + 3, turned);
+    for (int i = 0; i < 3; ++i)
+        z[3 + i] = turned[i];
+}
+
+static bool *wheels_read(Dag *dag, const WheelColumns *w, const Ex *b, int n)
+{
+    const Seeds seeds = {.seed = wheel_seed, .context = w};
+    const Ex *slope = dag_slopes(dag, NULL, b, n, &seeds);
+    bool *reads = pool_alloc(dag->pool, (size_t)(n * w->parts) + 1);
+    for (int i = 0; i < n; ++i) {
+        const bool *needed = dag_needed(dag, &slope[b[i]], 1);
+        for (int e = 0; e < dag->nodes; ++e)
+            if (needed[e] && dag->node[e].op == OP_INPUT && dag->node[e].element->array == ARRAY_part)
+                reads[w->parts * i + dag->node[e].element->index] = true;
+    }
+    return reads;
+}
+
+/* M with velocities as unknowns, rows in the order of the unknowns: T M T^T, T turning the base's. */
+static Ex *turned_masses(const Weights *w)
+{
+    Dag *dag = w->whole->dag;
+    const int n = w->n;
+    Ex *G = pool_alloc(dag->pool, ((size_t)(n * n) + 1) * sizeof *G);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j)
+            G[n * i + j] = w->M[i < j ? n * i + j : n * j + i];
+        turn_to_world(w->whole, G + n * i);
+    }
+    for (int j = 0; j < n; ++j) {
+        Ex column[n + 1];
+        for (int i = 0; i < n; ++i)
+            column[i] = G[n * i + j];
+        turn_to_world(w->whole, column);
+        for (int i = 0; i < n; ++i)
+            G[n * i + j] = column[i];
+    }
+    return G;
+}
+
+/* In a column of rates, put forces in the place of accelerations: what right[] has, in world axes. */
+static void weigh(const Weights *w, const Differentiation *d, int lane, Ex *column)
+{
+    Ex force[w->n + 1];
+    for (int i = 0; i < w->n; ++i) {
+        bool any = lane >= 0 && d->pushed[i];
+        for (int k = 0; k < w->parts && lane >= 0; ++k)
+            any = any || (w->reads[w->parts * i + k] && d->moved[k]);
+        force[i] = any ? ex_input(w->whole->dag, element_of(ARRAY_right, lane, i), NULL) : 0;
+    }
+    turn_to_world(w->whole, force);
+    for (int i = 0; i < w->n; ++i)
+        column[velocity_of(w->whole, i)] = force[i];
+}
+
+static void store_masses(const Weights *w, const Ex *G, int first, RateColumns *all)
+{
+    const int n = w->n;
+    all->mass_row = pool_alloc(w->whole->dag->pool, ((size_t)(n * n) + 1) * sizeof(int));
+    all->mass_column = pool_alloc(w->whole->dag->pool, ((size_t)(n * n) + 1) * sizeof(int));
+    for (int i = 0; i < n * n; ++i) {
+        if (ex_is(w->whole->dag, G[i], 0))
+            continue;
+        all->mass_row[all->masses] = velocity_of(w->whole, i / n);
+        all->mass_column[all->masses] = velocity_of(w->whole, i % n);
+        block_store(&all->block, G[i], element_at(ARRAY_jacobian, first + all->masses++));
+    }
+}
+
 /* acc[] from rate[]. */
 static Ex *solved(Whole *whole)
 {
@@ -315,14 +468,14 @@ static void set_accelerations(Block *block, const Ex *acc, const Ex *z, int n)
         block->store[i].value = image[root[i]];
 }
 
-const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns)
+const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns, bool weighed)
 {
     const Plan *plan = f->plan;
     const Sequence *sequence = f->sequence;
     RateColumns *all = pool_alloc(pool, sizeof *all);
     if (plan->solve != SOLVE_REDUCED || plan->reduction)
         return NULL;
-    *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula, f->model->free_base),
+    *all = (RateColumns){.motion = subsets_columns(pool, sequence, plan->formula, f->model->free_base, weighed),
                          .offset = pool_alloc(pool, (size_t)sequence->subsets * sizeof(int))};
     if (!all->motion)
         return NULL;
@@ -332,31 +485,51 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     }
     Whole *whole = whole_new(pool, plan);
     Dag *dag = whole->dag;
+    whole->parted = weighed;
     const int n = plan->unknowns, rows = plan->states + f->model->fast_states;
     Block rates = {.dag = dag};
     Ex b[n + 1], acc[n + 1], **column = pool_alloc(pool, ((size_t)columns + 1) * sizeof *column);
-    const Factors *factors = dynamics_factors(whole, b);
+    const Ex *M = dynamics_system(whole, b);
+    const Factors *factors = weighed ? NULL : dynamics_factors(whole, M);
     for (int i = 0; i < n; ++i)
         acc[i] = ex_input(dag, element_at(ARRAY_acc, i), NULL);
     whole_store_rates(whole, &rates, acc);
     all->wheels = f->wheels ? wheel_columns_new(pool, f, dag, b, n) : NULL;
     bool *moved = pool_alloc(pool, all->wheels ? (size_t)all->wheels->parts + 1 : 1);
+    Weights weights = {.whole = whole, .n = n, .M = M, .lever = weighed ? levers(whole, b, n) : NULL};
+    if (weighed && all->wheels) {
+        weights.parts = all->wheels->parts;
+        weights.reads = wheels_read(dag, all->wheels, b, n);
+    }
+    bool *pushed = pool_alloc(pool, (size_t)n + 1);
     dag_section(dag, "derivatives");
     all->residuals = all->block = (Block){.dag = dag, .eager = true};
     for (int c = 0; c < columns; ++c)
         if (!apart[c]) {
-            Differentiation d = {.all = all, .plan = plan, .from = origin_of(plan, c), .moved = moved};
+            Differentiation d = {
+                .all = all, .plan = plan, .from = origin_of(plan, c), .moved = moved, .pushed = pushed};
             const bool rolls = all->wheels && push_wheels(&d, all->wheels, all->lanes);
-            const int lane = push(&d, dag, b, all->lanes, &all->residuals) || rolls ? all->lanes++ : -1;
-            column[c] = pull(&d, dag, &rates, lane);
+            const bool pushes = weighed ? push_parts(&d, &weights, b, all->lanes, &all->residuals)
+                                        : push(&d, dag, b, all->lanes, &all->residuals);
+            const int lane = pushes || rolls ? all->lanes++ : -1;
+            Ex dz[n + 1];
+            for (int i = 0; i < n; ++i)
+                dz[i] = weighed || lane < 0 ? 0 : ex_input(dag, element_of(ARRAY_right, lane, i), NULL);
+            column[c] = pull(&d, dag, &rates, dz, lane);
+            if (weighed)
+                weigh(&weights, &d, lane, column[c]);
         }
-    all->factors = solve_column(dag, factors, b, all->wheels, &all->residuals, &all->solution);
+    all->factors = solve_column(dag, factors, b, n, all->wheels, &all->residuals, &all->solution);
     if (f->model->free_base)
         constrain(whole, column);
     for (int c = 0; c < columns; ++c)
         for (int r = 0; r < rows && column[c]; ++r)
             if (!ex_is(dag, column[c][r], 0))
                 block_store(&all->block, column[c][r], element_at(ARRAY_jacobian, columns * r + c));
+    if (weighed) {
+        store_masses(&weights, turned_masses(&weights), columns * rows, all);
+        return all;
+    }
     const Ex *z = solved(whole);
     set_accelerations(&all->block, acc, z, n);
     all->accelerations = (Block){.dag = dag};

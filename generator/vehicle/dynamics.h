@@ -31,7 +31,9 @@ void dynamics_right(Whole *whole, const Composite *c, const Loads *loads, const 
  * digits. Both may have a common factor. */
 void dynamics_check(Whole *whole, Block *block, int unknown, Ex left, Ex whole_of_it);
 
-/* Of the mass matrix of the reduced form, without a reduction; b [unknowns]: the right-hand sides. */
-const Factors *dynamics_factors(Whole *whole, Ex *b);
+/* The equations of motion M z = b in the reduced form, without a reduction: upper triangle of M [unknowns][unknowns]
+ * and b [unknowns]. Then the factors of M. */
+const Ex *dynamics_system(Whole *whole, Ex *b);
+const Factors *dynamics_factors(Whole *whole, const Ex *M);
 
 #endif

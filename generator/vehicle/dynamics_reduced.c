@@ -418,17 +418,23 @@ static Projection project(Whole *whole, const Loads *loads, const Ex alpha[3], c
     return p;
 }
 
-const Factors *dynamics_factors(Whole *whole, Ex *b)
+const Ex *dynamics_system(Whole *whole, Ex *b)
 {
     Dag *dag = whole->dag;
     const int n = whole->plan->unknowns;
     Ex *M = pool_alloc(dag->pool, ((size_t)n * (size_t)n + 1) * sizeof *M);
     const Composite c = dynamics_compose(whole);
-    int blocked;
     dynamics_matrix(whole, &c, M, n);
     dynamics_right(whole, &c, loads_make(whole), whole_driven_accelerations(whole), b);
+    return M;
+}
+
+const Factors *dynamics_factors(Whole *whole, const Ex *M)
+{
+    const int n = whole->plan->unknowns;
+    int blocked;
     const int *order = elimination_order(whole, n, &blocked);
-    return linear_factor_symmetric(dag, n, M, order, blocked);
+    return linear_factor_symmetric(whole->dag, n, M, order, blocked);
 }
 
 Block *inverse_block(Whole *whole)

@@ -41,6 +41,21 @@ static void count_size(const Whole *whole, Loads *loads, int body, const Ex *arm
         size[1] = ex_add(dag, size[1], loads->terms);
 }
 
+Ex load_part(Whole *whole, Ex value, bool internal)
+{
+    Dag *dag = whole->dag;
+    Loads *loads = whole->loads;
+    if (!whole->parted || dag->node[value].level < LEVEL_VARIABLE)
+        return value;
+    *POOL_PUSH(dag->pool, loads->part, loads->parts) = (LoadPart){value, internal};
+    return ex_input(dag, element_at(ARRAY_cut, loads->parts - 1), NULL);
+}
+
+bool load_is_internal(const Force *force)
+{
+    return force->body[0] != BODY_GROUND && force->body[1] != BODY_GROUND;
+}
+
 /* A force F (base frame) on a point of a body. */
 static void push(Whole *whole, Loads *loads, int body, const Vector *point, const Ex F[3])
 {
@@ -219,7 +234,7 @@ static void add_along(Whole *whole, Loads *loads, int index)
         Q = ex_neg(dag, resistance(whole, loads, force, whole->x[w], whole->xd[w]));
     }
     loads->element[index] = Q;
-    loads->own[w] = ex_add(dag, loads->own[w], Q);
+    loads->own[w] = ex_add(dag, loads->own[w], load_part(whole, Q, true));
     if (whole->sized)
         loads->own_size[w] = ex_add(dag, loads->own_size[w], loads->terms);
 }
@@ -238,7 +253,7 @@ static void add_between(Whole *whole, Loads *loads, int index)
     Ex speed = ex_mul(dag, scale, ex_dot(dag, d, rate));
     Ex tension = resistance(whole, loads, force, length, speed);
     loads->element[index] = tension;
-    ex_scale3(dag, ex_mul(dag, tension, scale), d, F);
+    ex_scale3(dag, ex_mul(dag, load_part(whole, tension, load_is_internal(force)), scale), d, F);
     push(whole, loads, force->body[0], &end[0], F);
     for (int i = 0; i < 3; ++i)
         F[i] = ex_neg(dag, F[i]);
@@ -289,7 +304,7 @@ static void add_about(Whole *whole, Loads *loads, int index)
     loads->element[index] = torque;
     if (whole->sized)
         loads->terms = ex_mul(dag, loads->terms, magnitude3(dag, n));
-    ex_scale3(dag, torque, n, n);
+    ex_scale3(dag, load_part(whole, torque, load_is_internal(force)), n, n);
     twist(whole, loads, force->body[0], n);
     for (int i = 0; i < 3; ++i)
         n[i] = ex_neg(dag, n[i]);
@@ -365,6 +380,8 @@ static void add_force(Whole *whole, Loads *loads, int index)
             loads->terms = size[1];
             count_size(whole, loads, force->body[0], NULL);
         }
+        for (int i = 0; i < 6; ++i)
+            value[i] = load_part(whole, value[i], false);
         add_load(whole, loads, force->body[0], force->body[1], force->point[0], value, value + 3);
     }
 }
@@ -430,7 +447,7 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Ex free = ex_add(dag, ex_mul(dag, whole_number(whole, &wheel->stiffness), deflection), viscous);
     Ex fz = ex_op(dag, OP_MAX, free, 0, 0);
     loads->press[index] = free;
-    ex_scale3(dag, fz, whole->R + 6, F);
+    ex_scale3(dag, load_part(whole, fz, false), whole->R + 6, F);
     push(whole, loads, wheel->body, &center, F);
     loads->power = ex_add(dag, loads->power, ex_mul(dag, fz, v[2]));
     const Ex all[4] = {fz, deflection, rate, h};

@@ -13,6 +13,11 @@ typedef struct Whole Whole;
 /* forces.c: a direction fixed in a body, or in the ground, in the base frame. */
 void force_direction(Whole *whole, int body, const Ex local[3], Ex out[3]);
 
+/* A number that goes into the loads, or with Whole.parted what stands for it there; internal: see LoadPart. Do the two
+ * bodies of an element push each other? */
+Ex load_part(Whole *whole, Ex value, bool internal);
+bool load_is_internal(const Force *force);
+
 /* aero.c: force, N, at the point of an element FORCE_AERO and moment, N m, in the axes of its body; size: magnitudes of
  * the terms of either. */
 void aero_wrench(Whole *whole, const Force *force, Ex value[6], Ex size[2]);

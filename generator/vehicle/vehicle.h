@@ -91,6 +91,7 @@ typedef struct Whole {
     const struct Accelerated *accelerated; /* of outputs; NULL: formulas read nothing that follows accelerations */
     bool open;                             /* constant numbers stay inputs, for block_pack to compare */
     bool sized;                            /* loads also sum the magnitudes of their terms */
+    bool parted;                           /* loads are told by their parts */
     const Ex *carried_by;  /* carrier.c: the accelerations of coordinates for which the two below were computed; NULL:
                             * not yet */
     Ex (*carried)[6];      /* [bodies] resulting accelerations: angular, of the reference point */
@@ -148,7 +149,15 @@ Ex whole_magnitude3(Whole *whole, const Ex v[3]); /* |x| + |y| + |z| */
 
 /* Applied forces on each body, and the generalised forces: moment about the base origin and force on the whole vehicle,
  * base frame; force along every coordinate. */
+/* A number that an element exerts along or about a line: a force, N, or a torque, N m. */
+typedef struct LoadPart {
+    Ex value;
+    bool internal; /* bodies push each other with it: nothing is left of it for the whole vehicle */
+} LoadPart;
+
 typedef struct Loads {
+    int parts;
+    LoadPart *part;  /* [parts] with Whole.parted: cut[i] stands for the value of a part in all sums below */
     bool *made;      /* [forces] the element is among the sums */
     bool *pressed;   /* [wheels] the wheel is */
     Ex (*wrench)[6]; /* [bodies] moment about the reference point, force; base frame */

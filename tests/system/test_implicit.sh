@@ -267,7 +267,7 @@ g++ -std=c++11 -x c++
 clang -std=c99
 END
 
-# (1 - reach A) u = b multiplied out, with all states of the Jacobian, at states of a run and reaches up to 0.1 s
+# (W - reach A) u = b multiplied out, W with the mass matrix in rows of velocities, with all states of the Jacobian, at states of a run and reaches up to 0.1 s
 cat >residual.c <<'END'
 #include <math.h>
 #include <stdio.h>
@@ -279,8 +279,8 @@ int main(void)
 {
     const gic_implicit *how = MODEL.implicit;
     const int n = MODEL.slow_count + MODEL.fast_count;
-    double *jacobian = calloc((size_t)(n * how->columns + n * n + 3 * n), sizeof *jacobian), worst = 0;
-    double *factor = jacobian + n * how->columns, *b = factor + n * n, *u = b + n, *state = u + n;
+    double *jacobian = calloc((size_t)(n * how->columns + how->mass_count + n * n + 3 * n), sizeof *jacobian), worst = 0;
+    double *mass = jacobian + n * how->columns, *factor = mass + how->mass_count, *b = factor + n * n, *u = b + n, *state = u + n;
     int i, k, moment, r, counted = 0;
     if (MODEL.setup(&car) != GIC_OK)
         return 1;
@@ -299,6 +299,14 @@ int main(void)
             how->solve(jacobian, reach, factor, b, u);
             for (i = 0; i < n; ++i) {
                 double sum = u[i] - b[i], terms = fabs(u[i]) + fabs(b[i]);
+                for (k = 0; k < how->mass_count; ++k)
+                    if (how->mass_row[k] == i && how->mass_column[k] == i)
+                        sum = -b[i], terms = fabs(b[i]);
+                for (k = 0; k < how->mass_count; ++k)
+                    if (how->mass_row[k] == i) {
+                        sum += mass[k] * u[how->mass_column[k]];
+                        terms += fabs(mass[k] * u[how->mass_column[k]]);
+                    }
                 for (k = 0; k < n; ++k) {
                     sum -= reach * jacobian[how->columns * i + k] * u[k];
                     terms += fabs(reach * jacobian[how->columns * i + k] * u[k]);
@@ -322,6 +330,93 @@ for name in hmmwv_vehicle formula_student mounts andrews pendulum; do
     gcc -std=c99 -w -I. "-DNAME_H=\"$name.h\"" -DNAME=$name -DMODEL=${name}_model residual.c $name.c gic_runtime.c -o residual -lm >said 2>&1 && ./residual >said 2>&1
     verdict $? "$name: solutions multiplied out: $(tail -n 1 said)"
 done
+# without loads, and at rest, nothing is left out of the derivatives of forces: they are the mass matrix times the exact
+# Jacobian, which shares neither with them. The base turned by nothing, thirds, a quarter turn and anyhow.
+cat >rest.veh <<'END'
+gicgen: 1
+model: rest
+gravity: [0, 0, 0]
+base: hull
+bodies:
+  hull: {mass: 900, com: [0.1, 0.02, 0.3], inertia: [300, 900, 1000]}
+  frame: {mass: 20, com: [1, 0, 0.2], inertia: [1.2, 0.8, 1.9]}
+  arm: {mass: 4, com: [1.1, 0.4, 0.2], inertia: [0.1, 0.05, 0.1], position: [1, 0.2, 0.2]}
+  rod: {mass: 7, com: [-1, 0.3, 0.2], inertia: [0.3, 0.2, 0.1], position: [-1, 0, 0.2]}
+joints:
+  hinge: {type: revolute, bodies: [frame, arm], point: [1, 0.2, 0.2], axis: [1, 0.2, 0]}
+  pin: {type: revolute, bodies: [hull, rod], point: [-1, 0, 0.2], axis: [0.6, 0.8, 0]}
+coordinates:
+  x: {type: translation, bodies: [hull, frame], axis: [1, 0, 0], range: [-0.1, 0.1]}
+  y: {type: translation, bodies: [hull, frame], axis: [0, 1, 0], range: [-0.1, 0.1]}
+  z: {type: translation, bodies: [hull, frame], axis: [0, 0, 1], range: [-0.1, 0.1]}
+  a: {type: angle, bodies: [hull, frame], axis: [1, 0, 0], range: [-0.3, 0.3]}
+  b: {type: angle, bodies: [hull, frame], axis: [0, 1, 0], range: [-0.3, 0.3]}
+  c: {type: angle, bodies: [hull, frame], axis: [0, 0, 1], range: [-0.3, 0.3]}
+  arm: {type: angle, bodies: [frame, arm], axis: [1, 0.2, 0], range: [-0.5, 0.5]}
+  rod: {type: angle, bodies: [hull, rod], axis: [0.6, 0.8, 0], range: [-0.5, 0.5]}
+states:
+  lag: {rate: "500 * (rate(arm) - lag) + 30 * rod"}
+forces:
+  front: {type: bushing, bodies: [hull, frame], point: [1.3, 0.3, 0.2], stiffness: [3e6, 2e6, 1e6, 300, 200, 100], damping: [900, 600, 300, 1, 2, 3]}
+  back: {type: bushing, bodies: [hull, frame], point: [0.7, -0.3, 0.2], stiffness: [2e6, 5e6, 1e6, 0, 0, 0], damping: [100, 600, 300, 0, 0, 0]}
+  spring: {type: spring_damper, bodies: [hull, arm], points: [[1, 0.5, 0.7], [1, 0.5, 0.2]], stiffness: 2e5, damping: 900, free: 0.5}
+  about: {type: spring_damper, bodies: [frame, rod], axis: [0, 1, 0], stiffness: 700, damping: 3}
+  along: {type: force, coordinate: rod, value: "-400 * rod - 2 * rate(rod) + 10 * lag"}
+  air: {type: load, body: arm, force: [0, "-30 * rate(rod)", 0], torque: [0, 0, 5 * lag], point: [1, 0.5, 0.2]}
+outputs: {hull: {type: position, body: hull, point: [0, 0, 0]}}
+END
+cat >rest_main.c <<'END'
+#include "rest.h"
+#include <math.h>
+#include <stdio.h>
+
+enum { ROOM = 14 * 14, COLUMNS = REST_JACOBIAN_COLUMNS };
+static rest car;
+static rest_direction along;
+static double exact[REST_JACOBIAN_ROWS * COLUMNS], own[REST_STATES * COLUMNS + ROOM];
+
+/* W times the exact derivative of a rate, and the sum of its magnitudes */
+static double weighed(const gic_implicit *how, int row, int column, double *size)
+{
+    const double *mass = own + REST_STATES * COLUMNS;
+    double sum = 0;
+    int k, any = 0;
+    *size = 1;
+    for (k = 0; k < how->mass_count; ++k)
+        if (how->mass_row[k] == row) {
+            const double part = mass[k] * exact[COLUMNS * how->mass_column[k] + column];
+            sum += part, *size += fabs(part), any = 1;
+        }
+    return any ? sum : exact[COLUMNS * row + column];
+}
+
+int main(void)
+{
+    static const double turn[4][4] = {{1, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.70710678118654757, 0, 0, 0.70710678118654757}, {0.1, -0.7, 0.5, 0.5}};
+    const gic_implicit *how = rest_model.implicit;
+    double worst = 0, size;
+    int t, i, k;
+    for (t = 0; t < 4; ++t) {
+        if (rest_setup(&car) != GIC_OK)
+            return 1;
+        for (i = 0; i < 4; ++i)
+            car.state[3 + i] = turn[t][i];
+        if (rest_jacobian(&car, 0, car.state, &along, exact) != GIC_OK || rest_rhs(&car, 0, car.state, car.rate) != GIC_OK ||
+            how->jacobian(&car, 0, car.state, own) != GIC_OK)
+            return 2;
+        for (i = 0; i < REST_STATES; ++i)
+            for (k = 0; k < REST_STATES; ++k) {
+                const double off = fabs(weighed(how, i, k, &size) - own[COLUMNS * i + k]) / size;
+                worst = off > worst ? off : worst;
+            }
+    }
+    printf("%d masses, %.2g\n", (int)how->mass_count, worst);
+    return !(how->mass_count > 0 && worst < 1e-8);
+}
+END
+"$gicgen" --implicit rest.veh -o rest.c && gcc -std=c99 -w -I. rest_main.c rest.c gic_runtime.c -o rest -lm >said 2>&1 && ./rest >said 2>&1
+verdict $? "derivatives of forces: $(tail -n 1 said)"
+
 check 'no heap' sh -c '! nm drive | grep -q " U .*\(malloc\|calloc\|realloc\)"'
 
 echo "$passed passed, $failed failed"
