@@ -61,6 +61,13 @@ void tuning_copy(const Model *model, const double *to, const double *from, int c
     }
 }
 
+void output_copy(const Model *model, Output *to, const Output *from)
+{
+    *to = *from;
+    if (model->tuning)
+        tuning_copy(model, to->point, from->point, 3);
+}
+
 void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text)
 {
     if (tuning->dag->node[value].level == LEVEL_VARIABLE)

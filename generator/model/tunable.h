@@ -55,6 +55,8 @@ Ex tuned_difference(const Model *model, const double *a, const double *b);
 void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
 /* Give `count` copies of numbers the formulas of the originals. */
 void tuning_copy(const Model *model, const double *to, const double *from, int count);
+/* Copy an output of the model with the formulas of its point. */
+void output_copy(const Model *model, Output *to, const Output *from);
 void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);
 /* The value of a formula of the model's Tuning for values of its tunable parameters, at the given lengths; and whether
  * it follows the one with this index. */

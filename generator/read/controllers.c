@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "base/yaml.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/reader.h"
 
 #include <math.h>
@@ -194,11 +195,15 @@ void controllers_read(Reader *reader, const Item *map)
     if (!count)
         return;
     model->signal = room_to_push(reader->pool, model->signal, model->signals, sizeof *model->signal);
+    const Output *before = model->output;
     model->output = room_to_push(reader->pool, model->output, model->outputs, sizeof *model->output);
+    const int outputs = model->outputs;
     for (int i = 0; i < count; ++i) {
         const Entry *rule = rules_of(reader, entry + i, &rules);
         for (int k = 0; k < rules; ++k)
             rule_read(reader, &model->controller[i].rule[k], rule + k);
     }
+    for (int i = 0; i < outputs; ++i) /* their place is another one by now */
+        output_copy(model, &model->output[i], &before[i]);
     outputs_names_check(reader);
 }

@@ -101,7 +101,7 @@ static void points_read(Reader *reader, const Item *map)
     }
 }
 
-static const Model *read_model(Pool *pool, const Item *whole)
+static Model *read_model(Pool *pool, const Item *whole)
 {
     Model *model = pool_alloc(pool, sizeof *model);
     Reader reader = {.pool = pool, .model = model};
@@ -159,4 +159,19 @@ const Model *model_read_text(Pool *pool, const char *path, const char *text, siz
 const Model *model_read_again(Pool *pool, const Model *earlier)
 {
     return read_model(pool, known_included(pool, earlier->source));
+}
+
+const Model *model_read_set(Pool *pool, const Model *earlier, const FileNumber *setting, int count)
+{
+    return read_model(pool, settings_put(pool, known_included(pool, earlier->source), setting, count));
+}
+
+const Model *model_read_fixed(Pool *pool, const Model *earlier, const double *parameter)
+{
+    const Item *file = known_included(pool, earlier->source);
+    Model *model = read_model(pool, parameters_put(pool, file, earlier, parameter));
+    model->tuning = NULL;
+    for (int i = 0; i < model->parameters; ++i)
+        model->parameter[i].geometric = false;
+    return model;
 }

@@ -2,6 +2,7 @@
  * Outputs (FORMAT.md section 9): what each refers to, and the names and units of its components. */
 #include "base/yaml.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "read/read.h"
 #include "read/reader.h"
 
@@ -281,7 +282,8 @@ const Model *model_watch_wheels(Pool *pool, const Model *model)
     Model *out = pool_alloc(pool, sizeof *out);
     *out = *model;
     out->output = pool_alloc(pool, sizeof *out->output * (size_t)(model->outputs + 3 * model->wheels + 1));
-    memcpy(out->output, model->output, sizeof *out->output * (size_t)model->outputs);
+    for (int i = 0; i < model->outputs; ++i)
+        output_copy(model, &out->output[i], &model->output[i]);
     for (int w = 0; w < model->wheels; ++w)
         for (int k = 0; k < (model->wheel[w].tire >= 0 ? 3 : 1); ++k) {
             if (is_watched(model, wanted[k], w))

@@ -20,6 +20,17 @@ const Model *model_read(Pool *pool, const char *path);
 const Model *model_read_text(Pool *pool, const char *path, const char *text, size_t size);
 /* A model of its own from the bytes that an earlier one was read from; files that it names must still be there. */
 const Model *model_read_again(Pool *pool, const Model *earlier);
+/* A number of a model's file: a parameter by its name, or a coordinate of a named point, POINT.x, .y or .z. */
+typedef struct FileNumber {
+    const char *name;
+    double value;
+} FileNumber;
+
+/* The same with other numbers in place of those of the file, whose mirror images follow. A name that it does not have
+ * ends in diag_fail. */
+const Model *model_read_set(Pool *pool, const Model *earlier, const FileNumber *setting, int count);
+/* The same with values of the tunable parameters, by which geometric ones become numbers: a model without a tuning. */
+const Model *model_read_fixed(Pool *pool, const Model *earlier, const double *parameter);
 /* A copy of the model with hidden outputs of each wheel: of type wheel, and with a tire also tire and contact, unless
  * it has them. */
 const Model *model_watch_wheels(Pool *pool, const Model *model);

@@ -9,6 +9,7 @@
 #include "expression/expression.h"
 #include "model/model.h"
 
+struct FileNumber; /* read.h */
 struct stat;
 
 /* The kind of value of a key, and the member of Value in which section_read leaves it. Vectors and points: model frame.
@@ -194,6 +195,10 @@ const Item *file_included(Pool *pool, const char *path);
 const Item *text_included(Pool *pool, const char *path, const char *text, size_t size);
 /* The same from the bytes of an earlier reading of it and of the files that it includes. */
 const Item *known_included(Pool *pool, const Source *known);
+/* set.c: a file with other numbers in place of its own. */
+const Item *settings_put(Pool *pool, const Item *file, const struct FileNumber *setting, int count);
+/* The same for the values of all tunable parameters of the model that was read from it, mirror images too. */
+const Item *parameters_put(Pool *pool, const Item *file, const Model *model, const double *value);
 /* The path of the file `name`, which `item` names, relative to the folder of `file`; ends in diag_fail if it can't be
  * read. use: its purpose in messages, "include". */
 const char *path_check(Pool *pool, const Item *item, const char *file, const char *name, const char *use,

@@ -33,7 +33,7 @@ static void keep_wanted(Pool *pool, Model *model, const bool *wanted)
     model->output_components = 0;
     for (int i = 0; i < model->outputs; ++i)
         if (wanted[i] || model->output[i].sampled) {
-            kept[outputs++] = model->output[i];
+            output_copy(model, &kept[outputs++], &model->output[i]);
             model->output_components += model->output[i].count;
         }
     model->output = kept;

@@ -52,20 +52,18 @@ static const char help[] =
     "      --gradient FORMULA\n"
     "                     derivatives of its value at the end, of integral(FORMULA) or of\n"
     "                     maximum(FORMULA) by initial state, parameters, inputs\n"
-    "      --identify FILE\n"
-    "                     parameters from measurements\n"
+    "      --identify FILE parameters from measurements\n"
     "      --kc           kinematics of axles over travel and steering, models/KC.md\n"
     "      --axle NAME, --travel M\n"
     "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
     "      --loads        with --kc: compliance instead\n"
     "      --sheet        the vehicle on a page, models/SHEET.md\n"
-    "      --manoeuvre NAME\n"
-    "                     standard manoeuvres, models/MANOEUVRES.md; an unknown name lists\n"
+    "      --manoeuvre NAME one of models/MANOEUVRES.md; an unknown name lists\n"
+    "      --vary NAME=LOW:HIGH:COUNT  of these: parameters, POINT.z, keys\n"
     "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
-    "      --report FILE  of --kc and --manoeuvre: a page of curves\n"
+    "      --report FILE  of --kc, --manoeuvre and --vary: a page of curves\n"
     "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
-    "      --integrator NAME\n"
-    "                     instead of the scene's: ab3, rk4, ros2, ros3, adams, rkck\n"
+    "      --integrator NAME  ab3, rk4, ros2, ros3, adams, rkck, not the scene's\n"
     "      --tolerance NUMBER of these\n"
     "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
     "                     long run by the C compiler too (cc); tape, gic, gcp1, gcp2\n"
@@ -79,11 +77,14 @@ static const char help[] =
     "  -h, --help, --version\n"
     "\n"
     "gicrun(1): $CC, $GICGEN_CACHE, $GICGEN_CACHE_SIZE, $XDG_CACHE_HOME and $TMPDIR.\n"
-    "models/FORMAT.md describes models, models/SCENE.md scenes and the columns of --eval.\n"
+    "models/FORMAT.md describes models, models/SCENE.md scenes and columns of --eval.\n"
     "Exit status: 0 good, 1 error in a file or during the run, 2 wrong usage.\n";
 
 /* What is asked for. */
+enum { VARIED_MOST = 16 };
+
 typedef struct Asked {
+    const char *vary[VARIED_MOST]; /* [study.varied] */
     const char *model;
     bool rests, modes, linear, trim, kinematics, sheet, loads, live, general, quiet;
     const char *animated, *driven, *report; /* --animate, --drive, --report */
@@ -133,6 +134,14 @@ static void read_seconds(void *asked, char *word)
     if (*end || end == word || !(value > 0 && value <= 1e9))
         usage_fail("gicrun", "--seconds must be a time in s, above 0 and at most 1e9, unlike", word);
     ((Asked *)asked)->study.seconds = value;
+}
+
+static void read_vary(void *asked, char *word)
+{
+    gicl_study *study = &((Asked *)asked)->study;
+    if (study->varied == VARIED_MOST)
+        usage_fail("gicrun", "--vary is given too often, with", word);
+    ((Asked *)asked)->vary[study->varied++] = word;
 }
 
 /* Is a word one of those that an option may have? */
@@ -215,6 +224,7 @@ static Asked read_command_line(int count, char **word)
         {"kc", .on = &asked.kinematics},
         {"sheet", .on = &asked.sheet},
         {"manoeuvre", .text = &study->manoeuvre},
+        {"vary", .read = read_vary},
         {"trace", .text = &study->trace},
         {"loads", .on = &asked.loads},
         {"axle", .text = &study->axle},
@@ -248,8 +258,14 @@ static Asked read_command_line(int count, char **word)
                    NULL);
     if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads))
         usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
-    if (asked.report && !asked.kinematics && !study->manoeuvre)
-        usage_fail("gicrun", "--report goes with --kc or --manoeuvre", NULL);
+    if (asked.report && !asked.kinematics && !study->manoeuvre && !(asked.sheet && study->varied))
+        usage_fail("gicrun", "--report goes with --kc, --manoeuvre or --vary", NULL);
+    if (study->varied && !asked.kinematics && !study->manoeuvre && !asked.sheet)
+        usage_fail("gicrun", "--vary goes with --kc, --sheet or --manoeuvre; scenes are varied by gicsweep", NULL);
+    if (study->varied && (asked.loads || study->compare || study->trace))
+        usage_fail("gicrun", "--vary goes without --loads, --compare and --trace", NULL);
+    if (study->varied && study->results && path_ends(study->results, ".html"))
+        usage_fail("gicrun", "with --vary a page is made by --report, not by -o", study->results);
     if (study->trace && !study->manoeuvre)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
     if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
@@ -398,6 +414,7 @@ int main(int count, char **word)
         status = gicl_model_open(library, asked.model, &asked.options, &model, said);
     if (status == GICL_OK) {
         check_outputs(&asked);
+        asked.study.vary = asked.vary;
         asked.study.at = isnan(asked.at) ? NULL : &asked.at;
         status = gicl_write(library, model, &asked.study, said);
     }

@@ -272,7 +272,10 @@ typedef struct gicl_study {
     const char *inputs; /* the same: names of those that packets give, between commas; NULL: all */
     int port;           /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
     double seconds; /* the same; 0: until a signal asks to stop, which a listener with `signals` must have left to it */
-    int quiet;      /* 1: neither progress nor notes */
+    const char *const *vary; /* [varied] of "kc", "sheet" and "manoeuvre": words name=low:high:count, without "loads",
+                              * "compare" and "trace" */
+    int varied;
+    int quiet; /* 1: neither progress nor notes */
 } gicl_study;
 
 /* What gicrun does. Tables for people are messages, GICL_TEXT. GICL_FAILED: a run that ends early has written its rows

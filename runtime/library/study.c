@@ -20,6 +20,7 @@
 #include "run/trim.h"
 #include "scene/replay.h"
 #include "scene/scene.h"
+#include "sweep/study.h"
 #include "vehicle/vehicle.h"
 
 #include <dlfcn.h>
@@ -61,7 +62,7 @@ static const struct {
     {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE),
      IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY) | IN(LIVE)},
     {"results", offsetof(gicl_study, results), ALL & ~IN(DRIVE), IN(EVAL) | IN(LINEARIZE)},
-    {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(MANOEUVRE), IN(DRIVE)},
+    {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(SHEET) | IN(MANOEUVRE), IN(DRIVE)},
     {"plot", offsetof(gicl_study, plot), IN(RUN), 0},
     {"with", offsetof(gicl_study, with), IN(RUN), 0},
     {"replay", offsetof(gicl_study, replay), IN(RUN), 0},
@@ -113,6 +114,14 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
         return call_wrong(
             said, NULL,
             "'keys' is the number of words in 'key', which go with manoeuvre, trim, linearize, gradient and identify");
+    const int varying = IN(KC) | IN(SHEET) | IN(MANOEUVRE);
+    if (study->varied < 0 || (study->varied && (!(varying & IN(kind)) || !study->vary)))
+        return call_wrong(said, NULL,
+                          "'varied' is the number of words in 'vary', which go with kc, sheet and manoeuvre");
+    if (study->varied && (study->loads || study->compare || study->trace))
+        return call_wrong(said, "leave them out", "'vary' goes without 'loads', 'compare' and 'trace'");
+    if (kind == SHEET && study->page && !study->varied)
+        return call_wrong(said, "'results' that end in .html are one", "'page' of sheet goes with 'vary'");
     if (study->keys && study->at)
         return call_wrong(said, "leave it NULL", "'at' is one operating point, and 'key' another one");
     if (kind == TRIM && study->results && !trim_file_known(study->results))
@@ -174,7 +183,7 @@ static Request request_of(const Writing *w)
                      .loads = s->loads,
                      .axle = s->axle,
                      .travel = s->travel,
-                     .report = w->kind == KC || w->kind == MANOEUVRE ? s->page : NULL,
+                     .report = w->kind == KC || w->kind == SHEET || w->kind == MANOEUVRE ? s->page : NULL,
                      .compare = s->compare,
                      .manoeuvre = s->manoeuvre,
                      .trace = s->trace,
@@ -182,6 +191,8 @@ static Request request_of(const Writing *w)
                      .measured = s->measured,
                      .keys = s->keys,
                      .key = s->key,
+                     .varied = s->varied,
+                     .vary = s->vary,
                      .results = s->results,
                      .picture = s->plot,
                      .with = s->with,
@@ -266,12 +277,16 @@ static void write_study(void *context)
         model = model_watch_wheels(pool, model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, open->integrator, open->tolerance) : NULL;
+    if (scene && model->tuning && !request.varied && (w->kind == KC || w->kind == SHEET))
+        model = model_read_fixed(pool, model, scene->parameter);
     if (request.with)
         request.other = csv_read(pool, request.with, "time [s],chassis.z [m]", NULL);
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);
-    if (w->kind == MANOEUVRE)
+    if (request.varied)
+        study_sweep(pool, model, w->kind == KC ? STUDY_KC : w->kind == SHEET ? STUDY_SHEET : STUDY_MANOEUVRE, &request);
+    else if (w->kind == MANOEUVRE)
         manoeuvre_report(pool, model, &request);
     else if (w->kind == KC)
         kc_report(pool, model, scene, &request);

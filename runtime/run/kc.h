@@ -292,6 +292,8 @@ typedef struct KcStudy {
     const char *(*refusal)[KC_MOTIONS];
 } KcStudy;
 
+/* All axles in all motions. */
+KcStudy kc_study(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* Of the wheels' centres, m, unless the user says another. */
 extern const double kc_usual_travel;
@@ -307,10 +309,18 @@ const KcRow *kc_zero(const KcStudy *study, int axle, int of_axle);
 const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double *scale);
 /* Does an element move with a wheel of the axle? */
 bool kc_ratio_seen(const Kc *kc, const KcAxle *axle, const KcRow *row, int e);
+/* kc_compare.c: the numbers at the position of set-up. */
+struct Sheet kc_sheet(Pool *pool, const Model *model, const KcStudy *study);
 /* kc_compare.c: two vehicles at set-up side by side, as a table or as CSV. */
 void kc_compare(Pool *pool, const Model *model, const KcStudy *study, const Model *model_of_other,
                 const KcStudy *of_other, const Request *request);
-/* kc_page.c: the page `path`. */
+/* kc_page.c: what pages call a motion; the name of its abscissa and the factor to its unit. */
+extern const char *const kc_motion_title[KC_MOTIONS];
+const char *kc_abscissa(Pool *pool, const Kc *kc, const KcAxle *axle, KcMotion motion, double *scale);
+/* True: a page draws a quantity of wheels in a motion. Left out are the abscissa, what another curve shows as well, and
+ * places, of which there are changes. */
+bool kc_is_drawn(int quantity, KcMotion motion);
+/* The page `path`. */
 void kc_page(Pool *pool, const KcStudy *study, const char *path);
 
 #endif

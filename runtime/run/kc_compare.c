@@ -33,7 +33,7 @@ static void add_axle(Sheet *sheet, const KcStudy *study, int a)
     }
 }
 
-static Sheet sheet_of(Pool *pool, const Model *model, const KcStudy *study)
+Sheet kc_sheet(Pool *pool, const Model *model, const KcStudy *study)
 {
     Sheet sheet = {.pool = pool, .model = model};
     for (int a = 0; a < study->kc->axles; ++a)
@@ -45,8 +45,8 @@ static Sheet sheet_of(Pool *pool, const Model *model, const KcStudy *study)
 void kc_compare(Pool *pool, const Model *model, const KcStudy *study, const Model *model_of_other,
                 const KcStudy *of_other, const Request *request)
 {
-    Sheet sheet = sheet_of(pool, model, study);
-    const Sheet other = sheet_of(pool, model_of_other, of_other);
+    Sheet sheet = kc_sheet(pool, model, study);
+    const Sheet other = kc_sheet(pool, model_of_other, of_other);
     sheet_compare(&sheet, &other);
     if (request->results)
         sheet_csv(&sheet, request->results);

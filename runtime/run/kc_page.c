@@ -15,12 +15,11 @@ typedef struct Page {
     const KcStudy *study;
 } Page;
 
-static const char *const title_of[KC_MOTIONS] = {"Parallel travel", "Opposite travel", "Steering"};
+const char *const kc_motion_title[KC_MOTIONS] = {"Parallel travel", "Opposite travel", "Steering"};
 
 /* ---- what a motion shows -------------------------------------------------------------------------------- */
 
-/* Left out: what is the abscissa, what another curve shows as well, and places, of which there are changes. */
-static bool is_drawn(int quantity, KcMotion motion)
+bool kc_is_drawn(int quantity, KcMotion motion)
 {
     switch (quantity) {
     case KC_TRAVEL:
@@ -34,22 +33,28 @@ static bool is_drawn(int quantity, KcMotion motion)
     }
 }
 
+const char *kc_abscissa(Pool *pool, const Kc *kc, const KcAxle *axle, KcMotion motion, double *scale)
+{
+    const bool steers = motion == KC_STEER;
+    const bool turns = steers && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE;
+    *scale = turns ? kc_of_wheel[KC_CAMBER].scale : 1e3;
+    return steers ? pool_print(pool, "%s, %s", kc->model->coordinate[axle->steer].name, turns ? "deg" : "mm")
+           : motion == KC_OPPOSITE ? "travel of the left, mm"
+                                   : "travel, mm";
+}
+
 static void motion(Page *page, Text *out, int a, const KcCurve *of)
 {
     const Kc *kc = page->study->kc;
     const KcAxle *axle = &kc->axle[a];
-    const bool steers = of->motion == KC_STEER;
-    const bool turns = steers && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE;
+    double scale_of_x;
+    const char *below = kc_abscissa(page->pool, kc, axle, of->motion, &scale_of_x);
     const size_t n = (size_t)(axle->wheels + 1) * (size_t)of->rows;
     double *x = pool_alloc(page->pool, (size_t)of->rows * sizeof *x), *y = pool_alloc(page->pool, n * sizeof *y);
-    Panel panel = {.rows = of->rows, .x = x, .y = y};
+    Panel panel = {.below = below, .rows = of->rows, .x = x, .y = y};
     for (int r = 0; r < of->rows; ++r)
-        x[r] = of->row[r].at * (turns ? kc_of_wheel[KC_CAMBER].scale : 1e3);
-    panel.below = steers
-                      ? pool_print(page->pool, "%s, %s", kc->model->coordinate[axle->steer].name, turns ? "deg" : "mm")
-                  : of->motion == KC_OPPOSITE ? "travel of the left, mm"
-                                              : "travel, mm";
-    text_print(out, "<h3>%s", title_of[of->motion]);
+        x[r] = of->row[r].at * scale_of_x;
+    text_print(out, "<h3>%s", kc_motion_title[of->motion]);
     for (int i = 0; i < axle->wheels; ++i) {
         text_print(out, " <span style=\"color:%s\">%s", panel_color(i), i == 1 ? "&#9476;&#9476; " : "&#8212; ");
         text_html(out, axle->wheel[i].name);
@@ -63,7 +68,7 @@ static void motion(Page *page, Text *out, int a, const KcCurve *of)
         for (int i = 0; i < axle->wheels; ++i)
             for (int r = 0; r < of->rows; ++r)
                 y[i * of->rows + r] = of->row[r].wheel[i][q] * kc_of_wheel[q].scale;
-        if (is_drawn(q, of->motion))
+        if (kc_is_drawn(q, of->motion))
             panel_draw(out, &panel);
     }
     for (int e = 0; e < kc->elements; ++e) {

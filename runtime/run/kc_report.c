@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-static KcStudy study_of(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+KcStudy kc_study(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
     KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
@@ -266,7 +266,7 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
         report_loads(pool, model, scene, request);
         return;
     }
-    const KcStudy study = study_of(pool, model, scene, request);
+    const KcStudy study = kc_study(pool, model, scene, request);
     bool moves = false;
     for (int a = 0; a < study.kc->axles; ++a)
         moves = moves || kc_first(&study, a);
@@ -276,7 +276,7 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
                   study.refusal[0][KC_PARALLEL]);
     if (request->compare) {
         const Model *model_of_other = model_read(pool, request->compare);
-        const KcStudy other = study_of(pool, model_of_other, NULL, request);
+        const KcStudy other = kc_study(pool, model_of_other, NULL, request);
         note_units(pool, &study, request);
         note_units(pool, &other, request);
         kc_compare(pool, model, &study, model_of_other, &other, request);

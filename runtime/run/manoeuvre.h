@@ -173,7 +173,13 @@ void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial);
 extern const ManoeuvreKind manoeuvre_kind[];
 /* --manoeuvre: run it and write what was asked for. Ends in usage_fail for unknown names and keys. */
 void manoeuvre_report(Pool *pool, const Model *model, const Request *request);
-/* manoeuvre_page.c */
+/* Drive it, with its keys read; the caller closes the engine of its car. */
+Manoeuvre manoeuvre_drive(Pool *pool, const Model *model, const Request *request);
+/* The key of a name that a manoeuvre takes; NULL: it takes none. Ends in usage_fail for an unknown manoeuvre. */
+const ManoeuvreKey *manoeuvre_key(Pool *pool, const char *manoeuvre, const char *name);
+/* manoeuvre_page.c: the unit in which people read a channel, and the factor to it. */
+const char *manoeuvre_shown(Channel channel, double *scale);
+/* The page. */
 void manoeuvre_page(const Manoeuvre *manoeuvre, const ManoeuvreKind *kind, const char *path);
 
 /* ---- manoeuvre_steer.c: what manoeuvres by steering share ------------------------------------------------ */

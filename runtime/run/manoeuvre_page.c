@@ -16,8 +16,7 @@ typedef struct Page {
     const ManoeuvreKind *kind;
 } Page;
 
-/* The unit in which people read a channel. */
-static const char *shown(Channel channel, double *scale)
+const char *manoeuvre_shown(Channel channel, double *scale)
 {
     const char *unit = trial_signal[channel].unit;
     const bool angle = !strncmp(unit, "rad", 3);
@@ -31,7 +30,7 @@ static void curve(const Manoeuvre *m, Text *out, const ManoeuvreCurve *of)
     const int trials = m->trials < DRAWN ? m->trials : DRAWN;
     double scale[2];
     int rows = 0;
-    const char *unit = shown(of->y, &scale[1]), *below = shown(of->x, &scale[0]);
+    const char *unit = manoeuvre_shown(of->y, &scale[1]), *below = manoeuvre_shown(of->x, &scale[0]);
     for (int t = 0; t < trials; ++t)
         rows += m->trial[t]->rows;
     const int every = rows / (MOST_ROWS * trials) + 1;

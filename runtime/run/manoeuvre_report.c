@@ -288,19 +288,40 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
     return m;
 }
 
-void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
+/* The values of a manoeuvre's keys, [MANOEUVRE_KEYS]. */
+static void read_keys(Pool *pool, const ManoeuvreKind *kind, const Request *request, double *value)
 {
-    const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
-    double value[MANOEUVRE_KEYS] = {0};
     bool given[MANOEUVRE_KEYS] = {false};
     for (int k = 0; k < MANOEUVRE_KEYS; ++k)
         value[k] = kind->key[k].value;
     for (int k = 0; k < request->keys; ++k)
         read_key(pool, kind, request->key[k], value, given);
     check_order(pool, kind, value);
-    Manoeuvre m = drive(pool, model, kind, value, request);
+}
+
+const ManoeuvreKey *manoeuvre_key(Pool *pool, const char *manoeuvre, const char *name)
+{
+    const ManoeuvreKind *kind = kind_of(pool, manoeuvre);
+    for (int k = 0; k < MANOEUVRE_KEYS && kind->key[k].name; ++k)
+        if (!strcmp(kind->key[k].name, name))
+            return &kind->key[k];
+    return NULL;
+}
+
+Manoeuvre manoeuvre_drive(Pool *pool, const Model *model, const Request *request)
+{
+    const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
+    double *value = pool_alloc(pool, MANOEUVRE_KEYS * sizeof *value);
+    read_keys(pool, kind, request, value);
+    return drive(pool, model, kind, value, request);
+}
+
+void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
+{
+    const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
+    Manoeuvre m = manoeuvre_drive(pool, model, request);
     if (request->compare) {
-        const Manoeuvre other = drive(pool, model_read(pool, request->compare), kind, value, request);
+        const Manoeuvre other = manoeuvre_drive(pool, model_read(pool, request->compare), request);
         sheet_compare(m.result, other.result);
         engine_close(other.car->engine);
     }

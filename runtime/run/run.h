@@ -35,6 +35,8 @@ typedef struct Request {
     const char *measured;  /* of identify_report(): a file */
     int keys;              /* words key=value of manoeuvres and steady driving; names of the two before */
     const char *const *key;
+    int varied; /* words name=low:high:count of study_sweep() */
+    const char *const *vary;
     const char *results;          /* "-": standard output; NULL: none */
     RunColumns *columns;          /* of simulate(): the same in memory; NULL: not wanted */
     const char *picture;          /* the same: a picture, or NULL */

@@ -70,6 +70,8 @@ int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed);
 typedef struct SheetMotion SheetMotion;
 const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed);
 bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double *im);
+/* sheet_report.c: all rows of a sheet. */
+Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* The numbers of another one beside those of the same names; the numbers for people, the title after the names, and as

@@ -187,7 +187,7 @@ static void add_top_speed(Sheet *sheet, const Model *model, const Request *reque
         sheet_add(sheet, "Straight ahead", "top_speed", "Top speed, whole accelerator", "m/s", speed);
 }
 
-static Sheet sheet_of(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Sheet sheet = sheet_open(pool, model, scene, request->solve);
     kc_warn(sheet.kc);
@@ -218,9 +218,9 @@ void sheet_compare(Sheet *sheet, const Sheet *other)
 
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    Sheet sheet = sheet_of(pool, model, scene, request);
+    Sheet sheet = sheet_study(pool, model, scene, request);
     if (request->compare) {
-        const Sheet other = sheet_of(pool, model_read(pool, request->compare), NULL, request);
+        const Sheet other = sheet_study(pool, model_read(pool, request->compare), NULL, request);
         sheet_compare(&sheet, &other);
     }
     if (request->results && path_ends(request->results, ".html"))

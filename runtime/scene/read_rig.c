@@ -9,11 +9,8 @@
 
 #include <string.h>
 
-static void check_rig(const Scene *scene, const Model *model, Place at, const char *what)
+static void check_rig(const Scene *scene, Place at, const char *what)
 {
-    if (model->tuning)
-        diag_fail(at, "give geometric parameters numbers in the model", "%s, and '%s' has geometric parameters", what,
-                  model->name);
     if (scene->driver)
         diag_fail(at, "remove the driver: nobody can drive on a rig", "%s, and there is a driver", what);
 }
@@ -25,13 +22,15 @@ static void read_massless(const Item *item, const Model *model, Scene *scene)
     CHECK_KEYS(item, "massless", "below");
     scene->massless = scene_positive(scene_need(item, "below", "massless"), "below");
     scene->massless_at = item->at;
-    if (model->tuning)
-        diag_fail(item->at, "give geometric parameters numbers in the model",
-                  "bodies lose their mass, and '%s' has geometric parameters", model->name);
     const Body *base = &model->body[BODY_BASE];
     if (model->free_base && base->mass < scene->massless)
         diag_fail(item->at, "choose a smaller mass", "the base '%s' of %.6g kg would be without mass", base->name,
                   base->mass);
+}
+
+bool rig_wanted(const Item *root)
+{
+    return doc_find(root, "base") || doc_find(root, "driven") || doc_find(root, "massless");
 }
 
 void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
@@ -45,7 +44,7 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
             diag_fail(base->at, "write fixed, or free", "the base can't be '%s'", word);
         scene->held = !strcmp(word, "fixed") && model->free_base;
         if (scene->held)
-            check_rig(scene, model, base->at, "the base is held");
+            check_rig(scene, base->at, "the base is held");
     }
     if (!driven)
         return;
@@ -54,7 +53,7 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
         name[i] = model->coordinate[i].name;
     if (driven->kind != ITEM_MAP)
         diag_fail(driven->at, "write {name: number or profile}", "driven coordinates must be a map");
-    check_rig(scene, model, driven->at, "coordinates are driven");
+    check_rig(scene, driven->at, "coordinates are driven");
     for (int k = 0; k < driven->count; ++k) {
         const Item *key = driven->key[k];
         const int w = scene_name_index(pool, key, key->text, "coordinate", name, model->coordinates);
@@ -96,6 +95,7 @@ const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
         return model;
     Scene *own = pool_alloc(pool, sizeof *own);
     *own = **scene;
+    model = own->fixed ? own->fixed : model;
     if (own->held)
         model = model_hold(pool, model, own->position, own->euler);
     model = model_drive(pool, model, own->drive, own->driven);

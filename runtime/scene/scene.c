@@ -7,6 +7,7 @@
 #include "gic_runtime.h"
 #include "model/limits.h"
 #include "model/model.h"
+#include "read/read.h"
 #include "scene/action.h"
 #include "scene/driver.h"
 #include "scene/profile.h"
@@ -611,7 +612,14 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
         read_keep(&reader, doc_find(root, "keep_jacobian"), integrator);
     read_time(&reader, root);
     read_skips(&reader, root, integrator);
-
+    scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable)
+            scene->parameter[model->parameter[i].index] = model->parameter[i].value;
+    if (doc_find(root, "parameters"))
+        read_parameters(&reader, doc_find(root, "parameters"));
+    if (model->tuning && rig_wanted(root))
+        reader.model = model = scene->fixed = model_read_fixed(pool, model, scene->parameter);
     memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);
     memcpy(scene->euler, model->body[BODY_BASE].euler, sizeof scene->euler);
     scene->value = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));
@@ -633,12 +641,6 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (doc_find(root, "driver"))
         scene->driver =
             driver_read(pool, doc_find(root, "driver"), model, scene->method < METHOD_ADAMS ? scene->step : 0);
-    scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));
-    for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable)
-            scene->parameter[model->parameter[i].index] = model->parameter[i].value;
-    if (doc_find(root, "parameters"))
-        read_parameters(&reader, doc_find(root, "parameters"));
     if (doc_find(root, "course"))
         scene->course = course_read(pool, doc_find(root, "course"));
     scene->actions = actions_read(pool, root, model, scene);

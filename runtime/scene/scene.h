@@ -78,8 +78,9 @@ typedef struct Scene {
     bool plotted;          /* the scene names the curves */
     const ShownUnit **unit;
     int units;
-    bool held;       /* the base is fixed at `position` and `euler` */
-    double massless; /* kg: bodies below this mass lose it; 0: none does */
+    const Model *fixed; /* the model with numbers in place of geometric parameters, for rigs; NULL: it has none */
+    bool held;          /* the base is fixed at `position` and `euler` */
+    double massless;    /* kg: bodies below this mass lose it; 0: none does */
     Place massless_at;
     double lost; /* from scene_rig(): see model_lost() */
     const char *massless_names;
@@ -174,6 +175,8 @@ double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
 /* All signals, as in Scene. */
 gic_signal *scene_signals(Pool *pool, const Model *model);
 /* read_rig.c: read the keys `base`, `driven` and `massless`. */
+/* True: the scene is one of a rig, or leaves out masses. */
+bool rig_wanted(const Item *root);
 void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* The model with its base held, coordinates driven and masses removed as the scene says; *scene is replaced by the
  * scene for that model. *scene NULL: no scene, the model is returned unchanged. */

@@ -8,13 +8,16 @@
 #include "sweep/sweep.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A mistake in a word of the call. */
 static _Noreturn void refuse(const char *message, const char *word)
 {
-    diag_fail_call(program_place(), "`gicsweep -h` shows how", "%s '%s'", message, word);
+    char how[200];
+    snprintf(how, sizeof how, "`%s -h` shows how", program_place().source->path);
+    diag_fail_call(program_place(), how, "%s '%s'", message, word);
 }
 
 void vary_read(Pool *pool, SweepPlan *plan, const char *word)

@@ -222,21 +222,25 @@ class Model:
 
     def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
               axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
-              measured=None, record=None, inputs=None, port=0, seconds=0.0):
+              measured=None, record=None, inputs=None, port=0, seconds=0.0, vary=None):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
         "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify" or "live"; others are
         gicrun's options (page: of --animate, --drive or --report; formula: of --gradient; measured: of --identify; port: of
         --live, which needs `seconds`). keys: of a
-        manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names."""
+        manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names. vary: of "kc", "sheet" and
+        "manoeuvre", {name: (low, high, count)}."""
         words = ([_bytes(f"{name}=" + (value if isinstance(value, str) else repr(_number(value, name))))
                   for name, value in keys.items()] if isinstance(keys, dict) else [_bytes(name) for name in keys or ()])
         time = None if at is None else ctypes.pointer(ctypes.c_double(_number(at, "at")))
+        grid = [_bytes(f"{name}={_number(low, name)!r}:{_number(high, name)!r}:{int(count)}")
+                for name, (low, high, count) in (vary or {}).items()]
         study = _library.Study(ctypes.sizeof(_library.Study), _bytes(kind), _bytes(scene), _bytes(results), _bytes(page),
                                _bytes(plot), _bytes(with_), _bytes(replay), _bytes(states), time, _bytes(axle),
                                _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
                                _bytes(measured),
                                (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace),
-                               _bytes(record), _bytes(inputs), _count(port, "port", 0, 65535), _number(seconds, "seconds"), True)
+                               _bytes(record), _bytes(inputs), _count(port, "port", 0, 65535), _number(seconds, "seconds"),
+                               (ctypes.c_char_p * (len(grid) + 1))(*grid), len(grid), True)
         call("write", self._handle, ctypes.byref(study))
         self.warnings = _library.texts(_library.WARNING, _library.NOTE)
         return "".join(_library.texts(_library.TEXT))

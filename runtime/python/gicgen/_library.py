@@ -32,7 +32,7 @@ class Study(ctypes.Structure):
                 ("formula", ctypes.c_char_p), ("measured", ctypes.c_char_p),
                 ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
                 ("record", ctypes.c_char_p), ("inputs", ctypes.c_char_p), ("port", ctypes.c_int), ("seconds", ctypes.c_double),
-                ("quiet", ctypes.c_int)]
+                ("vary", ctypes.POINTER(ctypes.c_char_p)), ("varied", ctypes.c_int), ("quiet", ctypes.c_int)]
 
 
 class Sweep(ctypes.Structure):

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""study.py GICRUN MODELS DATA WORK: `gicrun --vary`. Each run of a grid has, digit for digit, the numbers of a model whose
+file has that number: hard points and their mirror images, parameters, keys of manoeuvres, and those that a scene gives."""
+import csv
+import pathlib
+import subprocess
+import sys
+
+gicrun, models, data, work = sys.argv[1], *(pathlib.Path(x) for x in sys.argv[2:5])
+
+
+def table(*words):
+    path = work / "study.csv"
+    subprocess.run([gicrun, *map(str, words), "-q", "-o", str(path)], check=True, stderr=subprocess.DEVNULL)
+    with open(path) as f:
+        return list(csv.DictReader(f))
+
+
+def edited(source, old, new, name):
+    text = (models / source).read_text()
+    assert text.count(old) == 1, (old, text.count(old))
+    path = work / name
+    path.write_text(text.replace(old, new).replace("parts/", f"{models.resolve()}/parts/"))
+    return path
+
+
+def bare(row):
+    return {k.split(" [")[0]: x for k, x in row.items() if x}
+
+
+def set_up(rows):
+    """What --kc --compare shows: the numbers of the position of set-up."""
+    return {r["quantity"]: r["value"] for r in rows}
+
+
+def same(name, row, alone):
+    row = {k: x for k, x in bare(row).items() if k not in ("run", *varied)}
+    assert len(alone) > 5, (name, len(alone))
+    assert row == alone, (name, {k: (row.get(k), alone.get(k)) for k in row.keys() | alone.keys() if row.get(k) != alone.get(k)})
+    print(f"{name}: {len(alone)} numbers")
+
+
+# a hard point, with that on the other side, and a parameter, with kinematics and the sheet
+car = models / "formula_student.veh"
+varied = "f_upper_out_l.z", "bar_front"
+heights, bars = (0.27, 0.28, 0.29), (0.0, 50.0)
+grid = table("--kc", car, "--vary", "f_upper_out_l.z=0.27:0.29:3", "--vary", "bar_front=0:50:2")
+sheets = table("--sheet", car, "--vary", "f_upper_out_l.z=0.27:0.29:3", "--vary", "bar_front=0:50:2")
+assert len(grid) == len(sheets) == 6
+seen = set()
+for i, row in enumerate(grid):
+    z, bar = heights[i // 2], bars[i % 2]
+    assert int(row["run"]) == i and abs(float(row["f_upper_out_l.z [m]"]) - z) < 1e-15 and float(row["bar_front [N m/rad]"]) == bar
+    z = row["f_upper_out_l.z [m]"]
+    if i in (1, 4, 5):
+        one = edited("formula_student.veh", "[0.765, 0.525, 0.280]", f"[0.765, 0.525, {z}]", "one.veh")
+        one.write_text(one.read_text().replace("bar_front: {value: 50,", f"bar_front: {{value: {bar},"))
+        same(f"kinematics {i}", row, set_up(table("--kc", "--compare", one, one)))
+        same(f"sheet {i}", sheets[i], set_up(table("--sheet", one)))
+    seen.add(bare(row)["front_tire_l.camber_rate"])
+    assert abs(float(bare(row)["front_tire_l.camber_rate"]) - float(bare(row)["front_tire_r.camber_rate"])) < 1e-12
+assert len(seen) == 3
+
+# geometry that is tunable: what a scene sets up
+car = data / "tuning/car.veh"
+varied = ("ball_l",)
+grid = table("--kc", car, "--vary", "ball_l=0.775:0.795:2")
+for row in grid:
+    value = row["ball_l [m]"]
+    scene = work / "set.scene"
+    scene.write_text("gicscene: 1\nduration: 1\nstep: 0.01\n"
+                     f"parameters: {{ball_l: {value}, ball_r: {value}}}\n")
+    rows = [r for r in table("--kc", car, scene) if r["motion"] == "parallel" and abs(float(r["travel [m]"])) < 1e-15]
+    alone = {k: x for r in rows for k, x in bare(r).items()}
+    both = bare(table("--kc", car, scene, "--vary", f"ball_l={value}:{value}:1")[0])
+    close = 0
+    for name, x in bare(row).items():
+        if name.startswith("tire_") and name in alone and name in both and not name.endswith((".force", ".wheel_rate")):
+            for other in alone, both:
+                assert abs(float(x) - float(other[name])) <= 1e-10 * max(1, abs(float(x))), (name, x, other[name])
+            close += 1
+    assert close > 30, close
+    print(f"as a scene sets up: {close} numbers")
+
+# a run and a rig of a scene that sets geometric parameters: those of a file that has the numbers
+for i, more in enumerate(("", "base: fixed\ndriven: {spring_f_l: {sine: {amplitude: 0.005, frequency: 2, offset: 0.245}}}\n")):
+    run = "gicscene: 1\nduration: 0.1\nstep: 0.002\n" + more
+    scene, plain, one = work / "tuned.scene", work / "plain.scene", work / "tuned.veh"
+    scene.write_text(run + "parameters: {ball_l: 0.775, ball_r: 0.775, upper: 0.7}\n")
+    plain.write_text(run)
+    text = car.read_text().replace("../../../models", str(models.resolve()))
+    for old, new in ("ball_l: {value: 0.786511", "ball_l: {value: 0.775"), ("upper: {value: 0.708", "upper: {value: 0.7"):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    one.write_text(text)
+    a, b = table(car, scene), table(one, plain)
+    assert len(a) == len(b) == 51 and a[0].keys() == b[0].keys()
+    for x, y in zip(a, b):
+        for name in x:
+            p, q = float(x[name]), float(y[name])
+            assert abs(p - q) <= 1e-6 * max(1, abs(q)), (name, p, q)
+    print(f"scene {i}: {len(a[0])} columns")
+
+# keys of a manoeuvre
+car = data / "manoeuvre/linear.veh"
+varied = ("speed",)
+for i, row in enumerate(table("--manoeuvre", "step-steer", car, "ay=2", "--vary", "speed=15:25:2")):
+    same(f"manoeuvre {i}", row, set_up(table("--manoeuvre", "step-steer", car, "ay=2", f"speed={15 + 10 * i}")))
