@@ -35,19 +35,19 @@ run "$model" "$scene" --animate "$work/none.html" --with "$work/nothing.csv"
 check 'another run without them' exits 1
 check 'another run without them: why' says 'none of the curves of the page'
 
-# a second vehicle, whose results end earlier; what they do not tell; and who needs more
+# a second vehicle, whose results have a name that HTML means something by, and end earlier; what they do not tell; and who needs more
 later=$root/models/scenes/lane_change.scene
 sed 's/target: 10/target: 9/; s/^duration: 10/duration: 8/; s/preview: 0.55/preview: 0.8/' "$later" >"$work/later.scene"
-run -q "$root/models/hmmwv_vehicle.veh" "$work/later.scene" -o "$work/later.csv"
-run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/two.html" --with "$work/later.csv"
+run -q "$root/models/hmmwv_vehicle.veh" "$work/later.scene" -o "$work/<b>later&.csv"
+run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/two.html" --with "$work/<b>later&.csv"
 check 'a page of two vehicles' exits 0
-check 'the second vehicle is where its results put it' page ghost "$work/two.html" "$work/later.csv"
-run -q --engine gcp1 "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/gcp_two.html" --with "$work/later.csv"
-check 'it is with another engine' page ghost "$work/gcp_two.html" "$work/later.csv"
-sed '1s/spring_f_l.value/spring.value/' "$work/later.csv" >"$work/less.csv"
+check 'the second vehicle is where its results put it' page ghost "$work/two.html" "$work/<b>later&.csv"
+run -q --engine gcp1 "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/gcp_two.html" --with "$work/<b>later&.csv"
+check 'it is with another engine' page ghost "$work/gcp_two.html" "$work/<b>later&.csv"
+sed '1s/spring_f_l.value/spring.value/' "$work/<b>later&.csv" >"$work/less.csv"
 run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/less.html" --with "$work/less.csv"
 check 'what is not told is as at the start' grep -q '"untold":\["spring_f_l"\]' "$work/less.html"
-sed '1s/chassis\.z/body.z/' "$work/later.csv" >"$work/nowhere.csv"
+sed '1s/chassis\.z/body.z/' "$work/<b>later&.csv" >"$work/nowhere.csv"
 run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/curves.html" --with "$work/nowhere.csv"
 check 'results that do not tell where the base is' exits 0
 check 'results that do not tell where the base is: why' says 'a second vehicle needs outputs'
