@@ -148,9 +148,11 @@ const char *compiler_contents(Pool *pool, const char *const *words, int count);
 
 /* engine_cc.c: generated code, compiled or taken from the cache, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
+/* Flags with which vehicles in lanes have the bits that they have alone. */
+#define IN_LANES "-O3 -march=native -DGIC_BATCH_LIBM"
+
 /* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, after build_flags. NULL: not
  * available, *why says the reason. */
-#define IN_LANES "-O3 -march=native -DGIC_BATCH_LIBM" /* flags with which vehicles have the bits that they have alone */
 const Engine *engine_batch(Pool *pool, const Model *model, const EngineOptions *options, const Batch *batch,
                            const char *flags, const gic_batch_model **many, const char **why);
 /* code_memory.c: what emitted code of a model, its header called <model>.h if it has a name, takes in memory. Asks
