@@ -45,8 +45,7 @@ static const char usage[] =
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
     "  --derivatives    code with functions for derivatives of rates and outputs too; units of FMI with directional\n"
     "                   derivatives\n"
-    "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md), with all of "
-    "--derivatives\n"
+    "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md)\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -237,7 +236,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
 {
     Text c = {.pool = pool}, h = {.pool = pool};
     Style style = style_readable;
-    style.derivatives = options->derivatives || options->implicit;
+    style.derivatives = options->derivatives;
     style.implicit = options->implicit;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);

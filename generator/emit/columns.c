@@ -28,9 +28,10 @@ const RateColumns *columns_of(Generation *g)
 
 const RateColumns *weighed_columns(Generation *g)
 {
+    const bool before = g->weighing;
     g->weighing = true;
     const RateColumns *columns = columns_of(g);
-    g->weighing = false;
+    g->weighing = before;
     return columns;
 }
 
@@ -213,14 +214,25 @@ static void write_work(void *context, Text *out, int indent)
              room(columns->wheels->parts), g->upper);
 }
 
+/* Columns of both kinds have the same room. */
 static void write_lanes(void *context, Text *out, int indent)
 {
     Generation *g = context;
+    const RateColumns *weighed = g->style->implicit ? weighed_columns(g) : NULL;
+    const RateColumns *whole = has_tangents(g) ? columns_of(g) : NULL;
+    const int lanes = whole && weighed ? (whole->lanes > weighed->lanes ? whole->lanes : weighed->lanes)
+                                       : (whole ? whole : weighed)->lanes;
     line(out, indent,
          "enum { %s_COLUMN_LANES = %d }; /* columns that change accelerations or fast rates, and some more, for "
          "vectors of them "
          "*/",
-         g->upper, room((columns_of(g)->lanes + 7) / 8 * 8));
+         g->upper, room((lanes + 7) / 8 * 8));
+}
+
+static void write_weighed_lanes(void *context, Text *out, int indent)
+{
+    if (!has_tangents(context))
+        write_lanes(context, out, indent);
 }
 
 static void write_wheel_functions_along(void *context, Text *out, int indent)
@@ -293,6 +305,7 @@ const Insertions columns_class_points = {(const char *const[]){"columns_class.c.
 static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns calls", write_calls},
                                   {"columns lanes", write_lanes},
+                                  {"columns weighed lanes", write_weighed_lanes},
                                   {"columns wheels", write_wheel_functions_along},
                                   {"columns wheels call", write_call_wheels},
                                   {"columns rates", write_rates},

@@ -138,6 +138,8 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
 /* tangent.c: insertion points of its templates; functions for derivatives and what the header says about them, with
  * Style.derivatives. */
 extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
+/* Are there functions along directions? With Style.derivatives, and for implicit steps without weighed_columns(). */
+bool has_tangents(Generation *g);
 void write_tangent_code(void *context, Text *out, int indent);
 /* The blocks of tangents: of a class of subsets; of any other block. */
 const Block *class_tangent(const Generation *g, int class, bool still);
@@ -178,7 +180,7 @@ void write_elimination_solution(Generation *g, Text *out, int indent, int unknow
 
 /* implicit.c: what Style.implicit adds: sizes, members of the instance, functions and tables, the descriptor's end. */
 extern const Insertions implicit_points;
-void write_implicit_sizes(const Generation *g, Text *out, int indent);
+void write_implicit_sizes(Generation *g, Text *out, int indent);
 void write_implicit_members(void *context, Text *out, int indent);
 void write_implicit_code(void *context, Text *out, int indent);
 void write_implicit(void *context, Text *out, int indent);

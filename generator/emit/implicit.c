@@ -38,10 +38,13 @@ static int unknowns(const Generation *g)
     return count;
 }
 
-void write_implicit_sizes(const Generation *g, Text *out, int indent)
+void write_implicit_sizes(Generation *g, Text *out, int indent)
 {
-    if (g->style->implicit)
-        line(out, indent, "%s_IMPLICIT_UNKNOWNS = %d,", g->upper, unknowns(g));
+    if (!g->style->implicit)
+        return;
+    line(out, indent, "%s_IMPLICIT_UNKNOWNS = %d,", g->upper, unknowns(g));
+    if (!has_tangents(g))
+        line(out, indent, "%s_JACOBIAN_COLUMNS = %d, /* of implicit steps */", g->upper, jacobian_columns(g));
 }
 
 void write_implicit_members(void *context, Text *out, int indent)

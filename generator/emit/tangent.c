@@ -431,6 +431,12 @@ static void write_friction_change(void *context, Text *out, int indent)
         expand(g, out, "tangent_friction.c.in");
 }
 
+static void write_slopes(void *context, Text *out, int indent)
+{
+    (void)indent;
+    expand(context, out, "tangent_slopes.c.in");
+}
+
 static void write_derived_along(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -493,7 +499,8 @@ static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns}, 
 const Insertions tangent_class_points = {
     (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
 
-static const Insertion tangent_point[] = {{"table slope", write_table_slope},
+static const Insertion tangent_point[] = {{"tangent slopes", write_slopes},
+                                          {"table slope", write_table_slope},
                                           {"road change", write_road_change},
                                           {"friction change", write_friction_change},
                                           {"class tangents", write_class_tangents},
@@ -525,17 +532,25 @@ static const Insertion tangent_point[] = {{"table slope", write_table_slope},
                                           {NULL, NULL}};
 
 const Insertions tangent_points = {
-    (const char *const[]){"tangent.c.in", "tangent_table.c.in", "tangent_road.c.in", "tangent_friction.c.in",
-                          "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in", "tangent_fixed.c.in",
-                          "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in", NULL},
+    (const char *const[]){"tangent.c.in", "tangent_slopes.c.in", "tangent_table.c.in", "tangent_road.c.in",
+                          "tangent_friction.c.in", "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in",
+                          "tangent_fixed.c.in", "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in",
+                          NULL},
     tangent_point, NULL};
+
+bool has_tangents(Generation *g)
+{
+    return g->style->derivatives || (g->style->implicit && !weighed_columns(g));
+}
 
 void write_tangent_code(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (g->style->derivatives)
+    if (has_tangents(g))
         expand(g, out, "tangent.c.in");
+    else if (g->style->implicit)
+        write_slopes(g, out, indent);
 }
 
 /* ---- header -------------------------------------------------------------------------------------------------- */
@@ -562,6 +577,6 @@ void write_tangent_header(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (g->style->derivatives)
+    if (has_tangents(g))
         template_expand(g->pool, out, g->templates, "tangent.h.in", g->model->name, NULL, &tangent_header_points, g);
 }

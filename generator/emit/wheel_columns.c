@@ -55,7 +55,8 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     Generation *g = context;
     const Wheels *wheels = g->formulation->wheels;
     (void)indent;
-    for (int c = 0; c < wheels->classes && !g->weighing; ++c) { /* one function serves both */
+    const bool written = g->weighing && has_tangents(g); /* one function serves both */
+    for (int c = 0; c < wheels->classes && !written; ++c) {
         const WheelClass *class = &wheels->class[c];
         Expansion x = {.g = g, .columns = &columns_of(g)->wheels->class[c]};
         Text body = {.pool = g->pool};

@@ -91,7 +91,7 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
                                                       options->solve, options->recovery, options->facts);
     formulation_validate(pool, formulation, options->validation);
     Style style = style_direct;
-    style.derivatives = style.implicit = options->implicit;
+    style.implicit = options->implicit;
     generate(pool, formulation, &style, NULL, NULL, &c, &h);
     templates_check(pool, NULL, (const Insertions *const[]){&jit_points, NULL});
     template_expand(pool, &text, NULL, "jit.c.in", model->name, NULL, &jit_points, &sources);

@@ -254,6 +254,16 @@ int main(void)
     return 0;
 }
 END
+# without the functions of --derivatives there is less code, and the same bits
+mkdir -p both && "$gicgen" --implicit --derivatives "$models/hmmwv_vehicle.veh" -o both/hmmwv_vehicle.c &&
+    sed -e 's/%.9g/%a/' drive.c >bits.c && ! grep -q 'hmmwv_vehicle_tangent\|hmmwv_vehicle_jacobian(' hmmwv_vehicle.c &&
+    grep -q 'int hmmwv_vehicle_jacobian(' both/hmmwv_vehicle.c
+verdict $? '--implicit by itself has no functions for derivatives'
+for way in . both; do
+    gcc -std=c99 -w -I"$way" -I. bits.c "$way"/hmmwv_vehicle.c gic_runtime.c -o bits -lm >said 2>&1 && ./bits >"$way/said.bits" 2>&1
+done
+[ -s both/said.bits ] && cmp said.bits both/said.bits >said 2>&1
+verdict $? "the same bits with --derivatives and without: $(cat both/said.bits)"
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror'
 while read -r how; do
     # shellcheck disable=SC2086  # lists of words
@@ -414,7 +424,7 @@ int main(void)
     return !(how->mass_count > 0 && worst < 1e-8);
 }
 END
-"$gicgen" --implicit rest.veh -o rest.c && gcc -std=c99 -w -I. rest_main.c rest.c gic_runtime.c -o rest -lm >said 2>&1 && ./rest >said 2>&1
+"$gicgen" --implicit --derivatives rest.veh -o rest.c && gcc -std=c99 -w -I. rest_main.c rest.c gic_runtime.c -o rest -lm >said 2>&1 && ./rest >said 2>&1
 verdict $? "derivatives of forces: $(tail -n 1 said)"
 
 check 'no heap' sh -c '! nm drive | grep -q " U .*\(malloc\|calloc\|realloc\)"'
