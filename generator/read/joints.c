@@ -416,6 +416,7 @@ static void coupler_read(Reader *reader, const Entry *entry, Joint *joint)
                   "write a formula that is smooth where the model is drawn, or give the coordinate another `design`",
                   "%s has no finite derivative by '%s' at the design, so that nothing could move there", what,
                   model->coordinate[coordinate].name);
+    coupler_bends(model, law, item, what);
     tuning_set(model->tuning, &joint->offset, &tuned, 1);
     tune_parameters(model, law);
 }

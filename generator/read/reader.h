@@ -265,6 +265,8 @@ void ports_read(Reader *reader, const Item *map);
 void joints_read(Reader *reader, const Item *map);
 /* Formulas of gears and couplers, once all names are known that formulas may contain. */
 void couplers_read(Reader *reader, const Item *map);
+/* coupler_bends.c: warn where the formula of a coupler, `what`, jumps or bends within the range of a coordinate. */
+void coupler_bends(const Model *model, const Law *law, const Item *item, const char *what);
 void coordinates_read(Reader *reader, const Item *map);
 void inputs_read(Reader *reader, const Item *map);
 void forces_read(Reader *reader, const Item *map);

@@ -289,5 +289,23 @@ for formula in 'exp(20 * x)' 'tan(x)' 'asin(x)' '"atan2(x, 0.5)"' '1 / (x + 1.5)
     verdict $? "a steep formula: $formula"
 done
 
+# formulas that jump or bend within the range: a warning with the place; steep, even constant ones that do not: none
+warned() {
+    sed "s|log(x + 1)|$2|" log.veh >bends.veh
+    "$gicgen" bends.veh -o bends.c >out 2>said
+    if [ "$1" ]; then grep -q "bends.veh:10:6[78]: warning: value of joint 'follows' $1, inside its range .-2, 2." said; else ! grep -q 'jumps\|bends at' said; fi
+    verdict $? "${1:-neither jumps nor bends}: $2"
+}
+warned 'jumps at x = 0' '"atan2(x, 0)"'
+warned 'jumps at x = -1.571' '"atan2(sin(2 * x), cos(2 * x))"'
+warned 'bends at x = 1' 'sqrt((x - 1)^2)'
+warned 'bends at x = 0.5' '"(x^2 - x + 0.25)^0.5"'
+warned '' 'x^3'
+warned '' 'sin(x)^2 + cos(x)^2 + x'
+warned '' 'tanh(1000 * x)'
+warned '' '"atan2(x, 2)"'
+warned '' '(x + 1)^1.5'
+warned '' '1000 + 1e-3 * sin(100 * x)'
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
