@@ -210,6 +210,21 @@ static Request request_of(const Writing *w)
                      .quiet = s->quiet};
 }
 
+/* The results of another run, which --with draws: rows in the order of time. */
+static const CsvTable *other_results(Pool *pool, const char *path)
+{
+    const CsvTable *table = csv_read(pool, path, "time [s],chassis.z [m]", NULL);
+    if (strcmp(table->name[0], "time") != 0)
+        diag_fail(csv_name_place(table, 0), "give a file that gicrun wrote by -o",
+                  "results of a run begin with a column `time [s]`, not with '%s'", table->name[0]);
+    csv_check_unit(pool, table, 0, "s");
+    for (int r = 1; r < table->rows; ++r)
+        if (table->value[r * table->columns] < table->value[(r - 1) * table->columns])
+            diag_fail(csv_place(table, r), "give a file that gicrun wrote by -o", "time goes back from %.6g to %.6g s",
+                      table->value[(r - 1) * table->columns], table->value[r * table->columns]);
+    return table;
+}
+
 /* The reports on the static equilibrium. */
 static void report_rest(const Writing *w, const Model *model, const Scene *scene, const Request *request)
 {
@@ -280,7 +295,7 @@ static void write_study(void *context)
     if (scene && model->tuning && !request.varied && (w->kind == KC || w->kind == SHEET))
         model = model_read_fixed(pool, model, scene->parameter);
     if (request.with)
-        request.other = csv_read(pool, request.with, "time [s],chassis.z [m]", NULL);
+        request.other = other_results(pool, request.with);
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);

@@ -406,6 +406,30 @@ static void check_end(const Fit *fit, End end, size_t untold)
                   "the least sum of squares was not found: after %d steps at most it still moves", MOST_STEPS);
 }
 
+/* Warn of columns that the model does not follow at all: what is left is far more than what a straight line through
+ * their mean would leave. Some place is always found, at the end of where a formula has a value for one. */
+static void check_fit(const Fit *fit)
+{
+    for (int c = 0; c < fit->columns; ++c) {
+        double mean = 0, spread = 0, size = 0, left = 0;
+        for (int r = 0; r < fit->table->rows; ++r)
+            mean += measured(fit, r, fit->column[c]) / fit->table->rows;
+        for (int r = 0; r < fit->table->rows; ++r) {
+            const double number = measured(fit, r, fit->column[c]), rest = fit->rest[r * fit->columns + c];
+            spread += (number - mean) * (number - mean);
+            size += number * number;
+            left += rest * rest;
+        }
+        if (left > 4 * spread && left > 0.01 * size && left > 1e-24 * fit->table->rows)
+            diag_warn(
+                csv_name_place(fit->table, fit->column[c]),
+                "look at its unit, at the model's output, and at what is looked for; start nearer",
+                "the model does not follow '%s': it leaves %.3g (rms), the measurements differ by %.3g from their "
+                "mean",
+                fit->table->name[fit->column[c]], sqrt(left / fit->table->rows), sqrt(spread / fit->table->rows));
+    }
+}
+
 void identify_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Fit fit = open(pool, model, scene, request);
@@ -426,6 +450,7 @@ void identify_report(Pool *pool, const Model *model, const Scene *scene, const R
     gsl_matrix_free(covariance);
     gsl_vector_free(x);
     check_end(&fit, end, untold);
+    check_fit(&fit);
     if (request->results)
         write_csv(&fit, found, request->results);
     if (!request->results || strcmp(request->results, "-") != 0)

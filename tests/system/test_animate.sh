@@ -34,6 +34,13 @@ printf 'time [s],nothing\n0,1\n1,2\n' >"$work/nothing.csv"
 run "$model" "$scene" --animate "$work/none.html" --with "$work/nothing.csv"
 check 'another run without them' exits 1
 check 'another run without them: why' says 'none of the curves of the page'
+cut -d, -f2- "$work/run.csv" >"$work/timeless.csv"
+run "$model" "$scene" --animate "$work/none.html" --with "$work/timeless.csv"
+check 'another run without time' exits 1
+check 'another run without time: why' says "timeless.csv:1:1: error: results of a run begin with a column"
+sed '3s/^[^,]*/99/' "$work/run.csv" >"$work/back.csv"
+run "$model" "$scene" --animate "$work/none.html" --with "$work/back.csv"
+check 'time goes back' says 'back.csv:4:1: error: time goes back from 99 to'
 
 # a second vehicle, whose results have a name that HTML means something by, and end earlier; what they do not tell; and who needs more
 later=$root/models/scenes/lane_change.scene

@@ -19,6 +19,13 @@ run --identify "$work/m.csv" "$spring" "$start" parameter/k -o "$work/b.csv"
 check 'the same bytes again' cmp "$work/a.csv" "$work/b.csv"
 check 'columns' grep -qx 'variable,unit,start,value,deviation,low,high' "$work/a.csv"
 
+# measurements that the model cannot follow: it comes near somewhere, and that is said; those of its own run: nothing is
+run --identify "$work/m.csv" "$spring" "$start" parameter/k
+check 'no warning where the model follows' test -z "$(grep 'does not follow' "$work/err")"
+awk -F, -v OFS=, 'NR > 1 { $2 = 1000 } { print }' "$work/m.csv" >"$work/far.csv"
+run --identify "$work/far.csv" "$spring" "$start" parameter/k
+check 'a warning where it does not' says "far.csv:1:10: warning: the model does not follow 'cart.x'"
+
 # ---- what is refused
 ends() { exits "$1" && says "$2" && [ ! -e "$work/no.csv" ]; }
 mistake() { # STATUS TEXT MEASURED WORD...: said, and no file is left
