@@ -138,35 +138,6 @@ static void write_batch_calls(void *context, Text *out, int indent)
     }
 }
 
-/* Lane by lane between a vehicle of its own, `one`, and the block. */
-static void write_exchange(const Generation *g, Text *out, int indent, bool load)
-{
-    static const struct {
-        const char *member, *count;
-    } array[] = {{"state", "STATES"}, {"input", "INPUTS"}, {"output", "OUTPUTS"},  {"parameter", "PARAMETERS"},
-                 {"port", "PORTS"},   {"rate", "STATES"},  {"history", "HISTORY"}, {"derived", "DERIVED"}};
-    for (size_t a = 0; a < sizeof array / sizeof *array; ++a) {
-        const char *member = array[a].member;
-        if (!strcmp(member, "derived") && !g->model->tuning)
-            continue;
-        if (!strcmp(member, "history"))
-            line(out, indent, "for (i = 0; i < 2 * %s_STATES; ++i)", g->upper);
-        else
-            line(out, indent, "for (i = 0; i < %s_%s; ++i)", g->upper, array[a].count);
-        if (load)
-            line(out, indent + 4, "block->%s[i][l] = one->%s[i];", member, member);
-        else
-            line(out, indent + 4, "one->%s[i] = block->%s[i][l];", member, member);
-    }
-    line(out, indent, "for (i = 0; i < %s_DISCRETES; ++i)", g->upper);
-    if (load)
-        line(out, indent + 4, "block->discrete[i][l] = one->discrete[i];");
-    else
-        line(out, indent + 4, "one->discrete[i] = (int32_t)block->discrete[i][l];");
-    if (g->formulation->wheels)
-        write_batch_fast_exchange(g, out, indent, load);
-}
-
 /* True if a geometric parameter has changed since set-up. */
 static void write_batch_tuned(void *context, Text *out, int indent)
 {
@@ -248,14 +219,6 @@ static void write_integrate(void *context, Text *out, int indent)
     write_template(context, out, "batch_integrate.c.in");
 }
 
-static void write_work(void *context, Text *out, int indent)
-{
-    BatchGeneration *b = context;
-    (void)indent;
-    if (!is_fast(b)) /* else the header has it */
-        write_template(b, out, "batch_work.c.in");
-}
-
 static void write_fast(void *context, Text *out, int indent)
 {
     BatchGeneration *b = context;
@@ -335,12 +298,12 @@ static void write_blame(void *context, Text *out, int indent)
 
 static void write_load(void *context, Text *out, int indent)
 {
-    write_exchange(context, out, indent, true);
+    write_batch_exchange(context, out, indent, true);
 }
 
 static void write_store(void *context, Text *out, int indent)
 {
-    write_exchange(context, out, indent, false);
+    write_batch_exchange(context, out, indent, false);
 }
 
 static void write_hash(void *context, Text *out, int indent)
@@ -359,7 +322,6 @@ static const Insertion batch_point[] = {{"banner", write_batch_banner},
                                         {"unwind", write_unwind},
                                         {"base", write_base},
                                         {"road", write_road_lookup},
-                                        {"work", write_work},
                                         {"fast", write_fast},
                                         {"recover", write_recover},
                                         {"turn wheels", write_turn_wheels},
@@ -379,7 +341,7 @@ static const Insertion batch_point[] = {{"banner", write_batch_banner},
 
 static const Insertions batch_points = {(const char *const[]){"batch.c.in", "batch_integrate.c.in", "batch_free.c.in",
                                                               "batch_fixed.c.in", "batch_road.c.in", "batch_about.c.in",
-                                                              "batch_work.c.in", "batch_steps.c.in", "batch_runs.c.in",
+                                                              "batch_steps.c.in", "batch_runs.c.in",
                                                               "batch_fast_steps.c.in", "batch_fast_runs.c.in", NULL},
                                         batch_point, &code_points};
 
@@ -408,37 +370,37 @@ static void write_sizes(void *context, Text *out, int indent)
 static void write_work_type(void *context, Text *out, int indent);
 static void write_dual_step(void *context, Text *out, int indent);
 
-static void write_fast_members(void *context, Text *out, int indent)
+static void write_members(void *context, Text *out, int indent)
 {
-    BatchGeneration *b = context;
-    if (is_fast(b))
-        write_batch_fast_members(&b->g, out, indent);
+    const BatchGeneration *b = context;
+    write_batch_members(&b->g, out, indent);
 }
 
 static const Insertion header_point[] = {
     {"banner", write_batch_banner}, {"guard", write_guard},     {"include", write_include},
     {"sizes", write_sizes},         {"derived", write_derived}, {"work", write_work_type},
-    {"fast", write_fast_members},   {"dual", write_dual_step},  {NULL, NULL}};
+    {"members", write_members},     {"dual", write_dual_step},  {NULL, NULL}};
 
 static const Insertions header_points = {
-    (const char *const[]){"batch.h.in", "batch_fast.h.in", "batch_dual.h.in", NULL}, header_point, NULL};
+    (const char *const[]){"batch.h.in", "batch_work.h.in", "batch_dual.h.in", NULL}, header_point, NULL};
 
-static void write_fast_template(BatchGeneration *b, Text *out, const char *name)
+static void write_header_template(BatchGeneration *b, Text *out, const char *name)
 {
-    if (is_fast(b))
-        template_expand(b->g.pool, out, b->g.templates, name, b->g.model->name, NULL, &header_points, b);
+    template_expand(b->g.pool, out, b->g.templates, name, b->g.model->name, NULL, &header_points, b);
 }
 
 static void write_work_type(void *context, Text *out, int indent)
 {
     (void)indent;
-    write_fast_template(context, out, "batch_fast.h.in");
+    write_header_template(context, out, "batch_work.h.in");
 }
 
 static void write_dual_step(void *context, Text *out, int indent)
 {
+    BatchGeneration *b = context;
     (void)indent;
-    write_fast_template(context, out, "batch_dual.h.in");
+    if (is_fast(b))
+        write_header_template(b, out, "batch_dual.h.in");
 }
 
 static void check_templates(Pool *pool, const char *templates)

@@ -6,7 +6,6 @@
 #include "emit/emit_private.h"
 #include "expression/expression.h"
 #include "model/model.h"
-#include "model/powertrain_numbers.h"
 #include "vehicle/vehicle.h"
 #include "vehicle/wheel.h"
 
@@ -180,66 +179,4 @@ const Insertions batch_fast_points = {(const char *const[]){"batch_fast.c.in", "
 void write_batch_fast(Generation *g, Text *out)
 {
     template_expand(g->pool, out, g->templates, "batch_fast.c.in", g->model->name, NULL, &batch_fast_points, g);
-}
-
-void write_batch_fast_members(void *context, Text *out, int indent)
-{
-    const Generation *g = context;
-    const char *name = g->model->name, *upper = g->upper;
-    line(out, indent, "%s_lane mean[%s_STATES - %s_SLOW]; /* of the rates of the fast states, of steady steps */", name,
-         upper, upper);
-    line(out, indent, "%s_lane link[3 * %s_LINKS]; /* what moves the fast states, at the last three slow steps */",
-         name, upper);
-    if (wheels_roll(g))
-        line(out, indent, "%s_lane grip[%s_GRIP * %s_ROLLING]; /* what the wheels do */", name, upper, upper);
-    if (g->model->powertrain)
-        line(out, indent, "%s_lane watch[%d]; /* of the powertrain */", name, WATCH_NUMBERS);
-    if (g->formulation->contacts)
-        line(out, indent, "%s_lane touch[2 * %s_CONTACTS]; /* how near contacts were */", name, upper);
-    line(out, indent, "%s_lane recovered_at[2 * %s_COORDINATE_ROOM + 4]; /* where the recovery in `work` was */", name,
-         upper);
-    line(out, indent, "%s_mask recovered; /* lanes in which there is one */", name);
-    line(out, indent, "%s_work work;", name);
-}
-
-/* An array of a block and of one vehicle, and how many numbers it has. */
-typedef struct Exchange {
-    bool used;
-    const char *block, *one, *factor, *size;
-} Exchange;
-
-void write_batch_fast_exchange(const Generation *g, Text *out, int indent, bool load)
-{
-    const char *upper = g->upper;
-    const Exchange array[] = {{true, "link", "link", "3 * ", "_LINKS"},
-                              {wheels_roll(g), "grip", "grip", "", pool_print(g->pool, "_GRIP * %s_ROLLING", upper)},
-                              {g->formulation->contacts, "touch", "touch", "2 * ", "_CONTACTS"},
-                              {true, "recovered_at", "recovered_at", "4 + 2 * ", "_COORDINATE_ROOM"},
-                              {true, "work.x", "x", "", "_COORDINATES"},
-                              {true, "work.xd", "xd", "", "_COORDINATES"},
-                              {true, "work.motion", "motion", "", "_MOTION_ROOM"},
-                              {true, "work.inertia", "inertia", "", "_INERTIA_ROOM"},
-                              {true, "work.multiplier", "multiplier", "", "_MULTIPLIER_ROOM"}};
-    line(out, indent, "for (i = 0; i < %s_STATES - %s_SLOW; ++i)", upper, upper);
-    if (load)
-        line(out, indent + 4, "block->mean[i][l] = one->history[2 * %s_STATES + i];", upper);
-    else
-        line(out, indent + 4, "one->history[2 * %s_STATES + i] = block->mean[i][l];", upper);
-    if (g->model->powertrain) {
-        line(out, indent, "for (i = 0; i < %d; ++i)", WATCH_NUMBERS);
-        line(out, indent + 4, load ? "block->watch[i][l] = one->watch[i];" : "one->watch[i] = block->watch[i][l];");
-    }
-    for (size_t a = 0; a < sizeof array / sizeof *array; ++a) {
-        if (!array[a].used)
-            continue;
-        line(out, indent, "for (i = 0; i < %s%s%s; ++i)", array[a].factor, upper, array[a].size);
-        if (load)
-            line(out, indent + 4, "block->%s[i][l] = one->%s[i];", array[a].block, array[a].one);
-        else
-            line(out, indent + 4, "one->%s[i] = block->%s[i][l];", array[a].one, array[a].block);
-    }
-    if (load)
-        line(out, indent, "block->recovered[l] = -(one->recovered == 1 + one->head.flip);");
-    else
-        line(out, indent, "one->recovered = block->recovered[l] != 0;");
 }

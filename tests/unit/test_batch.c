@@ -225,10 +225,65 @@ static void test_quarter_car(void **state)
     }
 }
 
+/* Vehicles that look for contacts within steps, or whose work is bounded, fall beside others. */
+static void test_apart(void **state)
+{
+    static const int32_t locate[] = {0, 1, 2, 0, 1, 0, 2, 1}, most[] = {0, 0, 0, 100, 60, -1, 0, 1};
+    static hmmwv car[HMMWV_VEHICLES], copy;
+    static hmmwv_batch batch;
+    (void)state;
+    assert_int_equal(hmmwv_batch_setup(&batch), GIC_OK);
+    for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+        begin(&car[i], i);
+        car[i].state[HMMWV_STATE_R_Z] += 0.25;
+        car[i].head.locate = locate[i];
+        car[i].head.most = most[i];
+        car[i].head.road = i == 6 ? &broken.head : i % 2 ? &whole.head : NULL;
+        steps(&car[i], i % 4 == 2 ? 1 : 0, GIC_AB3);
+        hmmwv_batch_load(&batch, i, &car[i]);
+    }
+    for (int round = 0; round < 100; ++round) {
+        const gic_method method = round / 20 == 1 ? GIC_RK4 : GIC_AB3;
+        const int count = 1 + round % 3;
+        (void)hmmwv_batch_step(&batch, 0.005, method, count);
+        for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+            steps(&car[i], count, method);
+            assert_same(&batch, i, &car[i]);
+        }
+        if (round % 10)
+            continue;
+        (void)hmmwv_batch_outputs(&batch);
+        for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+            copy = car[i];
+            if (car[i].head.status != GIC_OK)
+                continue;
+            assert_int_equal(hmmwv_outputs(&copy), GIC_OK);
+            for (int32_t o = 0; o < HMMWV_OUTPUTS; ++o)
+                assert_true(hmmwv_batch_output(&batch, i, o) == copy.output[o]);
+            ++car[i].head.rhs_count; /* looking leaves no other trace in the batch */
+            memcpy(car[i].rate, copy.rate, sizeof copy.rate);
+            assert_same(&batch, i, &car[i]);
+        }
+    }
+    for (int32_t i = 0; i < HMMWV_VEHICLES; ++i) {
+        const int32_t status = most[i] == 1 || most[i] < 0 ? GIC_ERROR_ARGUMENT : i == 6 ? GIC_ERROR_ROAD : GIC_OK;
+        assert_int_equal(hmmwv_batch_status(&batch, i), status);
+        hmmwv_batch_store(&batch, i, &copy);
+        assert_int_equal(copy.head.contact_count, car[i].head.contact_count);
+        assert_int_equal(copy.head.passed_count, car[i].head.passed_count);
+        assert_int_equal(copy.head.look_count, car[i].head.look_count);
+        if (locate[i] == 0 || status == GIC_ERROR_ARGUMENT)
+            assert_int_equal(copy.head.contact_count, 0);
+        else
+            assert_true(copy.head.contact_count + copy.head.passed_count >= 4); /* each wheel lands */
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits),   cmocka_unit_test(test_failures),
                                        cmocka_unit_test(test_growth), cmocka_unit_test(test_places),
-                                       cmocka_unit_test(test_inputs), cmocka_unit_test(test_quarter_car)};
+                                       cmocka_unit_test(test_inputs), cmocka_unit_test(test_quarter_car),
+                                       cmocka_unit_test(test_apart)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
