@@ -32,9 +32,9 @@ static const char *against_lanes(const Scene *scene, const Model *model)
     if (scene->driver)
         return "a driver drives one vehicle";
     if (scene->ratio > 1 && model->fast_states)
-        return "they know no fast steps yet";
+        return "fast steps are made run by run";
     if (scene->locate)
-        return "they go over contacts";
+        return "contacts within steps are looked for run by run";
     return NULL;
 }
 
