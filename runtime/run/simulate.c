@@ -10,6 +10,7 @@
 #include "run/dead_centre.h"
 #include "run/engines.h"
 #include "run/knot.h"
+#include "run/last_good.h"
 #include "run/run.h"
 #include "run/sampling.h"
 #include "run/scene_events.h"
@@ -50,6 +51,7 @@ typedef struct Run {
     Animation *animation; /* NULL: none */
     StepWatch *watch;     /* NULL: none */
     SceneEvents *events;  /* NULL: the scene has no conditions */
+    LastGood *good;
     Outcome outcome;
     bool ended;             /* by `until` */
     int64_t samples, every; /* output times so far; one in `every` goes into the picture */
@@ -159,7 +161,7 @@ static void keep_row(const Run *run, RunColumns *kept)
         kept->room = room;
     }
     double *value = kept->value + kept->columns * kept->rows++;
-    *value++ = gic_time(run->self);
+    *value++ = run->recorded;
     for (int i = 0; i < scene->columns; ++i)
         *value++ = scene_value(run->model, run->copy, scene->column[i]);
     for (int i = 0; scene_marks(scene) && i < scene->actions->count; ++i)
@@ -248,19 +250,20 @@ static int compute_outputs(Run *run)
 
 /* Update what is known about the vehicle (tipped over, off the road, at rest) where the base's state is directly
  * available. */
-static void look_at_vehicle(Run *run)
+static void look_at_vehicle(Run *run, const gic_head *at)
 {
     if (run->model->free_base && run->model->wheel_count && !run->engine->leave)
-        outcome_look(&run->outcome, run->model, run->scene->road, gic_time(run->self),
-                     instance_array(run->self, run->model->state_offset));
+        outcome_look(&run->outcome, run->model, run->scene->road, gic_time(at),
+                     instance_array((gic_head *)at, run->model->state_offset));
 }
 
-static void record(Run *run)
+/* A row: the time of an instance, and the outputs of the copy. */
+static void record(Run *run, const gic_head *at)
 {
     const Scene *scene = run->scene;
-    const double time = gic_time(run->self);
+    const double time = gic_time(at);
     run->recorded = time;
-    look_at_vehicle(run);
+    look_at_vehicle(run, at);
     if (run->request->columns)
         keep_row(run, run->request->columns);
     if (run->csv.file) {
@@ -630,6 +633,7 @@ static int advance(Run *run, double end)
              i < BATCH && status == GIC_OK && !run->ended && (run->variable ? gic_time(run->self) < end : left > 0);
              ++i) {
             const int64_t work = work_of(run->self);
+            last_good_keep(run->good, run->model, run->self);
             status = run->events
                          ? scene_events_step(run->events, run->model, run->variable, run->self, end, &run->ended)
                          : scene_step(run->engine, run->model, run->scene, run->variable, run->self, end);
@@ -648,7 +652,7 @@ static int advance(Run *run, double end)
 /* Returns the status that ended the run; *failed: the instance that has it. */
 static int run_all(Run *run, const gic_head **failed)
 {
-    record(run);
+    record(run, run->self);
     for (int64_t k = 0; k < run->scene->outputs && !run->ended; ++k) {
         int status = advance(run, (double)(k + 1) * run->scene->output_step);
         *failed = run->self;
@@ -666,33 +670,29 @@ static int run_all(Run *run, const gic_head **failed)
             *failed = run->self;
             return next;
         }
-        record(run);
+        record(run, run->self);
     }
     return GIC_OK;
 }
 
-/* Record the last good state if it is not at an output time; it stays in the copy. If it has no outputs with the
- * present inputs, the copy keeps the last output time. */
-static void record_last(Run *run)
+/* Text about the end of the run, and the remedy. The last good state is recorded if it is not at an output time, and
+ * stays in the copy; *end: its time. */
+static const char *explain(Run *run, const Model *mechanism, const gic_head *failed, int status, const char **remedy,
+                           double *end)
 {
-    gic_head *before = instance_new(run->pool, run->engine);
-    memcpy(before, run->copy, run->model->size);
-    memcpy(run->copy, run->self, run->model->size);
-    run->copy->grown = -1;
-    if (run->model->outputs(run->copy) != GIC_OK)
-        memcpy(run->copy, before, run->model->size);
-    else if (gic_time(run->copy) > run->recorded)
-        record(run);
-}
-
-/* Text about the end of the run, and the remedy. */
-static const char *explain(Run *run, const Model *mechanism, const gic_head *failed, int status, const char **remedy)
-{
-    const char *said = instance_status(run->pool, run->engine->code, failed, status);
+    const gic_model *code = run->engine->code;
+    const char *said = instance_status(run->pool, code, failed, status);
     const int subset = failed->subset;
+    const double last = gic_time(failed);
     *remedy = run_remedy(status);
-    if (!run->scene->rest)
-        record_last(run);
+    *end = last;
+    if (last_good_outputs(run->good, run->model, run->self, failed, run->copy)) {
+        *end = gic_time(run->copy);
+        if (*end < last)
+            said = instance_status(run->pool, code, run->copy, status);
+        if (*end > run->recorded)
+            record(run, run->copy);
+    }
     if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)
         return said;
     const DeadCentre found = dead_centre_find(run->pool, mechanism, run->model, run->copy, subset);
@@ -726,6 +726,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     if (status != GIC_OK)
         diag_fail(at, remedy_at_start(status), "the run can't start: %s",
                   instance_status(pool, model, run.copy, status));
+    run.good = last_good_new(pool, engine);
     run.outcome = outcome_new();
     run.events = scene_events_new(pool, engine, scene, run.self, &status);
     if (status != GIC_OK)
@@ -742,7 +743,9 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     run.looked = clock_seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;
     status = run_all(&run, &failed);
-    const char *remedy = NULL, *end = status != GIC_OK ? explain(&run, mechanism, failed, status, &remedy) : NULL;
+    double last = 0; /* the time of the last good state */
+    const char *remedy = NULL,
+               *end = status != GIC_OK ? explain(&run, mechanism, failed, status, &remedy, &last) : NULL;
     engine_rest(engine);
     clear_progress(&run);
     if (request->results)
@@ -759,7 +762,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     if (request->picture)
         plot_write(pool, &run.plot, request->picture);
     if (end)
-        diag_fail(at, remedy, "the run ends at t = %.6g s: %s", gic_time(run.self), end);
+        diag_fail(at, remedy, "the run ends at t = %.6g s: %s", last, end);
     const char *finding = run.watch && !run.interrupted ? step_watch_judge(run.watch, &remedy) : NULL;
     if (finding)
         diag_fail(at, remedy, "%s", finding);

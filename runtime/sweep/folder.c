@@ -143,6 +143,18 @@ static void add_missing(Missing *missing, int part, int64_t runs)
     missing->from = missing->to = part;
 }
 
+/* How to make them: by the script, where the sweep was planned with one. */
+static const char *missing_remedy(Pool *pool, const Missing *missing, const char *folder, int parts)
+{
+    const char *one = missing->parts > 1 ? "I" : missing->list.s;
+    const char *which = missing->parts > 1 ? pool_print(pool, ", I = %s", missing->list.s) : "";
+    if (!access(pool_print(pool, "%s/job.sh", folder), F_OK))
+        return pool_print(pool, "start them again: sbatch --array=%s %s/job.sh, or gicsweep --shard %s/%d%s",
+                          missing->list.s, folder, one, parts, which);
+    return pool_print(pool, "start them again: gicsweep --shard %s/%d -o %s with the same model, scene and options%s",
+                      one, parts, folder, which);
+}
+
 void folder_merge(Pool *pool, const char *folder, const char *results, bool quiet)
 {
     const FolderPlan plan = folder_plan_read(pool, folder);
@@ -173,9 +185,7 @@ void folder_merge(Pool *pool, const char *folder, const char *results, bool quie
     if (missing.parts) {
         csv_abandon(&csv);
         put_range(&missing);
-        diag_fail(program_place(),
-                  pool_print(pool, "start them again: sbatch --array=%s %s/job.sh, or gicsweep --shard I/%d",
-                             missing.list.s, folder, plan.parts),
+        diag_fail(program_place(), missing_remedy(pool, &missing, folder, plan.parts),
                   "%lld of %lld runs in %s are missing, in %s %s of %d", (long long)missing.runs, (long long)plan.runs,
                   folder, missing.parts > 1 ? "parts" : "part", missing.list.s, plan.parts);
     }

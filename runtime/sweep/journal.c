@@ -11,6 +11,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -73,8 +74,16 @@ static void take_line(Journal *journal, const char *line)
         note(journal, &(RunResult){run, status, end + 1, NULL});
 }
 
-static _Noreturn void refuse_foreign(const Journal *journal)
+/* The file, which begins with text[size], should begin with the line `first`. */
+static _Noreturn void refuse_foreign(const Journal *journal, const char *text, size_t size, const char *first)
 {
+    static const char part[] = " part "; /* as folder_key() has it */
+    const char *wanted = strstr(first, part), *end = memchr(text, '\n', size);
+    const size_t same = wanted ? (size_t)(wanted - first) + strlen(part) : 0;
+    if (wanted && end && (size_t)(end - text) > same && !memcmp(text, first, same))
+        diag_fail(program_place(), "remove it: its runs are made again by the same command",
+                  "%s is the journal of part %.*s of this sweep, not of part %.*s", journal->path,
+                  (int)(end - text - (ptrdiff_t)same), text + same, (int)strcspn(first + same, "\n"), first + same);
     diag_fail(
         program_place(), "remove it, or choose another place with -o",
         "%s is of another sweep: another model, scene, file that they name, range, compiler, processor or program",
@@ -88,7 +97,7 @@ static size_t take(Journal *journal, const char *first)
     char *text = file_read(journal->pool, journal->path, SIZE_MAX, &size);
     size_t good = strlen(first);
     if (size < good || memcmp(text, first, good) != 0)
-        refuse_foreign(journal);
+        refuse_foreign(journal, text, size, first);
     for (char *end; (end = memchr(text + good, '\n', size - good)); good = (size_t)(end + 1 - text)) {
         *end = 0;
         take_line(journal, text + good);
@@ -147,7 +156,7 @@ Journal journal_open(Pool *pool, const char *path, const char *key, int64_t firs
     if (size < (off_t)strlen(first)) {
         const char *bytes = file_read(journal.pool, journal.path, SIZE_MAX, &(size_t){0});
         if (strncmp(bytes, first, (size_t)size) != 0)
-            refuse_foreign(&journal);
+            refuse_foreign(&journal, bytes, (size_t)size, first);
         if (ftruncate(journal.file, 0))
             journal_fail(&journal, "write");
         append(&journal, first, strlen(first));

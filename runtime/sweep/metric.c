@@ -25,19 +25,29 @@ static const char *comma_of(const char *text)
     return *text ? text : NULL;
 }
 
+/* A text without blanks around it. */
+static char *trimmed(Pool *pool, const char *text, size_t size)
+{
+    for (; size && text[size - 1] == ' '; --size)
+        ;
+    for (; size && *text == ' '; --size)
+        ++text;
+    return pool_print(pool, "%.*s", (int)size, text);
+}
+
 /* Name, and unit in brackets, before the equals sign. */
 static void read_name(Pool *pool, const char *word, const char *equals, Metric *metric)
 {
-    char *name = pool_print(pool, "%.*s", (int)(equals - word), word), *bracket = strstr(name, " [");
+    char *name = trimmed(pool, word, (size_t)(equals - word)), *bracket = strstr(name, " [");
     const size_t size = strlen(name);
+    for (const char *c = name; *c; ++c)
+        if ((unsigned char)*c < ' ' || *c == ',' || *c == '"')
+            refuse("a name, and a unit, has no commas, quotes, line ends or tabs:", word);
     if (bracket && name[size - 1] == ']') {
         name[size - 1] = 0;
         metric->unit = bracket + 2;
-        *bracket = 0;
+        name = trimmed(pool, name, (size_t)(bracket - name));
     }
-    for (const char *c = name; *c; ++c)
-        if ((unsigned char)*c < ' ')
-            refuse("a name has no line ends or tabs:", word);
     if (!*name)
         refuse("--metric takes NAME=FUNCTION(FORMULA), not", word);
     metric->name = name;
@@ -64,8 +74,9 @@ const Model *metric_read(Pool *pool, const Model *model, const char *word, Metri
     if (!equals)
         refuse("--metric takes NAME=FUNCTION(FORMULA), not", word);
     read_name(pool, word, equals, metric);
+    const char *call = trimmed(pool, equals + 1, strlen(equals + 1));
     for (int k = 0; k < METRIC_KINDS && !inside; ++k)
-        if ((inside = formula_inside(pool, equals + 1, kind_name[k])))
+        if ((inside = formula_inside(pool, call, kind_name[k])))
             metric->kind = (MetricKind)k;
     if (!inside)
         refuse("--metric knows end, min, max, mean, rms, integral, time_of_min, time_of_max, crossing and overshoot of "
@@ -74,7 +85,7 @@ const Model *metric_read(Pool *pool, const Model *model, const char *word, Metri
     const char *comma = comma_of(inside);
     if (comma && metric->kind != METRIC_RMS && metric->kind != METRIC_CROSSING)
         refuse("only rms takes a weight and crossing a level after a comma, not", word);
-    const char *formula = comma ? pool_print(pool, "%.*s", (int)(comma - inside), inside) : inside;
+    const char *formula = trimmed(pool, inside, comma ? (size_t)(comma - inside) : strlen(inside));
     if (!metric->unit)
         metric->unit = unit_of(model, metric->kind, formula);
     metric->signal = model->output_components;
@@ -147,7 +158,8 @@ double metric_value(const Metric *metric, const MetricState *s)
     case METRIC_MIN: return s->least;
     case METRIC_MAX: return s->greatest;
     case METRIC_MEAN: return spread ? s->integral / s->weight : s->value;
-    case METRIC_RMS: return !spread ? fabs(s->value) : s->weight > 0 ? sqrt(s->integral / s->weight) : (double)NAN;
+    case METRIC_RMS:
+        return !spread && metric->other < 0 ? fabs(s->value) : s->weight > 0 ? sqrt(s->integral / s->weight) : (double)NAN;
     case METRIC_INTEGRAL: return s->integral;
     case METRIC_TIME_OF_MIN: return s->time_of_least;
     case METRIC_TIME_OF_MAX: return s->time_of_greatest;

@@ -10,6 +10,7 @@
 #include "model/limits.h"
 #include "model/model.h"
 #include "run/knot.h"
+#include "run/last_good.h"
 #include "run/run.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
@@ -36,7 +37,9 @@ typedef struct Slot {
     Scene scene; /* its own; `user` of the instance */
     int status;
     const char *reason;  /* why it failed */
-    double time;         /* the time up to which it succeeded */
+    double time;         /* of its last values */
+    gic_head *before;    /* in lanes: its vehicle at the last output time, */
+    bool begun;          /* if there was one */
     Range *range;        /* [columns] */
     MetricState *metric; /* [metrics] */
     StepWatch *watch;    /* NULL: not watched */
@@ -48,6 +51,7 @@ typedef struct Runner {
     int slots, used;
     Slot *slot;
     gic_head *one, *copy;
+    LastGood *good; /* of a run by itself */
     StepTheory *theory;
     void *batch;
     double begun, looked;
@@ -128,13 +132,15 @@ static void record(Slot *slot, int column, double value)
 }
 
 /* All of a slot at an output time. value: of a signal of a vehicle. */
-static void record_all(const Sweep *sweep, Slot *slot, double (*value)(const void *of, int signal), const void *of)
+static void record_all(const Sweep *sweep, Slot *slot, double time, double (*value)(const void *of, int signal),
+                       const void *of)
 {
+    slot->time = time;
     for (int c = 0; c < sweep->scene->columns; ++c)
         record(slot, c, value(of, sweep->scene->column[c]));
     for (int m = 0; m < sweep->metrics; ++m) {
         const Metric *metric = &sweep->metric[m];
-        metric_see(metric, &slot->metric[m], slot->time, value(of, metric->signal),
+        metric_see(metric, &slot->metric[m], time, value(of, metric->signal),
                    metric->other >= 0 ? value(of, metric->other) : 1);
     }
 }
@@ -220,6 +226,27 @@ static void judge(const Runner *r, Slot *slot)
     slot->reason = pool_print(r->pool, "%s\n  remedy: %s", finding, remedy);
 }
 
+/* ---- the end of a run that fails ------------------------------------------------------------------------------ */
+
+static double value_alone(const void *of, int signal)
+{
+    const Runner *r = of;
+    return scene_value(r->sweep->engine->code, r->copy, signal);
+}
+
+/* The vehicle r->one can't go on: its last good state counts like an output time, if it is not at one. failed: an
+ * instance that knows why. */
+static void end_failed(Runner *r, Slot *slot, const gic_head *failed)
+{
+    const double last = gic_time(failed);
+    if (!last_good_outputs(r->good, r->sweep->engine->code, r->one, failed, r->copy))
+        return;
+    if (gic_time(r->copy) < last)
+        set_status(r, slot, slot->status, r->copy);
+    if (gic_time(r->copy) > slot->time)
+        record_all(r->sweep, slot, gic_time(r->copy), value_alone, r);
+}
+
 /* ---- batches -------------------------------------------------------------------------------------------------- */
 
 /* A vehicle in lanes. */
@@ -238,6 +265,23 @@ static double value_in_lanes(const void *of, int signal)
                  : sweep->many->output(in->r->batch, in->place, signal);
 }
 
+/* A vehicle in lanes, now in r->one, failed after its last output time: it goes from there once more, alone, which
+ * makes the same numbers, to its last good state. */
+static void end_in_lanes(Runner *r, Slot *slot)
+{
+    const Sweep *sweep = r->sweep;
+    const gic_model *code = sweep->engine->code;
+    const gic_head failed = *r->one;
+    int status = GIC_OK;
+    memcpy(r->one, slot->before, code->size);
+    last_good_forget(r->good);
+    for (int64_t left = sweep->scene->per_output; left > 0 && status == GIC_OK; --left) {
+        last_good_keep(r->good, code, r->one);
+        status = scene_step(sweep->engine, code, &slot->scene, NULL, r->one, 0);
+    }
+    end_failed(r, slot, &failed);
+}
+
 /* Outputs of all slots that go on, at the present time. */
 static void look_at_batch(Runner *r)
 {
@@ -250,9 +294,13 @@ static void look_at_batch(Runner *r)
             continue;
         many->store(r->batch, i, r->one);
         set_status(r, slot, many->status(r->batch, i), r->one);
-        slot->time = gic_time(r->one);
-        if (slot->status == GIC_OK)
-            record_all(sweep, slot, value_in_lanes, &(InLanes){r, i});
+        if (slot->status == GIC_OK) {
+            record_all(sweep, slot, gic_time(r->one), value_in_lanes, &(InLanes){r, i});
+            memcpy(slot->before, r->one, sweep->engine->code->size);
+            slot->begun = true;
+        } else if (slot->begun) {
+            end_in_lanes(r, slot);
+        }
     }
 }
 
@@ -343,12 +391,6 @@ static void run_lanes(Runner *r)
         judge(r, &r->slot[i]);
 }
 
-static double value_alone(const void *of, int signal)
-{
-    const Runner *r = of;
-    return scene_value(r->sweep->engine->code, r->copy, signal);
-}
-
 /* The present outputs of the only slot. */
 static void look_at_one(Runner *r)
 {
@@ -356,10 +398,11 @@ static void look_at_one(Runner *r)
     const gic_model *code = sweep->engine->code;
     Slot *slot = r->slot;
     memcpy(r->copy, r->one, code->size); /* outputs are computed on a copy */
-    slot->time = gic_time(r->one);
     set_status(r, slot, code->outputs(r->copy), r->copy);
     if (slot->status == GIC_OK)
-        record_all(sweep, slot, value_alone, r);
+        record_all(sweep, slot, gic_time(r->one), value_alone, r);
+    else
+        end_failed(r, slot, r->copy);
 }
 
 static void run_one(Runner *r)
@@ -369,6 +412,7 @@ static void run_one(Runner *r)
     Slot *slot = r->slot;
     const Scene *scene = &slot->scene;
     Variable *variable = scene->method >= METHOD_ADAMS ? variable_open(code, scene->method, scene->tolerance) : NULL;
+    last_good_forget(r->good);
     start(r, slot);
     if (slot->status == GIC_OK)
         look_at_one(r);
@@ -376,14 +420,16 @@ static void run_one(Runner *r)
         const double end = (double)(k + 1) * scene->output_step;
         int64_t left = scene->per_output;
         while (slot->status == GIC_OK && !r->stopped && (variable ? gic_time(r->one) < end : left > 0)) {
+            last_good_keep(r->good, code, r->one);
             set_status(r, slot, scene_step(sweep->engine, code, scene, variable, r->one, end), r->one);
             if (slot->watch && slot->status == GIC_OK)
                 step_watch_step(slot->watch, code, r->one, r->copy);
             if (left-- % CHUNK == 0)
                 look_around(r);
         }
-        slot->time = gic_time(r->one);
-        if (slot->status == GIC_OK)
+        if (slot->status != GIC_OK)
+            end_failed(r, slot, r->one);
+        else if (!r->stopped)
             look_at_one(r);
     }
     variable_close(variable);
@@ -399,6 +445,7 @@ static void take_up(Runner *r, Slot *slot, int64_t run)
     slot->scene = vary_scene(r->pool, sweep, run);
     slot->watch = step_watch_new(r->pool, r->theory, &slot->scene, sweep->engine, true);
     slot->time = 0;
+    slot->begun = false;
     slot->reason = NULL;
     for (int c = 0; c < sweep->scene->columns; ++c)
         slot->range[c] = (Range){NAN, NAN, NAN};
@@ -467,9 +514,11 @@ static Runner runner_open(const Sweep *sweep)
     for (int i = 0; i < r.slots; ++i) {
         r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
         r.slot[i].metric = pool_alloc(pool, sizeof(MetricState) * (size_t)(sweep->metrics + 1));
+        r.slot[i].before = sweep->many ? instance_new(pool, sweep->engine) : NULL;
     }
     r.one = instance_new(pool, sweep->engine);
     r.copy = instance_new(pool, sweep->engine);
+    r.good = last_good_new(pool, sweep->engine);
     r.theory = step_theory_new(pool, sweep->model);
     r.batch = sweep->many ? aligned_alloc(sweep->many->alignment, sweep->many->size) : NULL;
     if (sweep->many && !r.batch)

@@ -131,6 +131,16 @@ static gic_signal *signals_of(const Sweep *sweep, int *count)
     return signal;
 }
 
+/* No two columns have one name. */
+static void check_names(const Sweep *sweep, const gic_signal *signal, int columns)
+{
+    for (int m = 0; m < sweep->metrics; ++m)
+        for (int c = 0; c < columns; ++c)
+            if (c != columns - sweep->metrics + m && !strcmp(signal[c].name, sweep->metric[m].name))
+                diag_fail_call(program_place(), "give it another name",
+                               "the table has a column '%s' without the metric of this name", signal[c].name);
+}
+
 static void write_results(const Sweep *sweep, const char *path, const gic_signal *signal, int columns)
 {
     Pool *pool = sweep->pool;
@@ -186,6 +196,7 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, SweepTable *ta
     table->engine = sweep->engine;
     plan_close(pool, sweep->plan, model, sweep->engine);
     table->signal = signals_of(sweep, &table->columns);
+    check_names(sweep, table->signal, table->columns);
 }
 
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
