@@ -209,12 +209,13 @@ check "but has a status" [ "$(sed -n 3p "$work/fail.csv" | cut -d, -f3)" -lt 0 ]
 check "and is told of" grep -q "1 failed, the first is run 1: at t = 0 s: .*subset 'wheel_f_l'" "$work/err"
 check "the good one is not disturbed" [ "$(sed -n 2p "$work/fail.csv" | cut -d, -f3)" -eq 0 ]
 
-# ---- tires: no lanes, but processes
+# ---- fast steps: no lanes, but processes
 
 cat >"$work/tires.scene" <<'XXX'
 gicscene: 1
 duration: 1
 step: 0.002
+ratio: 2
 road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06, tracks: left}]}
 outputs: [chassis.z]
 XXX
@@ -224,7 +225,7 @@ tires() {
 }
 (tires 1 "$work/tires.csv")
 check "tires" [ "$(wc -l <"$work/tires.csv")" -eq 301 ]
-check "not yet in lanes" grep -q "note: each run by itself instead of lanes: .*fast steps" "$work/err"
+check "not in lanes" grep -q "note: each run by itself instead of lanes: .*fast steps" "$work/err"
 check "by one process" grep -q "300 runs in .*; each by itself, [0-9]" "$work/err"
 check "all of them good" [ "$(sed 1d "$work/tires.csv" | cut -d, -f3 | sort -u)" = 0 ]
 (tires 3 "$work/shared.csv")
