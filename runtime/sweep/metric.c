@@ -159,7 +159,9 @@ double metric_value(const Metric *metric, const MetricState *s)
     case METRIC_MAX: return s->greatest;
     case METRIC_MEAN: return spread ? s->integral / s->weight : s->value;
     case METRIC_RMS:
-        return !spread && metric->other < 0 ? fabs(s->value) : s->weight > 0 ? sqrt(s->integral / s->weight) : (double)NAN;
+        return !spread && metric->other < 0 ? fabs(s->value)
+               : s->weight > 0              ? sqrt(s->integral / s->weight)
+                                            : (double)NAN;
     case METRIC_INTEGRAL: return s->integral;
     case METRIC_TIME_OF_MIN: return s->time_of_least;
     case METRIC_TIME_OF_MAX: return s->time_of_greatest;

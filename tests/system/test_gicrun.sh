@@ -187,6 +187,58 @@ rm -f "$work/never.csv"
 # w' = 0.3 at first and w must stay below 1.75: rows are there, and all are numbers
 check 'its results are kept' awk -F, 'NR > 1 && !($2 >= 1.25 - 1e-9 && $2 < 1.75) {bad = 1}
     END {exit bad || NR < 100}' "$work/crank.csv"
+
+# a mass that its damper drives: rates of AB3 and RK4 by the formulas of the methods; the step that can't be made begins at
+# the last good state, whether that is at an output time or not
+cat >"$work/driven.veh" <<'END'
+gicgen: 1
+model: driven
+base: ground
+gravity: [0, 0, 0]
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-5, 5]}
+forces:
+  push: {type: force, coordinate: x, value: "rate(x)"}
+outputs:
+  x: {type: coordinate, coordinate: x}
+END
+cat >"$work/methods.py" <<'END'
+import sys
+import numpy
+table, every, method, h = sys.argv[1], sys.argv[2], sys.argv[3], 0.5
+slope = lambda y: numpy.array([y[1], y[1]])
+def rk4(y):
+    a = slope(y); b = slope(y + h / 2 * a); c = slope(y + h / 2 * b)
+    return y + h / 6 * (a + 2 * b + 2 * c + slope(y + h * c))
+states, slopes = [numpy.array([0.0, 1.0])], []
+for i in range(40):
+    slopes.append(slope(states[i]))
+    ab3 = method == "ab3" and i > 1
+    states.append(states[i] + h / 12 * (23 * slopes[i] - 16 * slopes[i - 1] + 5 * slopes[i - 2]) if ab3 else rk4(states[i]))
+rows, all = (numpy.genfromtxt(name, delimiter=",", skip_header=1) for name in (table, every))
+times = list(rows[:, 0])
+assert times == [t for t in (0, 4, 8, 12) if t < all[-1, 0]] + [all[-1, 0]], times
+assert (rows[-1] == all[-1]).all() and 4 < times[-1] < 12
+for row in rows if method in ("ab3", "rk4") else []:
+    y = states[int(2 * row[0])]
+    assert numpy.allclose(row[1:4], [y[0], y[1], y[1]], rtol=1e-12), (row, y)
+END
+for integrator in ab3 rk4; do
+    for engine in tape gic; do
+        for every in 4 0.5; do
+            echo "{gicscene: 1, duration: 20, step: 0.5, output_step: $every, integrator: $integrator, initial: {rates: {x: 1}}}" >"$work/driven.scene"
+            run --engine $engine "$work/driven.veh" "$work/driven.scene" -o "$work/every_$every.csv"
+            check "$integrator, $engine: it fails" exits 1
+            check "$integrator, $engine: at its last row" says "ends at t = $(tail -n 1 "$work/every_$every.csv" | cut -d, -f1) s"
+        done
+        /usr/bin/python3 "$work/methods.py" "$work/every_4.csv" "$work/every_0.5.csv" $integrator 2>"$work/err"
+        verdict $? "$integrator, $engine: the last good state is the last row"
+    done
+done
 run "$work/crank.scene" "$work/crank.veh"
 check 'a scene in place of the model' says 'crank.scene:1:11: error: this is a scene, where a model is wanted'
 run "$work/crank.veh" "$work/crank.veh"

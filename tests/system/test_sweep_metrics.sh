@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_sweep_metrics.sh GICSWEEP GICRUN: metrics of sweeps are what numpy computes by their definitions from gicrun's table of
-# the same run; in lanes and by each engine; closed solutions; units; parts; mistakes.
+# the same run; in lanes and by each engine; of runs that fail; closed solutions; units; parts; mistakes.
 gicsweep=$1
 gicrun=$2
 # shellcheck source=tests/lib/checking.sh
@@ -112,6 +112,89 @@ done
 "$gicsweep" -q models/hmmwv_tires.veh "$work/s.scene" --vary speed=4:4e9:2 -o "$work/fail.csv" --metric 'a=mean(time)' 2>"$work/err"
 check "a run that fails at its start has none" [ "$(sed -n 3p "$work/fail.csv" | sed 's/.*,//')" = nan ]
 
+# ---- runs that fail between output times: the rows that count are those of gicrun's table, the last good state among them;
+# a step of AB3 may lead to one without outputs. Some runs of the sweep fail, others go on
+
+cat >"$work/driven.veh" <<'YYY'
+gicgen: 1
+model: driven
+base: ground
+gravity: [0, 0, 0]
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-5, 5]}
+parameters:
+  k: {value: 1, unit: N/m, tunable: true}
+  c: {value: 0, unit: N s/m, tunable: true}
+forces:
+  spring: {type: force, coordinate: x, value: "-k * x - c * rate(x)"}
+outputs:
+  x: {type: coordinate, coordinate: x}
+YYY
+cat >"$work/rows.py" <<'YYY'
+import sys
+import numpy
+sweep = numpy.genfromtxt(sys.argv[1], delimiter=",", names=True, deletechars="")
+row = {name.split("_[")[0]: sweep[name][int(sys.argv[3])] for name in sweep.dtype.names}
+run = numpy.genfromtxt(sys.argv[2], delimiter=",", skip_header=1)
+t, x = run[:, 0], run[:, 1]
+def integral(x):
+    return float(numpy.sum((x[1:] + x[:-1]) / 2 * (t[1:] - t[:-1])))
+way = (x - x[0]) / (x[-1] - x[0]) if x[-1] != x[0] else numpy.array([numpy.nan])
+weight = integral(t - 1)
+square = integral((t - 1) * x**2)
+want = {"time": t[-1], "x.value.end": x[-1], "x.value.min": x.min(), "x.value.max": x.max(), "x.rate.end": run[-1, 2], "e": x[-1],
+        "integral": integral(x), "mean": integral(x) / (t[-1] - t[0]) if t[-1] > 0 else x[0],
+        "rms": numpy.sqrt(integral(x**2) / t[-1]) if t[-1] > 0 else abs(x[0]), "over": way.max() - 1, "at": t[x.argmax()],
+        "weighted": numpy.sqrt(square / weight) if weight > 0 and square >= 0 else numpy.nan}
+for name, value in want.items():
+    assert numpy.isclose(row[name], value, rtol=1e-11, atol=1e-13, equal_nan=True), (name, row[name], value)
+assert (row["status"] != 0) == (sys.argv[4] == "1"), row["status"]
+print(bool(row["status"] != 0 and t[-1] % 2 > 0.01))
+YYY
+set -- --metric 'e=end(x)' --metric 'integral=integral(x)' --metric 'mean=mean(x)' --metric 'rms=rms(x)' --metric 'over=overshoot(x)' \
+    --metric 'at=time_of_max(x)' --metric 'weighted=rms(x, time - 1)'
+for way in 'integrator: ab3, step: 0.1' 'integrator: rk4, step: 0.1' 'integrator: rkck, tolerance: 1e-6' 'integrator: adams, tolerance: 1e-6'; do
+    for engine in '' '--engine tape'; do
+        between=0
+        scene="gicscene: 1, duration: 20, output_step: 2, $way, initial: {coordinates: {x: 1}, rates: {x: 300}}"
+        echo "{$scene}" >"$work/f.scene"
+        # shellcheck disable=SC2086  # words
+        "$gicsweep" -q $engine "$work/driven.veh" "$work/f.scene" --vary k=0:4:3 --vary c=-1:1:3 "$@" -o "$work/f.csv" 2>"$work/err"
+        check "$way $engine" [ $? -eq 0 ]
+        run=-1
+        for values in 'k: 0, c: -1' 'k: 0, c: 0' 'k: 0, c: 1' 'k: 2, c: -1' 'k: 2, c: 0' 'k: 2, c: 1' 'k: 4, c: -1' 'k: 4, c: 0' 'k: 4, c: 1'; do
+            run=$((run + 1))
+            echo "{$scene, parameters: {$values}}" >"$work/f.scene"
+            # shellcheck disable=SC2086  # words
+            "$gicrun" -q $engine "$work/driven.veh" "$work/f.scene" -o "$work/run.csv" 2>"$work/err"
+            /usr/bin/python3 "$work/rows.py" "$work/f.csv" "$work/run.csv" $run $? >"$work/out" 2>&1
+            verdict $? "$way $engine: run $run has the rows of gicrun"
+            grep -q True "$work/out" && between=$((between + 1))
+        done
+        check "$way $engine: some fail between output times" [ $between -gt 0 ]
+    done
+done
+# without duration: an integral of a weight is not above 0. The first step leaves all bounds
+echo '{gicscene: 1, duration: 2, integrator: rk4, step: 1, initial: {coordinates: {x: 1}, rates: {x: 1e6}}}' >"$work/f.scene"
+"$gicsweep" -q "$work/driven.veh" "$work/f.scene" --vary k=1:1:1 -o "$work/f.csv" --metric 'a=rms(x)' --metric 'b=rms(x, 1)' --metric 'd=rms(x, time)' \
+    --metric 'f=mean(x)' --metric 'g=integral(x)' 2>"$work/err"
+check "a run without duration" [ "$(sed -n 2p "$work/f.csv" | rev | cut -d, -f1-5 | rev)" = "1,nan,nan,1,0" ]
+
+# ---- blanks, and names
+
+"$gicsweep" -q "$work/driven.veh" "$work/f.scene" --vary k=1:1:1 -o "$work/f.csv" --metric ' a  [mm] = end( x.value ) ' --metric 'b=end( x.value)' \
+    --metric 'c = crossing( x , 1 )' 2>"$work/err"
+check "blanks" [ "$(head -n 1 "$work/f.csv" | cut -d, -f14-)" = "a [mm],b [m],c [s]" ]
+taken() {
+    "$gicsweep" -q "$work/driven.veh" "$work/f.scene" --vary k=1:1:1 -o "$work/e.csv" --metric 'good=end(x)' --metric "$1=end(x)" >"$work/out" 2>"$work/err"
+    [ $? -eq 2 ] && grep -q "the table has a column '$1' without the metric of this name" "$work/err"
+}
+for name in run k status time x.value.end x.rate.max; do check "a name that is taken: $name" taken $name; done
+
 # ---- mistakes
 
 check "no function" refuses "knows end, min" 2 --metric 'a=median(chassis.z)'
@@ -121,6 +204,11 @@ check "an unknown signal" refuses "--metric:1:.*chassis.q" 1 --metric 'a=end(cha
 check "a comma too many" refuses "only rms takes a weight" 2 --metric 'a=end(chassis.z, 1)'
 check "an open formula" refuses "--metric:1:" 1 --metric 'a=end(2*)'
 check "two of a name" refuses "two metrics 'a'" 2 --metric 'a=end(time)' --metric 'a=max(time)'
+check "a comma in a name" refuses "has no commas" 2 --metric 'a,b=end(time)'
+check "a quote in a name" refuses "has no commas" 2 --metric 'a"=end(time)'
+check "a comma in a unit" refuses "has no commas" 2 --metric 'a [m,s]=end(time)'
+check "a name of blanks" refuses "takes NAME=FUNCTION" 2 --metric ' =end(time)'
+check "two of a name, but for blanks" refuses "two metrics 'a'" 2 --metric 'a=end(time)' --metric 'a =max(time)'
 check "no table" [ ! -e "$work/e.csv" ]
 
 echo "$passed passed, $failed failed"

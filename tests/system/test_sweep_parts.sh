@@ -100,7 +100,12 @@ check "a finished task makes nothing" grep -q "30 runs in .*, 30 of them from an
 check "files of tasks, not of runs" [ "$(files "$work/plan")" -eq 10 ]
 
 # by --shard alone, without a plan made before; the folder has a blank
-for i in 2 1 3; do sweep -q --shard $i/3 -o "$work/own folder" 2>"$work/err"; done
+sweep -q --shard 2/3 -o "$work/own folder" 2>"$work/err"
+check "parts that are missing, without a script" eval 'says "in parts 1,3 of 3" 1 merge "$work/own folder" &&
+    grep -q "remedy: .*: gicsweep --shard I/3 -o $work/own folder with .*, I = 1,3$" "$work/err" && ! grep -q sbatch "$work/err"'
+sweep -q --shard 1/3 -o "$work/own folder" 2>"$work/err"
+check "one that is missing" eval 'says "in part 3 of 3" 1 merge "$work/own folder" && grep -q "remedy: .*: gicsweep --shard 3/3 -o " "$work/err"'
+sweep -q --shard 3/3 -o "$work/own folder" 2>"$work/err"
 check "--shard" merge "$work/own folder" 2>"$work/err"
 check "has the same bytes" cmp -s "$work/whole.csv" "$work/merged.csv"
 check "another number of parts" says "has 3 parts, not 4" 1 sweep --shard 1/4 -o "$work/own folder"
@@ -149,7 +154,7 @@ sed -i '1s/journal ./journal x/' "$work/bad/part_2.journal"
 both "a journal of another version" "part_2.journal is of another sweep"
 fresh
 cp "$work/bad/part_3.journal" "$work/bad/part_2.journal"
-both "a journal of another part" "part_2.journal is of another sweep"
+both "a journal of another part" "part_2.journal is the journal of part 3 of 8 of this sweep, not of part 2 of 8"
 # a digit, a blank, and what a machine leaves that lost its power
 for damage in '3s/,0\.2/,0.3/' '9s/$/ /' '12s/.*/\x00\x00\x00/'; do
     fresh
