@@ -34,6 +34,7 @@ number() {
 
 cat >"$work/s.scene" <<'YYY'
 gicscene: 1
+ratio: 2
 duration: 1
 step: 0.002
 road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06, tracks: left}]}
