@@ -153,9 +153,19 @@ static int probe_jacobian(void *self, gic_real time, const gic_real *state, gic_
 
 static const int32_t all[MOST] = {0, 1, 2, 3}, none[MOST] = {-1, -1, -1, -1};
 
-static gic_implicit whole = {
-    COLUMNS,        0,    all, none, offsetof(Probe, implicit), offsetof(Probe, pivot), offsetof(Probe, number),
-    probe_jacobian, NULL, NULL};
+static gic_implicit whole = {COLUMNS,
+                             0,
+                             all,
+                             none,
+                             offsetof(Probe, implicit),
+                             offsetof(Probe, pivot),
+                             offsetof(Probe, number),
+                             probe_jacobian,
+                             NULL,
+                             NULL,
+                             0,
+                             NULL,
+                             NULL};
 
 static gic_model model_of(const Problem *problem)
 {
@@ -420,6 +430,9 @@ static void test_positions(void **unused)
                                offsetof(Probe, pivot),
                                offsetof(Probe, number),
                                probe_jacobian,
+                               NULL,
+                               NULL,
+                               0,
                                NULL,
                                NULL};
     for (int method = GIC_ROS2; method <= GIC_ROS3; ++method) {
