@@ -43,7 +43,7 @@ static int play_about(Pool *pool, const Tape *tape, int member, Memory *m, const
 {
     double *const array[ARRAYS] = {m->a, m->b, m->out, &m->alone};
     double *frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof *frame);
-    const TapeWorld world = {table, road, 4, 0.5, head, 0, NULL};
+    const TapeWorld world = {table, road, 4, 0.5, head, 0, NULL, NULL};
     for (int i = 0; i < tape->slots; ++i)
         frame[i] = NAN; /* what was in it must not matter */
     return tape_play(tape, member, array, &world, frame);
