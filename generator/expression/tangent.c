@@ -36,9 +36,13 @@ static Ex arc_factor(Dag *dag, Ex a)
     return ex_div(dag, one, ex_sqrt(dag, ex_sub(dag, one, ex_mul(dag, a, a))));
 }
 
+/* An exponent that may be tuned to 0 makes a constant, at a base of 0 too, whose power of -1 has no value. */
 static Ex pow_slope(Dag *dag, Ex e, Ex a, Ex b, Ex da, Ex db, bool smooth)
 {
-    const Ex base = chain(dag, ex_mul(dag, b, ex_pow(dag, a, ex_sub(dag, b, ex_literal(dag, 1)))), da, smooth);
+    Ex factor = ex_mul(dag, b, ex_pow(dag, a, ex_sub(dag, b, ex_literal(dag, 1))));
+    if (dag->node[b].level == LEVEL_VARIABLE)
+        factor = where_moves(dag, b, factor);
+    const Ex base = chain(dag, factor, da, smooth);
     if (ex_is(dag, db, 0))
         return base;
     return ex_add(dag, base, where_positive(dag, a, ex_mul(dag, ex_mul(dag, e, ex_op(dag, OP_LOG, a, 0, 0)), db)));

@@ -115,20 +115,26 @@ void subset_find_still(Work *w)
     }
 }
 
-/* Marks the numbers of earlier bodies that a class reads from memory. */
+/* Marks the numbers of its own and of earlier bodies that a class reads from memory: of its own those that became
+ * constants when sums were balanced, after the check of residuals was made. */
 typedef struct Readers {
     const Sequence *sequence;
     const Class *class; /* the reading class */
+    int motion_size;    /* of its bodies */
     bool **read;        /* [bodies][motion numbers] */
 } Readers;
 
 static void mark_read(void *context, Element element)
 {
     const Readers *readers = context;
-    if (element.array != ARRAY_known)
-        return;
-    for (int i = 0; i < readers->class->members; ++i)
-        readers->read[readers->sequence->subset[readers->class->member[i]].known[element.which]][element.index] = true;
+    for (int i = 0; i < readers->class->members; ++i) {
+        const Subset *subset = &readers->sequence->subset[readers->class->member[i]];
+        if (element.array == ARRAY_known)
+            readers->read[subset->known[element.which]][element.index] = true;
+        else if (element.array == ARRAY_motion)
+            readers->read[subset->body[element.index / readers->motion_size]][element.index % readers->motion_size] =
+                true;
+    }
 }
 
 /* True if a member of the class reads a number of the body. */
@@ -149,6 +155,7 @@ void subsets_drop_constants(Pool *pool, const Model *model, const Sequence *sequ
         const Formula *f = formula[c];
         const Block *const block[] = {&f->predict, &f->chord, &f->solve, &f->residual, &f->react};
         readers.class = &sequence->class[c];
+        readers.motion_size = f->layout.motion_size;
         for (size_t b = 0; b < sizeof block / sizeof *block; ++b)
             block_inputs(block[b], mark_read, &readers);
     }

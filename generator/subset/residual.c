@@ -51,6 +51,34 @@ static Ex ratio(Dag *dag, Ex error, Ex norm)
     return ex_div(dag, error, ex_add(dag, norm, ex_literal(dag, tiny)));
 }
 
+/* The sum of the magnitudes of the terms that e adds up: what its rounding is relative to. size: [nodes] those that are
+ * known. */
+static Ex size_of_terms(Dag *dag, Ex e, Ex *size)
+{
+    if (size[e])
+        return size[e];
+    const Node node = dag->node[e]; /* a copy: nodes move when there are more */
+    const Ex a = node.arg[0], b = node.arg[1];
+    Ex found;
+    switch ((Op)node.op) {
+    case OP_NEG: found = size_of_terms(dag, a, size); break;
+    case OP_ADD:
+    case OP_SUB: found = ex_add(dag, size_of_terms(dag, a, size), size_of_terms(dag, b, size)); break;
+    case OP_MUL: found = ex_mul(dag, size_of_terms(dag, a, size), size_of_terms(dag, b, size)); break;
+    case OP_DIV: found = ex_div(dag, size_of_terms(dag, a, size), magnitude(dag, b)); break;
+    default: found = magnitude(dag, e);
+    }
+    return size[e] = found;
+}
+
+/* Size of a row's terms from the formula of a gear or coupler, of which e is a derivative. */
+static Ex size_of_formula(const Residual *r, int row, Ex e)
+{
+    Ex *size = pool_alloc(r->dag->pool, (size_t)r->dag->nodes * sizeof *size);
+    const Ex terms = size_of_terms(r->dag, e, size);
+    return ex_mul(r->dag, magnitude(r->dag, ex_mul(r->dag, r->scale[row], r->row[row].dual)), terms);
+}
+
 /* Size of a twist or of its rate: angular part, linear part relative to the subset's size. */
 static Ex twist_size(const Residual *r, const Ex angular[3], const Ex linear[3])
 {
@@ -176,7 +204,9 @@ static Ex unit_error(const Residual *r, int j, Ex *norm)
         const Connection *tie = &r->w->connection[r->row_of[i]];
         error = plus(dag, error, ex_mul(dag, r->scale[i], unit_rate(r, i, j)));
         const Ex dual = subset_dual(r->w, tie, &r->row[i], j);
-        if (dual)
+        if (tie->slope)
+            *norm = ex_add(dag, *norm, size_of_formula(r, i, tie->slope[j]));
+        else if (dual)
             *norm = ex_add(dag, *norm, magnitude(dag, ex_mul(dag, r->scale[i], dual)));
     }
     return error;
@@ -254,6 +284,11 @@ static Ex motion_error(const Residual *r)
         sum = ex_add(dag, sum, ratio(dag, error, norm));
         speed = ex_add(dag, speed, part);
         growth = ex_add(dag, growth, ex_mul(dag, part, part));
+    }
+    for (int i = 0; i < r->w->n; ++i) {
+        const Connection *tie = &r->w->connection[r->row_of[i]];
+        if (tie->second)
+            growth = ex_add(dag, growth, size_of_formula(r, i, tie->second));
     }
     sum = ex_add(dag, sum, ratio(dag, velocity_error(r), speed));
     return ex_add(dag, sum, ratio(dag, acceleration_error(r), growth));

@@ -16,7 +16,8 @@ cd "$work" || exit 1
 # eval_all NAME MODEL FORMULA: at `states` of turn and turn.rate all engines and ways find the acceleration that awk's FORMULA
 # says; t, w: value and rate
 eval_all() {
-    for way in '' '--engine gic' '--engine gcp1' '--engine gcp2' '--recovery newton' '--recovery closed' '--solve augmented'; do
+    for way in '' '--engine gic' '--engine gcp1' '--engine gcp2' '--engine tape' '--general' '--recovery newton' \
+        '--recovery closed' '--solve augmented'; do
         # shellcheck disable=SC2086  # options
         "$gicrun" $way --eval states "$2" -o eval.csv 2>err
         paste -d, states eval.csv | awk -F, 'NR == 1 { for (i = 3; i <= NF; ++i) { if ($i ~ /^status/) k = i; if ($i ~ /^turn.acceleration/) a = i } next }
@@ -61,6 +62,13 @@ for ratio in 1 -1 2 -0.5 0; do
     gears two "$ratio * turn + 3" >two.veh
     eval_all "gears of ratio $ratio" two.veh "0.8 / (0.2 + 0.05 * ($ratio) ^ 2)"
 done
+# constant, to the last digit or but for rounding; powers whose second derivative is 0 times a power of 0
+for formula in '(turn + 1) - turn' 'sin(turn)^2 + cos(turn)^2' 'sqrt(1 + turn^2)^2 - turn^2' 'turn * idle - idle * turn'; do
+    gears still "$formula" >still.veh
+    eval_all "a wheel that stands still: $formula" still.veh "0.8 / 0.2"
+done
+gears power 'turn^idle' >power.veh
+eval_all "a power whose exponent is tunable and 1" power.veh "0.8 / 0.25"
 # angular velocity and torque of the second wheel, energy
 gears two '-2 * turn' >two.veh
 printf 'gicscene: 1\nduration: 2\nstep: 0.01\noutput_step: 0.5\nintegrator: rk4\ninitial: {rates: {turn: 3}}\n' >two.scene
