@@ -475,11 +475,12 @@ static void compare_attitude(Comparison *c, Kind which, const Output *output, co
         compare(c, which, output->name, upright && i % 3 ? 0 : A[i] - B[i], 1);
 }
 
-/* A formula that has no value at a state, such as the root of a negative number, is the same on both sides when neither
- * has one. */
-static bool has_no_value(const Output *output, double value, double right)
+/* A formula that has no value at a state, such as the root of a negative number, can't be compared there, nor an angle
+ * where it jumps by a whole turn. Code takes 0 times anything as 0, and so may have a value where there is none. */
+static bool has_no_value(const Comparison *c, const Output *output, double right)
 {
-    return output->type == OUTPUT_SIGNAL && !isfinite(value) && !isfinite(right);
+    return output->type == OUTPUT_SIGNAL &&
+           (!isfinite(right) || world_law_jumps(c->world, c->v.model->signal[output->index].law));
 }
 
 /* Compare an output's components, at column k, with given values. */
@@ -493,7 +494,7 @@ void compare_output(Comparison *c, Kind which, const Output *output, Values *giv
         return;
     }
     for (int j = 0; j < output->count; ++j)
-        if (!has_no_value(output, value[j], right[j]))
+        if (!has_no_value(c, output, right[j]))
             compare(c, which, output->component[j], value[j] - right[j], output_scale(c, output, right, j));
 }
 

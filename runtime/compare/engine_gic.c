@@ -21,7 +21,7 @@
 /* Bounds of one recovery: corrections with old factors, with new ones, the relative size of a correction that may lead
  * astray, and pieces in which a change of the coordinates is followed. They are this engine's own on purpose, like its
  * formulas: those of generated code and of the tape stand in templates/bounds.c.in and are others. */
-enum { CHORDS = 6, PASSES = 10, PIECES = 1000 };
+enum { CHORDS = 6, PASSES = 10, PIECES = 20000 };
 /* Near a singular configuration bodies move more than coordinates let expect: a way that fails is gone again in pieces
  * that are a quarter as long, and once more. */
 enum { TRIES = 3, FINER = 4 };

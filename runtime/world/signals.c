@@ -106,6 +106,20 @@ static bool law_is_sure(const World *world, const Law *law, bool *signals)
     return sure;
 }
 
+bool world_law_jumps(const World *world, const Law *law)
+{
+    static const double nothing[FORCE_LOCALS] = {0};
+    if (!law)
+        return false;
+    if (law->op == LAW_SIGNAL)
+        return world_law_jumps(world, world->model->signal[law->index].law);
+    if (law->op == LAW_CALL && law->call == OP_ATAN2 && !(world_law(world, law->arg[1], nothing) > 0) &&
+        !(fabs(world_law(world, law->arg[0], nothing)) > near * world_law_size(world, law->arg[0], nothing)))
+        return true;
+    return world_law_jumps(world, law->arg[0]) || world_law_jumps(world, law->arg[1]) ||
+           world_law_jumps(world, law->arg[2]);
+}
+
 static bool law_reads(const Law *law, int local)
 {
     return law && ((law->op == LAW_LOCAL && law->index == local) || law_reads(law->arg[0], local) ||

@@ -172,6 +172,9 @@ void world_order(World *world);
 /* False where a formula with signals may come out otherwise for rounding alone: at the bound of a condition, or where
  * an attitude angle or a sideslip jumps. */
 bool world_signals_are_sure(const World *world);
+/* True if the formula takes an angle by atan2 on the half line where it jumps by a whole turn: there the sign of a zero
+ * decides, or rounding. */
+bool world_law_jumps(const World *world, const Law *law);
 /* How the carrier of a wheel with a tire moves at the present configuration. */
 void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
 /* All wheels with tires, and the powertrain, where carriers move as motion[] says: rates of these fast states, and
