@@ -303,6 +303,16 @@ static void compare_grip(Comparison *c)
     }
 }
 
+/* What a formula of a length or angle changes by over the size of the model, or over a radian, as it does here: it has
+ * the rounding of what it reads. 0: it has no slope here. */
+static double law_swing(const World *world, const Force *force, double extent, double size)
+{
+    const double little = 1e-6;
+    const double way = world_law(world, force->law[0], (const double[FORCE_LOCALS]){extent + little * size}) -
+                       world_law(world, force->law[0], (const double[FORCE_LOCALS]){extent});
+    return isfinite(way) ? fabs(way) / little : 0;
+}
+
 static void find_push(Comparison *c)
 {
     const World *world = c->world;
@@ -320,6 +330,9 @@ static void find_push(Comparison *c)
         /* a spring at its free length has the rounding of that length */
         if (force_is_spring(force) && force->table < 0)
             c->push = fmax(c->push, fabs(world_law(world, force->stiffness, NULL)) * world->size);
+        if (force->type == FORCE_POINTS_LAW || force->type == FORCE_AXIS_LAW)
+            c->push =
+                fmax(c->push, law_swing(world, force, world->extent[i], force_is_torque(force) ? 1 : world->size));
         /* nor do displacements and rotations vanish by more than their rounding */
         for (int k = 0; force->bushing && k < BUSHING_NUMBERS; ++k)
             if (force->bushing->stiffness[k])
@@ -566,7 +579,8 @@ static void compare_inverse(Comparison *c)
 }
 
 /* True if forces and rates of fast states are finite. Some formulas have no value at such states: a wheel that lies
- * flat has no rolling direction, an element between coinciding points no direction of force. */
+ * flat has no rolling direction, an element between coinciding points no direction of force, one about an axis no angle
+ * where what it follows lies along it. */
 static bool forces_exist(Comparison *c)
 {
     const double flat = 1.57, meeting = 1e-6;
@@ -574,7 +588,7 @@ static bool forces_exist(Comparison *c)
     double sum = 0;
     if (world_forces(c->world) != GIC_OK)
         return false;
-    if (world->shortest < meeting * world->size)
+    if (world->shortest < meeting * world->size || world->unclear)
         return false;
     for (int b = world->first; b < world->bodies; ++b)
         for (int i = 0; i < 6; ++i)

@@ -187,6 +187,7 @@ static void add_between(World *world, int index)
     const double length = norm3(d), speed = dot3(d, rate) / length;
     const double tension = resistance(world, force, length, speed);
     world->shortest = fmin(world->shortest, length);
+    world->extent[index] = length;
     world->element[index] = tension;
     world->power -= tension * speed;
     for (int i = 0; i < 3; ++i)
@@ -222,8 +223,11 @@ static void add_about(World *world, int index)
     copy3(u, n);
     add_scaled3(-dot3(u, f1), f1, n);
     sub3(b == BODY_GROUND ? still : world->omega[b], a == BODY_GROUND ? still : world->omega[a], turn);
-    const double square = x * x + y * y;
-    const double rate = dot3(n, turn) / square, torque = resistance(world, force, atan2(y, x), rate);
+    /* below: the direction on the axis, or the other way; roundings decide the angle */
+    const double square = x * x + y * y, flat = 1e-6, behind = 1e-7;
+    world->unclear = world->unclear || square < flat || (x < 0 && fabs(y) < behind);
+    const double rate = dot3(n, turn) / square, angle = atan2(y, x), torque = resistance(world, force, angle, rate);
+    world->extent[index] = angle;
     world->element[index] = torque;
     world->power -= torque * rate;
     if (a != BODY_GROUND)
@@ -535,6 +539,7 @@ int world_forces(World *world)
     memset(world->along, 0, (size_t)model->coordinates * sizeof *world->along);
     world->potential = world->stored = world->power = 0;
     world->shortest = INFINITY;
+    world->unclear = false;
     const int status = add_wheels(world);
     if (status != GIC_OK)
         return status;

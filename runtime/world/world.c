@@ -199,6 +199,7 @@ World *world_unsolved(Pool *pool, const Model *model, const Sequence *sequence)
     world->wrench = pool_alloc(pool, bodies * sizeof *world->wrench);
     world->along = pool_alloc(pool, coordinates * number);
     world->element = pool_alloc(pool, ((size_t)model->forces + 1) * number);
+    world->extent = pool_alloc(pool, ((size_t)model->forces + 1) * number);
     world->order = pool_alloc(pool, ((size_t)model->forces + 1) * sizeof *world->order);
     world_order(world);
     world->wheel = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *world->wheel);

@@ -90,7 +90,8 @@ typedef struct World {
     double *along;       /* [coordinates] generalized force on w */
     int *order;          /* [forces] elements, those whose formulas read others after these */
     double *element;     /* [forces] Q or T of FORMAT.md section 7 */
-    double (*wheel)[4];  /* [wheels] fz, deflection, deflection rate, road height */
+    double *extent;     /* [forces] length (m) of elements between points, angle (rad) of those about an axis, else 0 */
+    double (*wheel)[4]; /* [wheels] fz, deflection, deflection rate, road height */
     WheelMotion *motion; /* [wheels] with tires */
     int touches;
     Touch *touch; /* [touches] of wheels; from there on of each element the upper and the lower end. Those that can't
@@ -100,6 +101,7 @@ typedef struct World {
     double *fast_rate;   /* [fast states] */
     double potential;    /* J, of springs */
     double shortest;     /* m, distance of the two points of an element that are nearest to each other */
+    bool unclear;        /* the angle of an element about an axis has no value here, or jumps by a whole turn */
     double stored;       /* W, its rate */
     double power;        /* W, of all applied forces but gravity and springs; drives of coordinates apart */
 
