@@ -39,7 +39,7 @@ typedef struct KcWheel {
 typedef struct KcRubber {
     const Force *force;
     int place[2], velocity[2], orientation[2], turn[2];
-    double stiffness[BUSHING_AXES * BUSHING_AXES];
+    double stiffness[BUSHING_AXES * BUSHING_AXES], preload[BUSHING_AXES];
 } KcRubber;
 
 /* The most of an axle, of coordinates that follow from rubber, and of those that move them. */
@@ -123,12 +123,29 @@ int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const doub
 /* The text of a status that a look has returned. */
 const char *kc_status(const Kc *kc, int status);
 
+/* ---- kc_bushing.c: bushings */
+
+/* A bushing's displacements and rotation vector q, its axes in the world, and from its end in a to that in b. */
+typedef struct KcBent {
+    double q[BUSHING_AXES], axes[9], lever[3];
+} KcBent;
+
+/* Stiffness and preload of all bushings, with the parameters of set-up. */
+void kc_stiffness(Kc *kc);
+/* The first bushing with a formula, whose stiffness is not known here; NULL: none has one. */
+const char *kc_rubber_formula(const Kc *kc);
+KcBent kc_bend(const KcRubber *rubber, const KcLook *look);
+/* q' by a column: theta' = (I - 1/2 [theta]x + c [theta]x^2) omega. */
+void kc_bend_rate(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int column, double out[6]);
+/* The generalized force of all bushings along column a, and its derivative by column b. second: [outputs] of column a,
+ * as kc_look_second() gives it for a motion along b alone. */
+double kc_rubber_force(const Kc *kc, const KcLook *look, int a);
+double kc_rubber_slope(const Kc *kc, const KcLook *look, int a, int b, const double *second);
+
 /* ---- kc_rubber.c: bodies that bushings alone hold */
 
 /* True for one of the six coordinates of a body that force elements alone hold: it gives way, and does not steer. */
 bool kc_is_mount(const Model *model, int coordinate);
-/* Stiffness of all bushings, with the parameters of set-up. */
-void kc_stiffness(Kc *kc);
 /* Followers of an axle whose travel and steering are known; its refusal where rubber does not hold them. */
 void kc_find_followers(Kc *kc, KcAxle *axle);
 /* look->follow and look->relax from look->whole. Returns a status. */
@@ -266,14 +283,23 @@ const char *kc_unit(const Kc *kc, const KcAxle *axle, int of_axle);
 
 /* ---- kc_loads.c: compliance */
 
-/* Loads of 1 N or 1 N m on each wheel: at the contact of the locked wheel along y and along x, about z, and at the
- * wheel's centre along x. */
-typedef enum KcLoad { KC_LATERAL, KC_LONGITUDINAL, KC_ALIGNING, KC_HUB_LONGITUDINAL, KC_LOADS } KcLoad;
+/* Loads of 1 N or 1 N m on each wheel: at the contact of the locked wheel along y and along x, about z, up at the
+ * contact; and at the wheel's centre along x, y and z. */
+typedef enum KcLoad {
+    KC_LATERAL,
+    KC_LONGITUDINAL,
+    KC_ALIGNING,
+    KC_VERTICAL,
+    KC_HUB_LONGITUDINAL,
+    KC_HUB_LATERAL,
+    KC_HUB_VERTICAL,
+    KC_LOADS
+} KcLoad;
 extern const char *const kc_load_name[KC_LOADS];
 
-/* What a wheel does for it: rad, m, and N of the vertical force that holds its height. */
+/* What a wheel does for it: rad, m, and N of the vertical force on its contact. turn: of its carrier about z. */
 typedef struct KcGive {
-    double steer, toe, camber, contact[3], centre[3], force;
+    double steer, toe, camber, turn, contact[3], centre[3], force;
 } KcGive;
 
 /* give: [wheels]. opposed: the other way on the right. Returns NULL, or why there is none. */

@@ -17,7 +17,8 @@
 
 enum { MOST = KC_COLUMNS + KC_WHEELS, NEWTON_MOST = 30 };
 
-const char *const kc_load_name[KC_LOADS] = {"lateral", "longitudinal", "aligning", "hub_longitudinal"};
+const char *const kc_load_name[KC_LOADS] = {"lateral",          "longitudinal", "aligning",    "vertical",
+                                             "hub_longitudinal", "hub_lateral",  "hub_vertical"};
 
 typedef struct Rig {
     const Kc *kc;
@@ -81,6 +82,7 @@ static int evaluate_rig(Rig *rig)
         for (int e = 0; e < kc->elements; ++e)
             rig->missing[a] -= kc->element[e].sign * rig->look->value[kc->element[e].force] *
                                kc_element_slope(&kc->element[e], rig->look, a);
+        rig->missing[a] -= kc_rubber_force(kc, rig->look, a);
     }
     double *second = pool_alloc(kc->pool, ((size_t)m * (size_t)kc->outputs + 1) * sizeof *second);
     for (int b = 0; b < m && status == GIC_OK; ++b) {
@@ -96,6 +98,7 @@ static int evaluate_rig(Rig *rig)
                     (rig->look->slope[b * kc->outputs + element->force] * kc_element_slope(element, rig->look, a) +
                      rig->look->value[element->force] * (element->coordinate >= 0 ? 0 : by_a[element->rate]));
             }
+            rig->A[a * all + b] += kc_rubber_slope(kc, rig->look, a, b, by_a);
             for (int i = 0; i < n; ++i)
                 rig->A[a * all + b] +=
                     rig->force[i] * kc_contact_bend(&rig->axle->wheel[i], &rig->pose[i], &rig->by[b][i], &rig->by[a][i],
@@ -144,6 +147,9 @@ static double power(const Rig *rig, KcLoad load, int i, int a)
     case KC_LATERAL: return by->locked[1];
     case KC_LONGITUDINAL: return by->locked[0];
     case KC_ALIGNING: return by->turn[2];
+    case KC_VERTICAL: return by->contact[2];
+    case KC_HUB_LATERAL: return by->centre[1];
+    case KC_HUB_VERTICAL: return by->centre[2];
     default: return by->centre[0];
     }
 }
@@ -153,9 +159,9 @@ const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool op
     Rig *rig = pool_alloc(kc->pool, sizeof *rig);
     if (axle->refusal)
         return axle->refusal;
-    if (axle->followers > 0)
-        return pool_print(kc->pool, "coordinate '%s' is held by bushings, which compliance leaves out",
-                          kc->model->coordinate[axle->follower[0]].name);
+    if (kc_rubber_formula(kc))
+        return pool_print(kc->pool, "bushing '%s' has a formula, of which no stiffness is known",
+                          kc_rubber_formula(kc));
     *rig = (Rig){.kc = kc, .axle = axle, .look = columns_of(kc, axle), .n = axle->wheels};
     rig->m = rig->look->columns;
     rig->w = pool_alloc(kc->pool, (size_t)kc->model->coordinates * sizeof *rig->w);
@@ -170,10 +176,20 @@ const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool op
     const char *why = settle(rig);
     if (why)
         return why;
+    const bool floats = load == KC_VERTICAL || load == KC_HUB_VERTICAL; /* pads: their forces are given, not heights */
     double change[MOST] = {0}, along[KC_COLUMNS] = {0};
     for (int a = 0; a < rig->m; ++a)
-        for (int i = 0; i < rig->n; ++i)
+        for (int i = 0; i < rig->n; ++i) {
             change[a] -= (opposed ? axle->wheel[i].side : 1) * power(rig, load, i, a);
+            if (floats)
+                rig->A[a * (rig->m + rig->n) + rig->m + i] = 0;
+        }
+    for (int i = 0; i < rig->n && floats; ++i) {
+        double *row = rig->A + (rig->m + i) * (rig->m + rig->n);
+        memset(row, 0, (size_t)rig->m * sizeof *row);
+        row[rig->m + i] = 1;
+        change[rig->m + i] = load == KC_HUB_VERTICAL ? 0 : opposed ? axle->wheel[i].side : 1;
+    }
     if (!kc_solve(rig->m + rig->n, rig->A, change))
         return "nothing holds a coordinate that moves its wheels";
     memcpy(along, change, (size_t)rig->m * sizeof *along);
@@ -182,6 +198,7 @@ const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool op
         kc_rate(&axle->wheel[i], rig->look, &rig->pose[i], along, &rate);
         give[i] = (KcGive){.steer = kc_steer_rate(&rig->pose[i], &rate),
                            .camber = kc_camber_rate(&axle->wheel[i], &rig->pose[i], &rate),
+                           .turn = rate.turn[2],
                            .force = change[rig->m + i]};
         give[i].toe = -axle->wheel[i].side * give[i].steer;
         memcpy(give[i].contact, rate.locked, sizeof give[i].contact);
@@ -199,8 +216,9 @@ static const char *unit_of(KcLoad load)
 
 void kc_loads_csv(Pool *pool, const Kc *kc, const char *path)
 {
-    static const char *const column[] = {"axle",   "load",      "opposed",   "wheel",    "unit",     "steer", "toe",
-                                         "camber", "contact_x", "contact_y", "centre_x", "centre_y", "force"};
+    static const char *const column[] = {"axle",      "load",      "opposed",   "wheel",    "unit",     "steer",
+                                         "toe",       "camber",    "turn",      "contact_x", "contact_y", "contact_z",
+                                         "centre_x",  "centre_y",  "centre_z",  "force"};
     interrupt_hold();
     Csv csv = csv_open(pool, path);
     for (size_t i = 0; i < sizeof column / sizeof *column; ++i)
@@ -212,8 +230,9 @@ void kc_loads_csv(Pool *pool, const Kc *kc, const char *path)
             if (kc_compliance(kc, &kc->axle[a], (KcLoad)(k / 2), k % 2, give))
                 continue;
             for (int i = 0; i < kc->axle[a].wheels; ++i) {
-                const double number[] = {give[i].steer,      give[i].toe,       give[i].camber,    give[i].contact[0],
-                                         give[i].contact[1], give[i].centre[0], give[i].centre[1], give[i].force};
+                const double number[] = {give[i].steer,      give[i].toe,        give[i].camber,     give[i].turn,
+                                         give[i].contact[0], give[i].contact[1], give[i].contact[2], give[i].centre[0],
+                                         give[i].centre[1],  give[i].centre[2],  give[i].force};
                 csv_name(&csv, kc->axle[a].name, NULL);
                 csv_name(&csv, kc_load_name[k / 2], NULL);
                 csv_number(&csv, k % 2);
@@ -239,16 +258,18 @@ void kc_loads_print(Text *out, const Kc *kc, int a)
         text_print(out, "  compliance: not there: %s\n", why);
         return;
     }
-    text_print(out, "\n  %-34s%-16s %12s %12s %12s %12s\n", "compliance by 1 kN or 100 N m", "wheel", "toe, deg",
-               "camber, deg", "contact x mm", "contact y mm");
+    text_print(out, "\n  %-34s%-16s %12s %12s %12s %12s %12s\n", "compliance by 1 kN or 100 N m", "wheel", "toe, deg",
+               "camber, deg", "contact x mm", "contact y mm", "contact z mm");
     for (int k = 0; k < 2 * KC_LOADS; ++k) {
         const double unit = k / 2 == KC_ALIGNING ? 100 : 1000;
-        kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give);
+        if (kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give))
+            continue;
         for (int i = 0; i < axle->wheels; ++i)
-            text_print(out, "  %-34s%-16s %12s %12s %12s %12s\n",
+            text_print(out, "  %-34s%-16s %12s %12s %12s %12s %12s\n",
                        i ? "" : pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ", opposed" : ""),
                        axle->wheel[i].name, kc_shown(pool, give[i].toe, degrees * unit),
                        kc_shown(pool, give[i].camber, degrees * unit), kc_shown(pool, give[i].contact[0], 1e3 * unit),
-                       kc_shown(pool, give[i].contact[1], 1e3 * unit));
+                       kc_shown(pool, give[i].contact[1], 1e3 * unit),
+                       kc_shown(pool, give[i].contact[2], 1e3 * unit));
     }
 }

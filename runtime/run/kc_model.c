@@ -488,7 +488,7 @@ void kc_warn(const Kc *kc)
     if (kc->rubbers)
         diag_warn(kc->rubber[0].force->at,
                   "write what matters of their forces as springs between points, along coordinates or about axes",
-                  "%s %s left out of forces, wheel and roll rates and compliance",
+                  "%s %s left out of forces, wheel and roll rates",
                   kc->rubbers > 1 ? pool_print(kc->pool, "%d bushings, %s,", kc->rubbers, names)
                                   : pool_print(kc->pool, "bushing %s", names),
                   kc->rubbers > 1 ? "are" : "is");

@@ -246,7 +246,6 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
     if (!gives)
         diag_fail((Place){model->source, 0, 0}, "write what holds it as springs between points or along coordinates",
                   "no axle of model '%s' has a compliance: %s: %s", model->name, kc->axle[0].name, first);
-    kc_warn(kc);
     if (request->results) {
         kc_loads_csv(pool, kc, request->results);
         return;

@@ -28,103 +28,6 @@ bool kc_is_mount(const Model *model, int c)
     return alike == 6;
 }
 
-/* ---- a bushing ------------------------------------------------------------------------------------------ */
-
-void kc_stiffness(Kc *kc)
-{
-    Model model = *kc->model;
-    const gic_real *tuned = tape_array(kc->self, kc->engine->code->parameter_offset);
-    model.parameter = pool_alloc(kc->pool, ((size_t)model.parameters + 1) * sizeof *model.parameter);
-    for (int i = 0; i < model.parameters; ++i) {
-        model.parameter[i] = kc->model->parameter[i];
-        if (model.parameter[i].tunable)
-            model.parameter[i].value = tuned[model.parameter[i].index];
-    }
-    for (int r = 0; r < kc->rubbers; ++r)
-        for (int k = 0; k < BUSHING_AXES * BUSHING_AXES; ++k) {
-            const Law *law = kc->rubber[r].force->bushing->stiffness[bushing_place(k / BUSHING_AXES, k % BUSHING_AXES)];
-            kc->rubber[r].stiffness[k] = law ? law_number(law, &model) : 0;
-        }
-}
-
-/* Its displacements and rotation vector q, the axes in the world, and from its end in a to that in b. */
-typedef struct Bent {
-    double q[BUSHING_AXES], axes[9], lever[3];
-} Bent;
-
-static void multiply(const double A[9], const double B[9], double out[9])
-{
-    for (int i = 0; i < 9; ++i) {
-        out[i] = 0;
-        for (int k = 0; k < 3; ++k)
-            out[i] += A[3 * (i / 3) + k] * B[3 * k + i % 3];
-    }
-}
-
-/* The axes of one end in the world. */
-static void axes_of(const KcRubber *rubber, const KcLook *look, int end, double out[9])
-{
-    double A[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    if (rubber->force->body[end] != BODY_GROUND)
-        mat_from_euler(look->value + rubber->orientation[end], A);
-    multiply(A, rubber->force->bushing->frame[end], out);
-}
-
-/* One of its ends: position, or a rate of a column. */
-static void end_of(const KcRubber *rubber, const double *from, int end, int place, double out[3])
-{
-    if (rubber->force->body[end] == BODY_GROUND)
-        memset(out, 0, 3 * sizeof *out);
-    else
-        copy3(from + place, out);
-}
-
-static Bent bend(const KcRubber *rubber, const KcLook *look)
-{
-    Bent bent;
-    double other[9], C[9] = {0}, a[3], b[3];
-    axes_of(rubber, look, 0, bent.axes);
-    axes_of(rubber, look, 1, other);
-    end_of(rubber, look->value, 0, rubber->place[0], a);
-    end_of(rubber, look->value, 1, rubber->place[1], b);
-    if (rubber->force->body[0] == BODY_GROUND)
-        copy3(rubber->force->point[0], a);
-    if (rubber->force->body[1] == BODY_GROUND)
-        copy3(rubber->force->point[1], b);
-    sub3(b, a, bent.lever);
-    apply3_transposed(bent.axes, bent.lever, bent.q);
-    for (int i = 0; i < 9; ++i)
-        for (int k = 0; k < 3; ++k)
-            C[i] += bent.axes[3 * k + i / 3] * other[3 * k + i % 3];
-    const double s[3] = {(C[7] - C[5]) / 2, (C[2] - C[6]) / 2, (C[3] - C[1]) / 2}, size = norm3(s);
-    const double angle = atan2(size, (C[0] + C[4] + C[8] - 1) / 2);
-    for (int i = 0; i < 3; ++i)
-        bent.q[3 + i] = size > 0 ? s[i] * (angle / size) : 0;
-    return bent;
-}
-
-/* q' by a column: theta' = (I - 1/2 [theta]x + c [theta]x^2) omega. */
-static void bend_rate(const KcRubber *rubber, const Bent *bent, const KcLook *look, int column, double out[6])
-{
-    const double *slope = look->slope + column * look->outputs, *theta = bent->q + 3, t = norm3(theta);
-    const double c = t > 1e-4 ? (1 - t / 2 / tan(t / 2)) / (t * t) : 1.0 / 12;
-    double v[2][3], turn[2][3], carried[3], omega[3], once[3], twice[3];
-    for (int end = 0; end < 2; ++end) {
-        end_of(rubber, slope, end, rubber->velocity[end], v[end]);
-        end_of(rubber, slope, end, rubber->turn[end], turn[end]);
-    }
-    cross3(turn[0], bent->lever, carried);
-    sub3(v[1], v[0], v[1]);
-    sub3(v[1], carried, v[1]);
-    sub3(turn[1], turn[0], turn[1]);
-    apply3_transposed(bent->axes, v[1], out);
-    apply3_transposed(bent->axes, turn[1], omega);
-    cross3(theta, omega, once);
-    cross3(theta, once, twice);
-    for (int i = 0; i < 3; ++i)
-        out[3 + i] = omega[i] - once[i] / 2 + c * twice[i];
-}
-
 /* ---- what follows --------------------------------------------------------------------------------------- */
 
 /* K [n][n] and g [n] by the first n columns, of all bushings. */
@@ -134,10 +37,10 @@ static void stiffness_of(const Kc *kc, const KcLook *look, int n, double *K, dou
     memset(g, 0, (size_t)n * sizeof *g);
     for (int r = 0; r < kc->rubbers; ++r) {
         const KcRubber *rubber = &kc->rubber[r];
-        const Bent bent = bend(rubber, look);
+        const KcBent bent = kc_bend(rubber, look);
         double rate[KC_COLUMNS][BUSHING_AXES];
         for (int a = 0; a < n; ++a)
-            bend_rate(rubber, &bent, look, a, rate[a]);
+            kc_bend_rate(rubber, &bent, look, a, rate[a]);
         for (int a = 0; a < n; ++a)
             for (int i = 0; i < BUSHING_AXES; ++i) {
                 double along = 0; /* of row i of its stiffness */
@@ -258,23 +161,11 @@ static bool is_follower(const Kc *kc, const KcAxle *axle, int c)
             moves || norm3(one->slope + axle->wheel[i].velocity) + norm3(one->slope + axle->wheel[i].turn) > nothing;
     for (int r = 0; r < kc->rubbers && moves; ++r) {
         double rate[BUSHING_AXES];
-        const Bent bent = bend(&kc->rubber[r], one);
-        bend_rate(&kc->rubber[r], &bent, one, 0, rate);
+        const KcBent bent = kc_bend(&kc->rubber[r], one);
+        kc_bend_rate(&kc->rubber[r], &bent, one, 0, rate);
         bends = bends || norm3(rate) + norm3(rate + 3) > nothing;
     }
     return moves && bends;
-}
-
-/* A bushing with a formula, whose stiffness is not known here; NULL: none has one. */
-static const char *formula_of(const Kc *kc)
-{
-    for (int r = 0; r < kc->rubbers; ++r)
-        for (int i = 0; i < BUSHING_AXES; ++i) {
-            const Law *law = kc->rubber[r].force->law[i];
-            if (law && law->op != LAW_NUMBER && law->op != LAW_PARAMETER)
-                return kc->rubber[r].force->name;
-        }
-    return NULL;
 }
 
 void kc_find_followers(Kc *kc, KcAxle *axle)
@@ -298,12 +189,12 @@ void kc_find_followers(Kc *kc, KcAxle *axle)
     axle->followers = on_rubber ? axle->followers : 0;
     if (!on_rubber)
         return;
-    if (formula_of(kc)) {
+    if (kc_rubber_formula(kc)) {
         axle->refusal =
             pool_print(kc->pool,
                        "its wheels hang on rubber, and bushing '%s' has a formula, of which no stiffness is "
                        "known; give it `stiffness`",
-                       formula_of(kc));
+                       kc_rubber_formula(kc));
         return;
     }
     axle->preload = pool_alloc(kc->pool, KC_COLUMNS * sizeof *axle->preload);
