@@ -98,7 +98,7 @@ KcBent kc_bend(const KcRubber *rubber, const KcLook *look)
 /* c = (1 - t/2 cot(t/2)) / t^2 and c'/t: small angles t by their series, of |B_2k| / (2k)!. */
 static void turning(double t, double *c, double *slope)
 {
-    static const double term[] = {1.0 / 12,       1.0 / 720,           1.0 / 30240,       1.0 / 1209600,
+    static const double term[] = {1.0 / 12,       1.0 / 720,          1.0 / 30240,      1.0 / 1209600,
                                   1.0 / 47900160, 691 / 1307674368e3, 1.0 / 74724249600};
     enum { TERMS = sizeof term / sizeof *term };
     const double half = t / 2;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Compliance of an axle: how its wheels give way to loads at contacts and hubs, as springs, stops and formulas let
- * them. The heights of the contacts are held, as by the pads of a rig, with forces F_i; coordinates w_a that are free
- * and move the wheels take their places. With the generalized forces Q_e and values x_e of elements, heights z_i and
- * loads L of places p sum_e Q_e dx_e/dw_a + sum_i F_i dz_i/dw_a + L dp/dw_a = 0    for all a,    z_i held. Newton's
- * method finds the place without loads, and the derivative by L follows from the same matrix (implicit function
- * theorem), which has the exact second derivatives of x_e and z_i in it. */
+ * Compliance of an axle: how its wheels give way to loads at contacts and hubs, as springs, stops, formulas and
+ * bushings let them. The heights of the contacts are held, as by the pads of a rig, with forces F_i; coordinates w_a
+ * that are free and move the wheels take their places. With the generalized forces Q_e and values x_e of elements,
+ * heights z_i and loads L of places p sum_e Q_e dx_e/dw_a + sum_i F_i dz_i/dw_a + L dp/dw_a = 0    for all a,    z_i
+ * held. Newton's method finds the place without loads, and the derivative by L follows from the same matrix (implicit
+ * function theorem), which has the exact second derivatives of x_e and z_i in it. */
 #include "base/text.h"
 #include "base/vec3.h"
 #include "gic_runtime.h"
@@ -18,7 +18,7 @@
 enum { MOST = KC_COLUMNS + KC_WHEELS, NEWTON_MOST = 30 };
 
 const char *const kc_load_name[KC_LOADS] = {"lateral",          "longitudinal", "aligning",    "vertical",
-                                             "hub_longitudinal", "hub_lateral",  "hub_vertical"};
+                                            "hub_longitudinal", "hub_lateral",  "hub_vertical"};
 
 typedef struct Rig {
     const Kc *kc;
@@ -216,9 +216,9 @@ static const char *unit_of(KcLoad load)
 
 void kc_loads_csv(Pool *pool, const Kc *kc, const char *path)
 {
-    static const char *const column[] = {"axle",      "load",      "opposed",   "wheel",    "unit",     "steer",
-                                         "toe",       "camber",    "turn",      "contact_x", "contact_y", "contact_z",
-                                         "centre_x",  "centre_y",  "centre_z",  "force"};
+    static const char *const column[] = {"axle",     "load",     "opposed",  "wheel",     "unit",      "steer",
+                                         "toe",      "camber",   "turn",     "contact_x", "contact_y", "contact_z",
+                                         "centre_x", "centre_y", "centre_z", "force"};
     interrupt_hold();
     Csv csv = csv_open(pool, path);
     for (size_t i = 0; i < sizeof column / sizeof *column; ++i)
@@ -262,14 +262,14 @@ void kc_loads_print(Text *out, const Kc *kc, int a)
                "camber, deg", "contact x mm", "contact y mm", "contact z mm");
     for (int k = 0; k < 2 * KC_LOADS; ++k) {
         const double unit = k / 2 == KC_ALIGNING ? 100 : 1000;
-        if (kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give))
-            continue;
-        for (int i = 0; i < axle->wheels; ++i)
-            text_print(out, "  %-34s%-16s %12s %12s %12s %12s %12s\n",
-                       i ? "" : pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ", opposed" : ""),
-                       axle->wheel[i].name, kc_shown(pool, give[i].toe, degrees * unit),
-                       kc_shown(pool, give[i].camber, degrees * unit), kc_shown(pool, give[i].contact[0], 1e3 * unit),
-                       kc_shown(pool, give[i].contact[1], 1e3 * unit),
+        const char *name = pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ", opposed" : "");
+        const char *not_there = kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give);
+        if (not_there)
+            text_print(out, "  %s: %s\n", name, not_there);
+        for (int i = 0; i < axle->wheels && !not_there; ++i)
+            text_print(out, "  %-34s%-16s %12s %12s %12s %12s %12s\n", i ? "" : name, axle->wheel[i].name,
+                       kc_shown(pool, give[i].toe, degrees * unit), kc_shown(pool, give[i].camber, degrees * unit),
+                       kc_shown(pool, give[i].contact[0], 1e3 * unit), kc_shown(pool, give[i].contact[1], 1e3 * unit),
                        kc_shown(pool, give[i].contact[2], 1e3 * unit));
     }
 }

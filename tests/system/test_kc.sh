@@ -41,6 +41,8 @@ check 'planar axles by hand' python "$root/tests/vehicle/planar_axles.py" "$gicr
 
 check 'compliance by an independent solution, in closed form and mutual' python "$root/tests/vehicle/compliance.py" "$gicgen" \
     "$gicrun" "$models" "$work"
+check 'compliance on rubber: on paper, by statics, mutual' python "$root/tests/vehicle/compliance_rubber.py" "$gicgen" "$gicrun" \
+    "$models" "$work"
 run --kc --loads "$models/hmmwv_vehicle.veh"
 check 'an axle whose rack is driven does not give way' exits 0
 run --kc --loads "$work/left.veh"
@@ -122,12 +124,17 @@ beside() { awk -F, 'NR == FNR {if (FNR == 1) for (i = 1; i <= NF; ++i) {split($i
     else if ($2 == "parallel" && $3 ^ 2 < 1e-24) for (i = 1; i <= NF; ++i) at[name[i]] = $i; next}
     FNR > 1 && $1 in at {n += 1; e += at[$1] != $4} END {exit !(n > 20 && !e)}' "$work/rows.csv" "$work/both.csv"; }
 check 'the other one has its numbers' beside
-for axle in front rear; do
-    run --kc --loads --axle $axle "$models/hatchback.veh" -q -o "$work/rubber.csv"
-    check "no compliance of axle $axle on rubber" exits 1
-    check "no compliance of axle $axle on rubber, said" says "has a compliance: $axle: coordinate '.*' is held by bushings"
-    check "no file for axle $axle" [ ! -e "$work/rubber.csv" ]
-done
+sed 's/stiffness: \[1, 1, 1, 1, 1, 1\]/force: ["-1e5 * dx^3", 0, 0]/' "$work/soft.veh" >"$work/formula.veh"
+run --kc --loads --axle front "$work/formula.veh" -q -o "$work/rubber.csv"
+check 'no compliance with a formula of rubber' exits 1
+check 'its bushing is named' says "has a compliance: front: bushing 'mount' has a formula, of which no stiffness is known"
+check 'no file' [ ! -e "$work/rubber.csv" ]
+printf '%s\n' 'gicgen: 1' 'model: loose' 'base: car' 'bodies:' '  car: {mass: 9, com: [0, 0, 1], inertia: [1, 1, 1]}' \
+    '  hub: {mass: 9, com: [0, 0, 0.3], inertia: [1, 1, 1]}' 'joints:' '  slide: {type: prismatic, bodies: [car, hub], axis: [0, 0, 1]}' \
+    'coordinates:' '  rise: {type: translation, bodies: [car, hub], axis: [0, 0, 1], range: [-0.1, 0.1]}' \
+    'wheels:' '  wheel: {body: hub, center: [0, 0, 0.3], radius: 0.3, stiffness: 1000}' >"$work/loose.veh"
+run --kc --loads "$work/loose.veh"
+check 'what nothing holds under a vertical load is told' prints 'vertical: nothing holds a coordinate'
 run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" --report "$work/x.html"
 check '--compare is a table' exits 2
 
