@@ -57,6 +57,12 @@ static size_t states(const gic_model *model)
     return (size_t)(model->slow_count + model->fast_count);
 }
 
+/* Numbers that are integrated: where all coordinates are driven there is no state, and 0 is, for GSL wants some. */
+static size_t dimension(const gic_model *model)
+{
+    return states(model) ? states(model) : 1;
+}
+
 static void refresh_inputs(const gic_model *model, gic_head *self, double time)
 {
     if (self->input_function)
@@ -93,6 +99,8 @@ static int right_hand_side(double time, const double *state, double *rate, void 
     Variable *variable = user;
     refresh_inputs(variable->model, variable->self, time);
     probe_begin(variable->probe, time);
+    if (!states(variable->model))
+        *rate = 0;
     int status = variable->model->rhs(variable->self, time, state, rate);
     if (status == GIC_OK)
         status = look_at_contacts(variable, time, state);
@@ -119,9 +127,9 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     /* the first step is of first order: its error is half its square times the second derivative, about 1e3 here */
     variable->tolerance = tolerance;
     variable->first_step = 0.03 * sqrt(tolerance);
-    variable->system = (gsl_odeiv2_system){right_hand_side, NULL, states(model), variable};
-    variable->integrated = calloc(states(model), sizeof(double));
-    variable->settled = calloc(states(model), sizeof(double));
+    variable->system = (gsl_odeiv2_system){right_hand_side, NULL, dimension(model), variable};
+    variable->integrated = calloc(dimension(model), sizeof(double));
+    variable->settled = calloc(dimension(model), sizeof(double));
     variable->before = malloc(model->size);
     variable->whole = malloc(model->size);
     variable->start = malloc(model->size);

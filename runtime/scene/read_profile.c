@@ -136,25 +136,28 @@ static void read_pulse(Pool *pool, const Item *item, Profile *profile)
     const Item *many = doc_find(item, "count");
     const double duration = scene_positive(length, "duration"), period = again ? scene_positive(again, "period") : 0;
     const double count = many ? scene_positive(many, "count") : 1;
-    if (duration <= 2 * m.duration)
-        diag_fail(length->at, pool_print(pool, "write more than %.6g, twice the rise", 2 * m.duration),
+    const double rounding = 1e-12 * duration; /* of numbers that are meant to be equal */
+    if (duration < 2 * m.duration - rounding)
+        diag_fail(length->at, pool_print(pool, "write at least %.6g, twice the rise", 2 * m.duration),
                   "the pulse ends before it has risen and fallen");
     if (count != floor(count) || count > (double)PULSES)
         diag_fail(many->at, "write how many pulses there are", "count must be a whole number from 1 to %d", PULSES);
     if (count > 1 && !again)
         diag_fail(many->at, "add `period: ...`", "several pulses need the key 'period'");
-    if (count > 1 && period <= duration)
-        diag_fail(again->at, pool_print(pool, "write more than %.6g", duration),
-                  "a pulse begins before the last ended");
+    if (count > 1 && period < duration - rounding)
+        diag_fail(again->at, pool_print(pool, "write at least %.6g", duration), "a pulse begins before the last ended");
     const int knots = 4 * (int)count;
     profile->time = pool_alloc(pool, sizeof(double) * (size_t)knots);
     profile->value = pool_alloc(pool, sizeof(double) * (size_t)knots);
-    profile->count = knots;
+    profile->count = 0;
     for (int i = 0; i < knots; ++i) {
         const double begin = m.start + i / 4 * period;
-        const double edge[4] = {0, m.duration, duration - m.duration, duration};
-        profile->time[i] = begin + edge[i % 4];
-        profile->value[i] = i % 4 == 1 || i % 4 == 2 ? m.to : m.from;
+        const double edge[4] = {0, m.duration, duration - m.duration, duration}, time = begin + edge[i % 4];
+        /* a pulse that falls once it has risen, or begins as the last ends, has one knot there */
+        if (profile->count > 0 && time <= profile->time[profile->count - 1] + rounding)
+            continue;
+        profile->time[profile->count] = time;
+        profile->value[profile->count++] = i % 4 == 1 || i % 4 == 2 ? m.to : m.from;
     }
 }
 

@@ -256,5 +256,27 @@ check 'a tolerance that is no number is a usage error' exits 2
 run models/pendulum.veh models/scenes/pendulum.scene --tolerance 1e-6
 check 'a tolerance for constant steps is refused' says 'remedy: .*--integrator adams'
 
+# Where all coordinates are driven there is no state: a mass that goes as 10 s^3 - 15 s^4 + 6 s^5 takes the force that is its
+# second derivative, whatever the steps.
+cat >"$work/driven.veh" <<'END'
+gicgen: 1
+model: driven
+base: ground
+gravity: [0, 0, 0]
+bodies: {m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {rail: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], driven: true}}
+outputs: {force: {type: drive_force, coordinate: x}}
+END
+for integrator in rkck adams; do
+    for engine in tcc gic tape; do
+        echo "{gicscene: 1, duration: 2, output_step: 0.125, integrator: $integrator, inputs: {x: {step: {to: 1, rise: 1}}}}" >"$work/driven.scene"
+        run --engine $engine "$work/driven.veh" "$work/driven.scene" -o "$work/driven.csv"
+        check "$integrator, $engine: a model without states runs" exits 0
+        check "$integrator, $engine: with the force of its motion" awk -F, 'NR > 1 { s = $1; f = s < 1 ? 60 * s - 180 * s * s + 120 * s * s * s : 0
+            d = $2 - f; if (!(d * d <= 1e-22)) bad = 1 } END { exit bad || NR != 18 }' "$work/driven.csv"
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

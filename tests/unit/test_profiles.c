@@ -135,6 +135,18 @@ static void test_moves(void **unused)
         else if (phase > 0.1001 && phase < 0.2999)
             assert_near(now, 1, 1e-11);
     }
+    /* it falls once it has risen, and rises once it has fallen: times that are equal but for rounding, too */
+    const char *const touching[] = {"{pulse: {from: 0, to: 2, rise: 0.5, duration: 1, period: 1, count: 3}}",
+                                    "{pulse: {from: 0, to: 2, rise: 0.15, duration: 0.3, period: 0.3, count: 10}}"};
+    for (int i = 0; i < 2; ++i) {
+        const Profile *wave = rack_of(pool, touching[i]);
+        const double rise = i == 0 ? 0.5 : 0.15;
+        check_derivatives(wave, 4, 2 * 60 / pow(rise, 3));
+        for (double t = 0; t < 4; t += 0.01) {
+            const double phase = fmod(t, 2 * rise) / rise, u = phase < 1 ? phase : 2 - phase;
+            assert_near(value_at(wave, t), t > 3 ? 0 : 2 * u * u * u * (10 - 15 * u + 6 * u * u), 1e-11);
+        }
+    }
     pool_free(pool);
 }
 
