@@ -275,18 +275,25 @@ static void write_masses(void *context, Text *out, int indent)
     line(out, indent, "enum { %s_MASSES = %d };", g->upper, columns_of(g)->masses);
 }
 
+/* Numbers of a table; of none a 0, for C has no empty tables. */
+static void write_table(Text *out, int indent, const int *number, int count)
+{
+    for (int i = 0; i < count; ++i)
+        line(out, indent, "%d,", number[i]);
+    if (count == 0)
+        line(out, indent, "0,");
+}
+
 static void write_mass_rows(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    for (int i = 0; i < columns_of(g)->masses; ++i)
-        line(out, indent, "%d,", columns_of(g)->mass_row[i]);
+    write_table(out, indent, columns_of(g)->mass_row, columns_of(g)->masses);
 }
 
 static void write_mass_columns(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    for (int i = 0; i < columns_of(g)->masses; ++i)
-        line(out, indent, "%d,", columns_of(g)->mass_column[i]);
+    write_table(out, indent, columns_of(g)->mass_column, columns_of(g)->masses);
 }
 
 static void write_euler(void *context, Text *out, int indent)

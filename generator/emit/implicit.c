@@ -56,7 +56,8 @@ void write_implicit_members(void *context, Text *out, int indent)
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
     line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d];", g->upper, jacobian_columns(g),
          weighed ? weighed->masses : 0);
-    line(out, indent, "int32_t implicit_pivot[%s_IMPLICIT_UNKNOWNS];", g->upper);
+    line(out, indent, "int32_t implicit_pivot[%s];", /* C has no empty arrays */
+         unknowns(g) ? pool_print(g->pool, "%s_IMPLICIT_UNKNOWNS", g->upper) : "1");
 }
 
 /* The unknowns in the order of the state, and the states whose rates they are. */
@@ -92,7 +93,7 @@ static bool is_short(Generation *g)
 {
     int *unknown, *position;
     list_unknowns(g, &unknown, &position);
-    return elimination_is_short(g, unknowns(g), unknown, position);
+    return unknowns(g) > 0 && elimination_is_short(g, unknowns(g), unknown, position);
 }
 
 static void write_elimination(void *context, Text *out, int indent)
@@ -118,6 +119,8 @@ static void write_unknowns(void *context, Text *out, int indent)
     for (int i = 0; i < states(g); ++i)
         if (rate_of(g, i) < 0)
             line(out, indent, "%d, /* %s */", i, state_number(g->pool, g->formulation, i).name);
+    if (unknowns(g) == 0)
+        line(out, indent, "0, /* none */");
 }
 
 static void write_positions(void *context, Text *out, int indent)
@@ -126,6 +129,8 @@ static void write_positions(void *context, Text *out, int indent)
     for (int i = 0; i < states(g); ++i)
         if (rate_of(g, i) < 0)
             line(out, indent, "%d,", position_of(g, i));
+    if (unknowns(g) == 0)
+        line(out, indent, "0,");
 }
 
 static void write_jacobian_call(void *context, Text *out, int indent)

@@ -45,7 +45,7 @@ static int value_at(SceneEvents *events, const gic_model *model, const Action *a
     if (status == GIC_OK)
         *value = action_value(action, events->scene, model, events->look,
                               engine->leave ? standard : state_of(events, events->look),
-                              (engine->standard_count - model->fast_count) / 2);
+                              engine->standard_count - model->fast_count);
     return status;
 }
 

@@ -18,6 +18,7 @@ typedef struct View {
     const gic_model *code;
     gic_head *self;
     const double *standard;
+    int slow; /* numbers of the multibody system in it, before the fast states */
     int half; /* from a position in it to its rate */
 } View;
 
@@ -62,6 +63,7 @@ static double value_of(const View *view, const Law *law)
     case LAW_INPUT: return instance_array(view->self, view->code->input_offset)[law->index];
     case LAW_VALUE: return coordinate_at(view, law->index, false);
     case LAW_RATE: return coordinate_at(view, law->index, true);
+    case LAW_STATE: return view->standard[view->slow + model->state[law->index].fast];
     case LAW_PARAMETER:
         return model->parameter[law->index].tunable ? scene->parameter[model->parameter[law->index].index]
                                                     : law_number(law, model);
@@ -80,9 +82,9 @@ static double value_of(const View *view, const Law *law)
 }
 
 double action_value(const Action *action, const Scene *scene, const gic_model *code, gic_head *self,
-                    const double *standard, int half)
+                    const double *standard, int slow)
 {
-    return value_of(&(View){scene, code, self, standard, half}, action->law);
+    return value_of(&(View){scene, code, self, standard, slow, slow / 2}, action->law);
 }
 
 /* A profile that takes over from `before` at `time`, where the input is `present`: value and, if driven, rate. */

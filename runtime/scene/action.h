@@ -44,9 +44,9 @@ struct Actions {
 /* Read `until` and `when`; NULL: the scene has neither. */
 Actions *actions_read(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* The value of a condition, of an instance whose outputs are computed where the scene watches some. standard: its state
- * as in FORMAT.md section 10; half: from a coordinate in it to its rate. */
+ * as in FORMAT.md section 10; slow: how many numbers of it come before the fast states. */
 double action_value(const Action *action, const Scene *scene, const gic_model *code, gic_head *self,
-                    const double *standard, int half);
+                    const double *standard, int slow);
 /* Execute the action at the instance's time, with its inputs up to date. */
 void action_start(Pool *pool, Action *action, const Scene *scene, const double *input);
 /* Clear the marks of the inputs that actions change. */

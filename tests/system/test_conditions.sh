@@ -169,5 +169,33 @@ scene 'until: x < 0'
 "$gicsweep" -q "$work/carts.veh" "$work/a.scene" --vary push=0:1:2 -o "$work/s.csv" >"$work/out" 2>"$work/err"
 check "sweeps have no conditions" says 'the scene has conditions'
 
+# states of the model, among them what controllers hold: s = t from the start, c counts at 0, 0.25, 0.5 ...; u is 10 times what c was at the sample before, 0.1 s later
+cat >"$work/states.veh" <<'END'
+gicgen: 1
+model: states
+gravity: [0, 0, 0]
+base: BASE
+states: {other: {rate: "-1"}, s: {rate: "1"}}
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+  n: {mass: 1, com: [1, 0, 0], inertia: [1, 1, 1]}
+joints: {rail: {type: prismatic, bodies: [ROOT, n], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ROOT, n], axis: [1, 0, 0], range: [-9, 9]}}
+controllers:
+  c: {period: 0.25, rules: {n: "c.n + 1", u: {value: "10 * c.n", delay: 0.1}}}
+END
+for base in ground m; do
+    # without the body m, or with it
+    sed "s/BASE/$base/; s/ROOT/$base/" "$work/states.veh" | sed "$([ $base = m ] || echo '/^  m:/d')" >"$work/held.veh"
+    for way in '' --general '--engine tape' '--engine gic' '--engine gcp1' '--integrator rkck'; do
+        for condition in 's > 0.5|0.5' 's + time > 0.5|0.25' 's > 0.7 + other|0.35' 'c.n > 2.5|0.5' 'c.u > 15|0.6' 'c.u + 100 * s > 55|0.45'; do
+            echo "{gicscene: 1, duration: 1, step: 0.01, output_step: 0.1, integrator: rk4, until: '${condition%|*}'}" >"$work/a.scene"
+            # shellcheck disable=SC2086  # a list of words
+            run $way "$work/held.veh" "$work/a.scene" -o "$work/a.csv"
+            check "$base, $way: ${condition%|*}" happened "${condition%|*}" "${condition#*|}" 1e-9
+        done
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -277,6 +277,24 @@ g++ -std=c++11 -x c++
 clang -std=c99
 END
 
+# no free coordinate, or no coordinate: nothing is unknown, and C has no empty tables
+cat >driven.veh <<'END'
+gicgen: 1
+model: driven
+base: ground
+bodies: {m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {rail: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], driven: true}}
+END
+sed 's/prismatic/fixed/; s/, axis: .*/}}/; /^coordinates/d' driven.veh >still.veh
+for name in driven still; do
+    for how in '' --derivatives; do
+        # shellcheck disable=SC2086  # lists of words
+        "$gicgen" --implicit $how $name.veh -o none.c >said 2>&1 && gcc -std=c99 $warnings -I. -c none.c -o /dev/null >>said 2>&1
+        verdict $? "$name, --implicit $how: $(head -1 said)"
+    done
+done
+
 # (W - reach A) u = b multiplied out, W with the mass matrix in rows of velocities, with all states of the Jacobian, at states of a run and reaches up to 0.1 s
 cat >residual.c <<'END'
 #include <math.h>
