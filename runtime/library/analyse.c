@@ -119,7 +119,7 @@ static void find_modes(void *context)
     double *data = pool_alloc(pool, sizeof *data * (size_t)(rows * columns + 1));
     for (int r = 0; r < rows; ++r)
         for (int k = 0; k < columns; ++k)
-            data[r * columns + k] = modes_value(modes, r - modes->zeros, k);
+            data[r * columns + k] = modes_value(found->linear, modes, r - modes->zeros, k);
     result_add(work->result, "modes", rows, columns, data, NULL, column);
 }
 

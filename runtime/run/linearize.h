@@ -152,8 +152,31 @@ const Modes *modes_about(Pool *pool, const Scene *scene, bool quiet, const Equil
 /* Column k of a table of modes, with its unit (NULL: none), NULL: there is no such column; and a number in it, NAN: it
  * does not apply. Modes from -zeros to count - 1; negative ones are the zeros. */
 const char *modes_column(Pool *pool, const Linear *linear, int k, const char **unit);
-double modes_value(const Modes *modes, int mode, int k);
+double modes_value(const Linear *linear, const Modes *modes, int mode, int k);
+/* Print names and parts of the three largest shares above a tenth, and the end of the line. */
+void modes_print_shares(Text *out, const Linear *linear, const Mode *mode);
 /* --modes: a table; or CSV with -o. About the equilibrium, with the scene's velocity. */
 void modes_report(Pool *pool, const Scene *scene, const Request *request, const Equilibrium *found);
+
+/* ---- mode_steps.c: constant steps for modes -------------------------------------------------------------- */
+
+/* True if the mode is mostly of fast states, which have their own steps with a `ratio`. */
+bool mode_is_fast(const Linear *linear, const Mode *mode);
+
+/* Steps of one gic_method, s; INFINITY: any. */
+typedef struct StepLimit {
+    double stable;       /* longest one with which no mode grows that decays by itself */
+    const Mode *limits;  /* the mode that sets it; NULL: none */
+    double accurate;     /* longest one with which all modes keep their eigenvalues to mode_accuracy */
+} StepLimit;
+
+extern const double mode_accuracy; /* of |eigenvalue| */
+/* ratio: fast steps in a step, 1 but for AB3; a mode of fast states and a `ratio` are taken to move apart from others. */
+StepLimit modes_step(const Linear *linear, const Modes *modes, int32_t method, int32_t ratio);
+/* Column k of a table of steps for single modes, s, as modes_column() and modes_value(). */
+const char *mode_steps_column(int k);
+double mode_steps_value(const Mode *mode, int k);
+/* A table of modes_step() for people; ratio: that of AB3. */
+void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int32_t ratio);
 
 #endif

@@ -298,8 +298,7 @@ static const char *share_name(const Linear *linear, int i)
     return linear->name[i < linear->places ? i : i + linear->places];
 }
 
-/* The three largest shares above a tenth. */
-static void print_shares(Text *out, const Linear *linear, const Mode *mode)
+void modes_print_shares(Text *out, const Linear *linear, const Mode *mode)
 {
     const int count = linear->count - linear->places;
     bool named[count + 1];
@@ -339,7 +338,7 @@ static void print_table(Text *out, const Linear *linear, const Modes *modes)
             text_print(out, "%11.4g s  ", 1 / fabs(mode->real));
         else
             text_print(out, "%13s  ", "");
-        print_shares(out, linear, mode);
+        modes_print_shares(out, linear, mode);
     }
     if (modes->zeros)
         text_print(out, "%22s  %d eigenvalues that are zero: neutral in %s\n", "0", modes->zeros,
@@ -360,12 +359,14 @@ enum { SHARES = sizeof column / sizeof *column };
 const char *modes_column(Pool *pool, const Linear *linear, int k, const char **unit)
 {
     *unit = k < SHARES ? column[k].unit : NULL;
-    if (k - SHARES >= linear->count - linear->places)
-        return NULL;
-    return k < SHARES ? column[k].name : pool_print(pool, "share.%s", share_name(linear, k - SHARES));
+    const int step = k - SHARES - (linear->count - linear->places);
+    if (step < 0)
+        return k < SHARES ? column[k].name : pool_print(pool, "share.%s", share_name(linear, k - SHARES));
+    *unit = "s";
+    return mode_steps_column(step);
 }
 
-double modes_value(const Modes *modes, int mode, int k)
+double modes_value(const Linear *linear, const Modes *modes, int mode, int k)
 {
     const Mode zero = {0}, *m = mode < 0 ? &zero : &modes->mode[mode];
     const double size = hypot(m->real, m->imaginary);
@@ -375,23 +376,28 @@ double modes_value(const Modes *modes, int mode, int k)
     case 2: return m->imaginary > 0 ? size / (2 * pi) : NAN;
     case 3: return m->imaginary > 0 ? -m->real / size : NAN;
     case 4: return m->real != 0 ? 1 / fabs(m->real) : NAN;
-    default: return m->share ? m->share[k - SHARES] : NAN;
+    default: break;
     }
+    const int shares = linear->count - linear->places;
+    if (!m->share)
+        return NAN;
+    return k - SHARES < shares ? m->share[k - SHARES] : mode_steps_value(m, k - SHARES - shares);
 }
 
 static void write_csv(Pool *pool, const Linear *linear, const Modes *modes, const char *path)
 {
-    const int columns = SHARES + linear->count - linear->places;
     interrupt_hold();
     Csv csv = csv_open(pool, path);
-    for (int k = 0; k < columns; ++k) {
-        const char *unit, *name = modes_column(pool, linear, k, &unit);
+    const char *unit, *name;
+    int columns = 0;
+    while ((name = modes_column(pool, linear, columns, &unit))) {
         csv_name(&csv, name, unit);
+        ++columns;
     }
     csv_end_row(&csv);
     for (int mode = -modes->zeros; mode < modes->count; ++mode) {
         for (int k = 0; k < columns; ++k) {
-            const double value = modes_value(modes, mode, k);
+            const double value = modes_value(linear, modes, mode, k);
             if (isnan(value))
                 csv_text(&csv, NULL);
             else
@@ -479,5 +485,6 @@ void modes_report(Pool *pool, const Scene *scene, const Request *request, const 
     else
         text_print(&table, "%s: small motions about the static equilibrium\n", found->model->name);
     print_table(&table, linear, modes);
+    modes_print_steps(&table, linear, modes, scene ? scene->ratio : 1);
     diag_text(table.s);
 }

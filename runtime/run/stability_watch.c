@@ -270,13 +270,11 @@ static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
     const Linear *linear = watch->theory->linear;
     const int32_t method = watch->scene->method;
     const int places = linear->places;
-    double fast = 0;
+    const bool fast = mode_is_fast(linear, mode);
     int most = 0;
-    for (int i = 0; i < linear->count - places; ++i) {
-        fast += i < places ? 0 : mode->share[i];
+    for (int i = 0; i < linear->count - places; ++i)
         most = mode->share[i] > mode->share[most] ? i : most;
-    }
-    const double step = watch->scene->step / (fast > 0.5 ? fmax(1, watch->scene->ratio) : 1);
+    const double step = watch->scene->step / (fast ? fmax(1, watch->scene->ratio) : 1);
     const double real = step * mode->real, imaginary = step * mode->imaginary;
     if (mode->real >= 0 || !step_grows(method, longer * real, longer * imaginary, growth_least))
         return;
@@ -288,7 +286,7 @@ static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
     if (growth <= moment->growth)
         return;
     moment->growth = growth;
-    moment->fast = fast > 0.5;
+    moment->fast = fast;
     moment->moves = linear->name[most < places ? most : most + places];
     moment->real = mode->real;
     moment->imaginary = mode->imaginary;

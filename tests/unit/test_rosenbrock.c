@@ -16,6 +16,7 @@
 /* the coefficients are the runtime's own */
 #define GIC_NAME(name) test_rosenbrock_##name
 #include "gic_runtime.c"
+#include "run/step_growth.h"
 
 /* ---- conditions of order -------------------------------------------------------------------------------------- */
 
@@ -346,6 +347,10 @@ static void test_stability(void **unused)
                              cimag(lambda), creal(is), cimag(is), creal(right), cimag(right));
                 if (size == 36)
                     assert_true(cabs(is) < 1e-7); /* L-stable */
+                /* as --modes tells it, of motions that a step sees */
+                const double complex z = lambda * 0.5, error = clog(is * cexp(-z)) / z;
+                if (size >= -6 && size <= 2)
+                    assert_true(fabs(step_error(method, creal(z), cimag(z)) - cabs(error)) < 1e-12 / cabs(z));
             }
 }
 

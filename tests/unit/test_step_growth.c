@@ -112,9 +112,68 @@ static void test_alike(void **state)
         }
 }
 
+/* Longest steps: the limits above over |lambda|, on a way that leaves the region once and on one that grows by itself. */
+static void test_stable(void **state)
+{
+    (void)state;
+    for (double size = 1e-3; size < 1e6; size *= 7) {
+        assert_true(fabs(step_stable(GIC_AB3, -size, 0) * size - 6.0 / 11) < 1e-9);
+        assert_true(fabs(step_stable(GIC_RK4, -size, 0) * size - 2.785293563405282) < 1e-9);
+        assert_true(fabs(step_stable(GIC_RK4, 0, size) * size - sqrt(8)) < 1e-6);
+        /* the same for what rounding leaves of damping */
+        assert_true(fabs(step_stable(GIC_AB3, 1e-12 * size, size) * size - 0.7236) < 1e-4);
+        assert_true(isinf(step_stable(GIC_AB3, size, 0)) && isinf(step_stable(GIC_RK4, size, size)));
+        for (int32_t method = GIC_ROS2; method <= GIC_ROS3; ++method)
+            assert_true(isinf(step_stable(method, -size, size)));
+    }
+    assert_true(isinf(step_stable(GIC_AB3, 0, 0)) && isinf(step_accurate(GIC_ROS3, 0, 0, 0.01)));
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method)
+        for (int way = 1; way <= 8; ++way) {
+            const double angle = acos(-1.0) * (1 - way / 17.0), step = step_stable(method, cos(angle), sin(angle));
+            assert_true(measured(method, 0.98 * step * cos(angle), 0.98 * step * sin(angle)) < 1);
+            assert_true(measured(method, 1.02 * step * cos(angle), 1.02 * step * sin(angle)) > 1);
+        }
+}
+
+/* The eigenvalue in steps, as the turn and growth of a run have it after its start. */
+static double measured_error(int32_t method, double real, double imaginary)
+{
+    Spiral s = {.state = {1, 0}, .real = real, .imaginary = imaginary};
+    double before[2] = {0};
+    for (int i = 0; i < 60; ++i) {
+        before[0] = s.state[0];
+        before[1] = s.state[1];
+        assert_int_equal(gic_step(&spiral_model, &s, 1, method), GIC_OK);
+    }
+    const double square = before[0] * before[0] + before[1] * before[1];
+    const double across = before[0] * s.state[1] - before[1] * s.state[0];
+    const double along = before[0] * s.state[0] + before[1] * s.state[1];
+    const double growth = log(hypot(across, along) / square), turn = atan2(across, along);
+    return hypot(growth - real, turn - imaginary) / hypot(real, imaginary);
+}
+
+static void test_accurate(void **state)
+{
+    (void)state;
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method)
+        for (int way = 0; way <= 8; ++way) {
+            const double angle = acos(-1.0) * (1 - way / 16.0), x = cos(angle), y = way ? sin(angle) : 0;
+            for (double size = 0.05; size < 0.2; size *= 1.4)
+                assert_true(fabs(measured_error(method, size * x, size * y) - step_error(method, size * x, size * y)) <
+                            1e-9);
+            const double step = step_accurate(method, x, y, 0.001);
+            assert_true(fabs(step_error(method, step * x, step * y) - 0.001) < 1e-9);
+            assert_true(step < step_accurate(method, x, y, 0.01));
+        }
+    /* orders: the error of a short step is |z|^order times a constant, 3/8 of AB3 and 1/120 of RK4 */
+    assert_true(fabs(step_error(GIC_AB3, -0.01, 0) / 1e-6 * 8 / 3 - 1) < 0.05);
+    assert_true(fabs(step_error(GIC_RK4, 0, 0.05) / pow(0.05, 4) * 120 - 1) < 0.05);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_measured), cmocka_unit_test(test_limits),
-                                       cmocka_unit_test(test_alike)};
+                                       cmocka_unit_test(test_alike), cmocka_unit_test(test_stable),
+                                       cmocka_unit_test(test_accurate)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
