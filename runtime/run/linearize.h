@@ -165,13 +165,14 @@ bool mode_is_fast(const Linear *linear, const Mode *mode);
 
 /* Steps of one gic_method, s; INFINITY: any. */
 typedef struct StepLimit {
-    double stable;       /* longest one with which no mode grows that decays by itself */
-    const Mode *limits;  /* the mode that sets it; NULL: none */
-    double accurate;     /* longest one with which all modes keep their eigenvalues to mode_accuracy */
+    double stable;      /* longest one with which no mode grows that decays by itself */
+    const Mode *limits; /* the mode that sets it; NULL: none */
+    double accurate;    /* longest one with which all modes keep their eigenvalues to mode_accuracy */
 } StepLimit;
 
 extern const double mode_accuracy; /* of |eigenvalue| */
-/* ratio: fast steps in a step, 1 but for AB3; a mode of fast states and a `ratio` are taken to move apart from others. */
+/* ratio: fast steps in a step, 1 but for AB3; a mode of fast states and a `ratio` are taken to move apart from others.
+ */
 StepLimit modes_step(const Linear *linear, const Modes *modes, int32_t method, int32_t ratio);
 /* Column k of a table of steps for single modes, s, as modes_column() and modes_value(). */
 const char *mode_steps_column(int k);

@@ -42,7 +42,7 @@ static const struct {
     int32_t method;
     bool accurate;
 } column[] = {
-    {"stable.ab3", GIC_AB3, false},   {"stable.rk4", GIC_RK4, false},    {"accurate.ab3", GIC_AB3, true},
+    {"stable.ab3", GIC_AB3, false},  {"stable.rk4", GIC_RK4, false},    {"accurate.ab3", GIC_AB3, true},
     {"accurate.rk4", GIC_RK4, true}, {"accurate.ros2", GIC_ROS2, true}, {"accurate.ros3", GIC_ROS3, true},
 };
 
@@ -53,9 +53,8 @@ const char *mode_steps_column(int k)
 
 double mode_steps_value(const Mode *mode, int k)
 {
-    const double step = column[k].accurate
-                            ? step_accurate(column[k].method, mode->real, mode->imaginary, mode_accuracy)
-                            : step_stable(column[k].method, mode->real, mode->imaginary);
+    const double step = column[k].accurate ? step_accurate(column[k].method, mode->real, mode->imaginary, mode_accuracy)
+                                           : step_stable(column[k].method, mode->real, mode->imaginary);
     return isfinite(step) ? step : (double)NAN;
 }
 
@@ -69,7 +68,8 @@ static void print_step(Text *out, double step)
 
 void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int32_t ratio)
 {
-    text_print(out, "\n%-16s  %14s  %14s  %s\n", "constant steps", "stable up to", "1 % up to", "stability is limited by");
+    text_print(out, "\n%-16s  %14s  %14s  %s\n", "constant steps", "stable up to", "1 % up to",
+               "stability is limited by");
     for (int32_t method = GIC_AB3; method <= GIC_ROS3; ++method) {
         const int32_t parts = method == GIC_AB3 ? ratio : 1;
         const StepLimit limit = modes_step(linear, modes, method, parts);
@@ -88,6 +88,7 @@ void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int3
         else
             text_print(out, "\n");
     }
-    text_print(out, "\nstable: no motion grows that dies out by itself; 1 %%: each eigenvalue as the steps have it is right to 1 %% of "
+    text_print(out, "\nstable: no motion grows that dies out by itself; 1 %%: each eigenvalue as the steps have it is "
+                    "right to 1 %% of "
                     "its size.\nros2, ros3: implicit steps, which damp what they do not resolve: models/STIFF.md\n");
 }

@@ -64,8 +64,8 @@ static double complex rosenbrock_factor(int32_t method, double complex z)
         return (1 + (1 - 2 * g) * z) / cpow(1 - g * z, 2);
     }
     const double g = 0.43586652150845900; /* 6 g^3 - 18 g^2 + 9 g = 1 */
-    const double complex above = 1 + z * (1 - 4 * g + z * (0.5 - 4 * g + 6 * g * g +
-                                                            z * (1 / 6.0 - 2 * g + 6 * g * g - 4 * g * g * g)));
+    const double complex above =
+        1 + z * (1 - 4 * g + z * (0.5 - 4 * g + 6 * g * g + z * (1 / 6.0 - 2 * g + 6 * g * g - 4 * g * g * g)));
     return above / cpow(1 - g * z, 4);
 }
 

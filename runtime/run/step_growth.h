@@ -16,8 +16,8 @@ bool step_grows(int32_t method, double real, double imaginary, double growth);
  * among them: |log r - z| / |z|, with the factor r of the root that is exp(z) in the limit of short steps. */
 double step_error(int32_t method, double real, double imaginary);
 /* The longest step, s, with which a motion of eigenvalue lambda, 1/s, does not grow; and with which step_error() is at
- * most `error`, between 1e-6 and 0.1. INFINITY: any step, as with implicit ones, with a motion that grows by itself, and
- * with lambda = 0. */
+ * most `error`, between 1e-6 and 0.1. INFINITY: any step, as with implicit ones, with a motion that grows by itself,
+ * and with lambda = 0. */
 double step_stable(int32_t method, double real, double imaginary);
 double step_accurate(int32_t method, double real, double imaginary, double error);
 

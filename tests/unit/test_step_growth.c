@@ -112,7 +112,8 @@ static void test_alike(void **state)
         }
 }
 
-/* Longest steps: the limits above over |lambda|, on a way that leaves the region once and on one that grows by itself. */
+/* Longest steps: the limits above over |lambda|, on a way that leaves the region once and on one that grows by itself.
+ */
 static void test_stable(void **state)
 {
     (void)state;
