@@ -8,6 +8,7 @@
 #include "library/library_private.h"
 #include "model/model.h"
 #include "read/read.h"
+#include "run/choose_step.h"
 #include "run/engines.h"
 #include "run/gradient.h"
 #include "run/identify.h"
@@ -244,6 +245,9 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
     LivePort *port = NULL;
     if (runs)
         scene = equilibrium_start(pool, model, scene, request->solve);
+    if (w->kind == RUN)
+        scene = scene_choose_step(pool, model, scene, request->solve,
+                                  !open->options.lanes && engine_has_implicit(open->engine_name), request->quiet);
     if (w->study->replay)
         scene = scene_replay(pool, model, scene, w->study->replay);
     if (w->kind == LIVE) {
@@ -296,6 +300,8 @@ static void write_study(void *context)
         model = model_read_fixed(pool, model, scene->parameter);
     if (request.with)
         request.other = other_results(pool, request.with);
+    if (w->kind != RUN && w->kind != EVAL && w->kind != EQUILIBRIUM && w->kind != MODES && scene && scene->automatic)
+        scene_no_implicit(scene, w->study->kind);
     check_outputs(&request, model, scene);
     if (request.picture)
         plot_check(pool);

@@ -29,6 +29,8 @@ static const Scene *read_scene(Pool *pool, const OpenModel *open, const char *pa
         return NULL;
     const Model *model = model_for(open, pool);
     const Scene *scene = scene_read(pool, pool_print(pool, "%s", path), model, open->integrator, open->tolerance);
+    if (scene->automatic)
+        scene_no_implicit(scene, "a batch");
     scene_no_rig(scene);
     return equilibrium_start(pool, model, scene, open->options.solve);
 }

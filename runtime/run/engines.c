@@ -47,10 +47,15 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
     return engine_opener[engine_index(name)](pool, model, options);
 }
 
-/* Implicit steps need derivatives, which the code of some engines has. */
+/* Implicit steps need derivatives. */
+bool engine_has_implicit(const char *name)
+{
+    return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape;
+}
+
 static void check_implicit(Pool *pool, const char *name, const Scene *scene, const EngineOptions *options)
 {
-    if (!engine_generates(name) || engine_opener[engine_index(name)] == engine_tape)
+    if (!engine_has_implicit(name))
         scene_no_implicit(scene, pool_print(pool, "the engine '%s'", name));
     if (options->lanes)
         scene_no_implicit(scene, "code in lanes");

@@ -16,6 +16,9 @@ bool engine_known(const char *name);
 /* True if it runs generated code; other engines interpret the model. */
 bool engine_generates(const char *name);
 
+/* True if its code can have implicit steps. */
+bool engine_has_implicit(const char *name);
+
 /* The Debian packages that it needs and that are missing here; NULL: none. */
 const char *engine_missing(Pool *pool, const char *name);
 

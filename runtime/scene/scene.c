@@ -80,11 +80,13 @@ int scene_name_index(Pool *pool, const Item *item, const char *word, const char 
 
 /* ---- time ----------------------------------------------------------------------------------------------- */
 
+enum { AUTOMATIC = 1000 }; /* what `auto` is until the scene is read */
+
 static const struct {
     const char *name;
     int32_t method;
-} integrators[] = {{"ab3", GIC_AB3},   {"rk4", GIC_RK4},        {"ros2", GIC_ROS2},
-                   {"ros3", GIC_ROS3}, {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}};
+} integrators[] = {{"ab3", GIC_AB3},        {"rk4", GIC_RK4},      {"ros2", GIC_ROS2}, {"ros3", GIC_ROS3},
+                   {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}, {"auto", AUTOMATIC}};
 
 enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
 
@@ -116,6 +118,9 @@ bool scene_implicit(const Scene *scene)
 
 void scene_no_implicit(const Scene *scene, const char *what)
 {
+    if (scene && scene->automatic)
+        diag_fail((Place){scene->source, 0, 0}, "name one; `gicrun` with the scene says which one it takes",
+                  "%s does not choose an integrator (auto) yet", what);
     if (scene && scene_implicit(scene))
         diag_fail((Place){scene->source, 0, 0}, "write `integrator: ab3` or `rk4`, with a shorter step",
                   "%s does not take implicit steps (%s) yet", what, integrator_name(scene->method));
@@ -134,8 +139,10 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
     const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
     const char *word = method ? doc_word(method, "integrator") : "ab3";
     if (integrator_method(word) < 0)
-        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams or rkck", "there is no integrator '%s'", word);
+        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams, rkck or auto", "there is no integrator '%s'", word);
     scene->method = integrator_method(integrator ? integrator : word);
+    scene->automatic = scene->method == AUTOMATIC;
+    scene->method = scene->automatic ? GIC_AB3 : scene->method;
     scene->tolerance = limit ? doc_number(limit, "tolerance") : 1e-6;
     if (!tolerance_known(scene->tolerance))
         diag_fail(limit->at, "write a larger or smaller one, for example 1e-6",

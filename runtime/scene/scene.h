@@ -47,6 +47,7 @@ typedef struct Scene {
     int64_t outputs;                    /* output times after the one at 0 */
     int64_t per_output;                 /* constant steps from one output time to the next */
     int32_t method;                     /* gic_method, or one of run/variable_step.h */
+    bool automatic;                     /* method and step are to be chosen: run/choose_step.h */
     double tolerance;                   /* of variable steps */
     int32_t ratio;                      /* of AB3: fast steps in a step */
     double steady;                      /* of gic_step_steady; 0: always fast steps */
@@ -105,7 +106,7 @@ int32_t integrator_method(const char *name);
 const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
 bool scene_implicit(const Scene *scene); /* true for methods with implicit steps */
-/* Fail if the scene has an implicit integrator; for what does not take one. what: "a page" */
+/* Fail if the scene has an implicit integrator or `auto`; for what does not take one. what: "a page" */
 void scene_no_implicit(const Scene *scene, const char *what);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */
 /* A new profile for the input that `key` names; name: of all inputs. Fails if the input has one. */

@@ -90,5 +90,27 @@ run --modes oscillator.veh
 check "a row of AB3" prints '^ab3  *0.007236 s  *0.00[0-9.]* s  0 +- 100i: x 100 %$'
 check "a row of ros3" prints '^ros3  *any  *0.0[0-9.]* s *$'
 
+# ---- auto: |lambda| is 1000 1/s, so AB3 is stable to 0.64 ms; which it takes, and that the run is that of its name
+oscillator 1 1e6 200
+# automatic STEP PATTERN INTEGRATOR OF_STEP [OPTION...]
+automatic() {
+    { printf 'gicscene: 1\nintegrator: auto\nstep: %s\noutput_step: 0.08\nduration: 0.8\n' "$1"; cat pulled; } >auto.scene
+    sed "s/auto/$3/; s/^step: .*/step: $4/" auto.scene >named.scene
+    expected=$2
+    shift 4
+    run "$@" oscillator.veh auto.scene -o auto.csv
+    check "auto: $expected" says "integrator auto: $expected"
+    run -q "$@" oscillator.veh named.scene -o named.csv
+    check "auto: $expected: the run is that of its name" cmp -s auto.csv named.csv
+}
+automatic 0.02 'ros3, steps of 0.02 s$' ros3 0.02
+automatic 0.0005 'ab3, steps of 0.0005 s$' ab3 0.0005
+automatic 0.001 'ab3, steps of 0.0005 s$' ab3 0.0005
+automatic 0.002 'ab3, steps of 0.0005 s$' ab3 0.0005 --engine tape
+run oscillator.veh auto.scene -o auto.csv
+check "auto: what limits it" says "ab3 is stable up to 0.000[67][0-9]* s, rk4 up to 0.00[23][0-9]* s: 'x', eigenvalue -100 +- 995i 1/s at t = 0 s"
+run --linearize --at 0.1 oscillator.veh auto.scene
+check "auto is refused where nothing chooses" says 'does not choose an integrator (auto) yet'
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
