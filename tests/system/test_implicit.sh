@@ -63,6 +63,31 @@ for method in 2 3; do
     check "the static displacement by ros$method: $x" within "$(awk "BEGIN { d = $x / 0.0015 - 1; print d < 0 ? -d : d }")" 1e-12
 done
 
+# ---- without damping its energy goes down by |R(i w h)|^2 in each step, with the method's stability function R
+sed 's/damping: \[400,/damping: [0,/' mount.veh >swing.veh
+for method in 2 3; do
+    # w = 1000 rad/s, w h = 0.2, 500 steps
+    scene 0.1 0.0002 "integrator: ros$method" 'initial: {coordinates: {x: 0.001}}' 'outputs: [x]' >swing.scene
+    run -q swing.veh swing.scene -o swing.csv
+    off=$(tail -n 1 swing.csv | awk -F, -v order=$method '{ y = 0.2
+        if (order == 2) { g = 1 - sqrt(0.5); re = 1; im = (1 - 2 * g) * y }
+        else { g = 0.435866521508459; re = 1 - (0.5 - 4 * g + 6 * g * g) * y * y
+            im = (1 - 4 * g) * y - (1 / 6 - 2 * g + 6 * g * g - 4 * g * g * g) * y * y * y }
+        right = 1; for (k = 0; k < 500; ++k) right *= (re * re + im * im) / (1 + g * g * y * y) ^ (order == 2 ? 2 : 4)
+        d = ($2 * $2 * 1e6 + $3 * $3) / right - 1; print (d < 0 ? -d : d) }')
+    check "energy on a bushing without damping, ros$method: ${off:-no run}" within "${off:-1}" 1e-9
+done
+
+# ---- light upper arms with their masses, 5 ms: nearer to variable steps than AB3 with the same
+sed 's/^output_step: .*/output_step: 0.1/' "$models/scenes/hmmwv14.scene" >light.scene
+run -q --integrator adams --tolerance 1e-11 "$models/hmmwv14.veh" light.scene -o light.csv
+for method in ros3 ab3; do
+    run -q --integrator $method "$models/hmmwv14.veh" light.scene -o "$method.csv"
+done
+far=$(apart ros3.csv light.csv)
+check "hmmwv14 at 5 ms, ros3: $far" within "$far" 0.005
+check "hmmwv14 at 5 ms, ros3: $far, ab3: $(apart ab3.csv light.csv)" within "$(awk "BEGIN { print 5 * $far }")" "$(apart ab3.csv light.csv)"
+
 # ---- van der Pol's oscillator and Prothero and Robinson's problem as a model's own states
 cat >problems.veh <<'END'
 gicgen: 1
