@@ -236,7 +236,7 @@ refused "there is no integrator 'ros4'" 'ros2, ros3' "$models/pendulum.veh" bad.
 for way in '--batch 4' '--lanes 4' "--scene $models/scenes/paper_run.scene" --sequence '--fmu 3'; do
     # shellcheck disable=SC2086  # options
     "$gicgen" --implicit $way "$models/hmmwv.veh" -o none.c >out 2>err
-    { [ $? -eq 2 ] && grep -q 'without --batch, --lanes and --scene' err && [ ! -e none.c ]; }
+    { [ $? -eq 2 ] && grep -q 'without --batch, --lanes, --scene and --fmu' err && [ ! -e none.c ]; }
     verdict $? "--implicit $way is refused"
 done
 
