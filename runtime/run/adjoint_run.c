@@ -3,8 +3,8 @@
  * played once more and then backwards (linear_pull()). What stands between them are sums, whose way back is written out
  * here for AB3, RK4, knots of driven inputs and the dependent Euler parameter. */
 #include "run/adjoint_run.h"
+#include "run/adjoint_private.h"
 #include "run/knot_cross.h"
-#include "run/tangent_private.h"
 #include "scene/profile.h"
 #include "tape/engine_tape.h"
 
@@ -13,30 +13,18 @@
 
 const double adjoint_most = 100e6;
 
-enum { RK4_STAGES = 4 };
-
-/* On the way back; all numbers are derivatives of the run's number. */
-typedef struct Back {
-    TangentRun *run;
-    double *state;          /* [states] by the state where it has come to */
-    double *rate[3];        /* [states] by the rates at the starts of this step and the two before it */
-    double *sum, *stage[3]; /* [states] work */
-    double *derivative;     /* [variables] of inputs */
-    double *parameter;      /* [parameters] */
-    double value;           /* the number itself */
-} Back;
-
 bool adjoint_fits(const Model *model, const Scene *scene)
 {
-    const double calls = (scene->method == GIC_RK4 ? RK4_STAGES : 1) * (double)(scene->outputs * scene->per_output);
-    int numbers = model->inputs + model->fast_states + 2 * model->coordinates + (model->free_base ? BASE_STATES : 0);
-    return calls * ((numbers + 4) * (double)sizeof(double) + 2 * (double)sizeof(TrailEvent)) <= adjoint_most;
+    const int base = model->free_base ? BASE_STATES : 0, links = LINK_NUMBERS * model->wheels;
+    const int numbers = model->inputs + model->fast_states + 2 * model->coordinates + base;
+    const bool dual = scene->method == GIC_AB3 && scene->ratio > 1 && model->fast_states;
+    const double around = 4 * (double)sizeof(double) + sizeof(TrailEvent), settled = sizeof(TrailEvent);
+    const double rate = numbers * (double)sizeof(double) + around;
+    const double fast = (model->inputs + model->fast_states + links) * (double)sizeof(double) + around;
+    const double step = dual ? 2 * rate + settled + (scene->ratio - 1) * fast
+                             : (scene->method == GIC_RK4 ? RK4_STAGES : 1) * rate + settled;
+    return (step + 2 * sizeof(TrailStep)) * (double)(scene->outputs * scene->per_output) <= adjoint_most;
 }
-
-/* A knot of the inputs within a step. */
-typedef struct Knot {
-    double time, step;
-} Knot;
 
 /* By the numbers of profiles, from those by the inputs at a time; knot: the inputs were bent there; NULL: they were
  * not. */
@@ -60,33 +48,46 @@ static void inputs_back(Back *back, double time, const double *by, const Knot *k
     }
 }
 
-/* Back through a right-hand side with derivatives by its rate, and through the output of its state with a weight:
- * linear->along.y are those by the state, the others are added to their sums. */
-static int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot)
+/* The vehicle as it was evaluated. */
+static int go_to(const Back *back, const TrailEvent *event)
 {
+    const TangentRun *run = back->run;
+    const gic_model *code = run->code;
+    const bool fast = event->kind == TRAIL_FAST;
+    const int first = fast ? code->slow_count : 0, states = run->states - first, links = fast ? code->link_count : 0;
+    double e[4], *own = tape_array(run->self, code->state_offset);
+    gic_head *head = &run->self->head;
+    head->start_time = event->time;
+    head->steps = 0;
+    head->ahead = 0;
+    memcpy(own + first, event->number, (size_t)states * sizeof *own);
+    memcpy(run->linear->link[0], event->number + states, (size_t)links * sizeof *own);
+    memcpy(tape_array(run->self, code->input_offset), event->number + states + links,
+           (size_t)run->inputs * sizeof(double));
+    if (fast)
+        return GIC_OK;
+    if (code->free_base)
+        memcpy((char *)run->self + code->discrete_offset, &event->dependent, sizeof event->dependent);
+    return tape_locate(run->self, event->time, own, e);
+}
+
+int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot)
+{
+    static const LinearPart part[] = {
+        [TRAIL_RATE] = LINEAR_RATE, [TRAIL_LINKS] = LINEAR_LINKS, [TRAIL_FAST] = LINEAR_FAST};
     const TangentRun *run = back->run;
     const Linear *linear = run->linear;
     const gic_model *code = run->code;
-    const size_t state = (size_t)run->states * sizeof(double);
     const int outputs = weight != 0;
-    double e[4], *own = tape_array(run->self, code->state_offset);
-    gic_head *head = &run->self->head;
-    head->start_time = call->time;
-    head->steps = 0;
-    head->ahead = 0;
-    memcpy(own, call->number, state);
-    memcpy(tape_array(run->self, code->input_offset), call->number + run->states, (size_t)run->inputs * sizeof(double));
-    if (code->free_base)
-        memcpy((char *)run->self + code->discrete_offset, &call->dependent, sizeof call->dependent);
-    int status = tape_locate(run->self, call->time, own, e);
+    int status = go_to(back, event);
     if (status != GIC_OK)
         return status;
-    memcpy(linear->drate, by_rate, state);
     linear->drate[run->states] = weight;
-    status = linear_pull(linear, run->self, outputs);
-    if (status == GIC_OK &&
-        !(gic_finite(linear->rate, run->states + outputs) && gic_finite(linear->along.y, run->states) &&
-          gic_finite(linear->along.u, run->inputs) && gic_finite(linear->along.p, code->parameter_count)))
+    status = linear_pull(linear, run->self, part[event->kind], outputs);
+    if (status == GIC_OK && !(gic_finite(linear->along.y, run->states) && gic_finite(linear->along.u, run->inputs) &&
+                              gic_finite(linear->along.p, code->parameter_count)))
+        status = GIC_ERROR_RESULT;
+    if (status == GIC_OK && event->kind == TRAIL_RATE && !gic_finite(linear->rate, run->states + outputs))
         status = GIC_ERROR_RESULT;
     if (status != GIC_OK)
         return status;
@@ -94,26 +95,30 @@ static int rate_back(Back *back, const TrailEvent *call, const double *by_rate, 
         back->value += weight * linear->rate[run->states];
     for (int i = 0; i < code->parameter_count; ++i)
         back->parameter[i] += linear->along.p[i];
-    inputs_back(back, call->time, linear->along.u, knot);
+    inputs_back(back, event->time, linear->along.u, knot);
     return GIC_OK;
 }
 
-/* to += factor * from */
-static void add(int count, double factor, const double *from, double *to)
+void adjoint_add(int count, double factor, const double *from, double *to)
 {
     for (int i = 0; i < count; ++i)
         to[i] += factor * from[i];
 }
 
-/* to = factor * from */
-static void set(int count, double factor, const double *from, double *to)
+void adjoint_set(int count, double factor, const double *from, double *to)
 {
     for (int i = 0; i < count; ++i)
         to[i] = factor * from[i];
 }
 
-/* The dependent Euler parameter followed from the others. */
-static void settle_back(Back *back, const TrailEvent *settled)
+/* The same of a right-hand side, with derivatives by its rate. */
+static int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot)
+{
+    memcpy(back->run->linear->drate, by_rate, (size_t)back->run->states * sizeof *by_rate);
+    return event_back(back, call, weight, knot);
+}
+
+void settle_back(Back *back, const TrailEvent *settled)
 {
     const int dependent = settled->dependent;
     if (!back->run->code->free_base)
@@ -126,21 +131,24 @@ static void settle_back(Back *back, const TrailEvent *settled)
 }
 
 /* A knot, by three events: the rates with straight and with bent inputs, and the state settled. */
-static int knot_back(Back *back, int event, const Knot *knot)
+static int knot_back(Back *back, int event, const Knot *knot, double start)
 {
     const TangentRun *run = back->run;
+    const int slow = run->code->slow_count, ratio = tangent_dual(run) ? run->scene->ratio : 1;
     const TrailEvent *straight = trail_event(run->trail, event), *bent = trail_event(run->trail, event + 1);
-    const double share = (knot->time - (straight->time - knot->step)) / knot->step;
-    const double weight = knot->step * knot_missing(run->scene->method, share);
+    const double share = (knot->time - start) / (straight->time - start), part = share * ratio - floor(share * ratio);
+    const double of_slow = knot->step * knot_missing(run->scene->method, share);
+    const double of_fast = knot->step * knot_missing(run->scene->method, part) / (ratio * ratio);
     settle_back(back, trail_event(run->trail, event + 2));
-    set(run->states, weight, back->state, back->sum);
+    adjoint_set(slow, of_slow, back->state, back->sum);
+    adjoint_set(run->states - slow, of_fast, back->state + slow, back->sum + slow);
     int status = rate_back(back, bent, back->sum, 0, knot);
     if (status != GIC_OK)
         return status;
-    add(run->states, 1, run->linear->along.y, back->state);
-    set(run->states, -1, back->sum, back->sum);
+    adjoint_add(run->states, 1, run->linear->along.y, back->state);
+    adjoint_set(run->states, -1, back->sum, back->sum);
     status = rate_back(back, straight, back->sum, 0, NULL);
-    add(run->states, 1, run->linear->along.y, back->state);
+    adjoint_add(run->states, 1, run->linear->along.y, back->state);
     return status;
 }
 
@@ -148,14 +156,16 @@ static int knot_back(Back *back, int event, const Knot *knot)
 static int ab3_back(Back *back, int event, double h, double weight)
 {
     const int n = back->run->states;
-    add(n, h * 23 / 12, back->state, back->rate[0]);
-    add(n, -h * 16 / 12, back->state, back->rate[1]);
-    add(n, h * 5 / 12, back->state, back->rate[2]);
-    return rate_back(back, trail_event(back->run->trail, event), back->rate[0], weight, NULL);
+    adjoint_add(n, h * 23 / 12, back->state, back->rate[0]);
+    adjoint_add(n, -h * 16 / 12, back->state, back->rate[1]);
+    adjoint_add(n, h * 5 / 12, back->state, back->rate[2]);
+    const int status = rate_back(back, trail_event(back->run->trail, event), back->rate[0], weight, NULL);
+    adjoint_add(n, 1, back->run->linear->along.y, back->state);
+    return status;
 }
 
 /* y' = y + h / 6 (k1 + 2 k2 + 2 k3 + k4), each k at y + a share of the one before */
-static int rk4_back(Back *back, int event, double h, double weight)
+int rk4_back(Back *back, int event, double h, const double *by_rate, double weight)
 {
     const int n = back->run->states;
     const Trail *trail = back->run->trail;
@@ -164,54 +174,51 @@ static int rk4_back(Back *back, int event, double h, double weight)
     double *stage = back->stage[0], *total = back->stage[1];
     memset(total, 0, (size_t)n * sizeof *total);
     for (int k = RK4_STAGES - 1; k >= 0; --k) {
-        set(n, part[k], back->state, stage);
+        adjoint_set(n, part[k], back->state, stage);
         if (k < RK4_STAGES - 1)
-            add(n, reach[k], back->stage[2], stage);
+            adjoint_add(n, reach[k], back->stage[2], stage);
         if (k == 0)
-            add(n, 1, back->rate[0], stage);
+            adjoint_add(n, 1, by_rate, stage);
         const int status = rate_back(back, trail_event(trail, event + k), stage, k == 0 ? weight : 0, NULL);
         if (status != GIC_OK)
             return status;
-        if (k > 0) {
-            memcpy(back->stage[2], by, (size_t)n * sizeof *by);
-            add(n, 1, by, total);
-        }
+        memcpy(back->stage[2], by, (size_t)n * sizeof *by);
+        adjoint_add(n, 1, by, total);
     }
-    add(n, 1, total, back->state);
+    adjoint_add(n, 1, total, back->state);
     return GIC_OK;
 }
 
-/* Events of the step: from first to end. */
-static int step_back(Back *back, int first, int end, double weight)
+/* One rate for the whole state. */
+static int single_back(Back *back, const TrailStep *step, double weight)
 {
     const TangentRun *run = back->run;
     const double h = run->scene->step;
-    int calls = 1, status = GIC_OK;
-    while (first + calls < end && calls < RK4_STAGES && !trail_event(run->trail, first + calls)->settled)
-        ++calls;
-    const TrailEvent *settled = trail_event(run->trail, first + calls);
-    const int knots = (end - first - calls - 1) / 3;
-    double knot[knots + 1];
-    if (knots) {
-        knot[0] = scene_next_knot(run->scene, trail_event(run->trail, first)->time);
-        for (int k = 1; k < knots; ++k)
-            knot[k] = scene_next_knot(run->scene, knot[k - 1]);
-    }
-    for (int k = knots - 1; k >= 0 && status == GIC_OK; --k)
-        status = knot_back(back, first + calls + 1 + 3 * k, &(Knot){knot[k], h});
-    if (status != GIC_OK)
-        return status;
-    settle_back(back, settled);
-    status = (calls == 1 ? ab3_back : rk4_back)(back, first, h, weight);
-    if (status != GIC_OK)
-        return status;
-    add(run->states, 1, run->linear->along.y, back->state);
+    const int calls = step->knots - step->first - 1;
+    settle_back(back, trail_event(run->trail, step->first + calls));
+    const int status = calls == 1 ? ab3_back(back, step->first, h, weight)
+                                  : rk4_back(back, step->first, h, back->rate[0], weight);
     double *done = back->rate[0];
     back->rate[0] = back->rate[1];
     back->rate[1] = back->rate[2];
     back->rate[2] = done;
     memset(done, 0, (size_t)run->states * sizeof *done);
-    return GIC_OK;
+    return status;
+}
+
+static int step_back(Back *back, const TrailStep *step, double weight)
+{
+    const TangentRun *run = back->run;
+    const int knots = (step->end - step->knots) / 3;
+    int status = GIC_OK;
+    double knot[knots + 1];
+    for (int k = 0; k < knots; ++k)
+        knot[k] = scene_next_knot(run->scene, k ? knot[k - 1] : step->start);
+    for (int k = knots - 1; k >= 0 && status == GIC_OK; --k)
+        status = knot_back(back, step->knots + 3 * k, &(Knot){knot[k], run->scene->step}, step->start);
+    if (status != GIC_OK)
+        return status;
+    return (tangent_dual(run) ? dual_back : single_back)(back, step, weight);
 }
 
 static Back back_new(TangentRun *run)
@@ -222,6 +229,10 @@ static Back back_new(TangentRun *run)
                  .sum = pool_alloc(run->pool, state),
                  .derivative = pool_alloc(run->pool, ((size_t)run->variables + 1) * sizeof(double)),
                  .parameter = pool_alloc(run->pool, ((size_t)run->code->parameter_count + 1) * sizeof(double))};
+    const int fast_steps = run->scene->ratio;
+    back.moment = pool_alloc(run->pool, ((size_t)fast_steps + 2) * state);
+    for (int i = 0; i < 4; ++i)
+        back.link[i] = pool_alloc(run->pool, ((size_t)run->code->link_count + 1) * sizeof(double));
     for (int i = 0; i < 3; ++i) {
         back.rate[i] = pool_alloc(run->pool, state);
         back.stage[i] = pool_alloc(run->pool, state);
@@ -229,33 +240,13 @@ static Back back_new(TangentRun *run)
     return back;
 }
 
-/* The events with which steps begin, [steps + 1]; the first event is the state at time 0 that was settled. */
-static int *find_steps(const TangentRun *run, int64_t *steps)
-{
-    const Trail *trail = run->trail;
-    int *first = pool_alloc(run->pool, ((size_t)trail_events(trail) + 2) * sizeof *first);
-    int64_t step = -1;
-    *steps = 0;
-    for (int i = 1; i < trail_events(trail); ++i)
-        if (trail_event(trail, i)->step != step) {
-            step = trail_event(trail, i)->step;
-            first[(*steps)++] = i;
-        }
-    first[*steps] = trail_events(trail);
-    return first;
-}
-
 int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double *value, double *derivative)
 {
     Back back = back_new(run);
-    int64_t steps;
-    const int *first = find_steps(run, &steps);
-    const double *state = (const double *)(const void *)((const char *)run->both + run->descriptor.state_offset);
-    const double *input = (const double *)(const void *)((const char *)run->both + run->descriptor.input_offset);
+    const int64_t steps = trail_steps(run->trail);
     double last[run->states + run->inputs];
-    memcpy(last, state, (size_t)run->states * sizeof *last);
-    memcpy(last + run->states, input, (size_t)run->inputs * sizeof *last);
-    TrailEvent end = {.time = tangent_time(run), .number = last};
+    tangent_state(run, last);
+    TrailEvent end = {.time = tangent_time(run), .number = last, .kind = TRAIL_RATE};
     memcpy(&end.dependent, (const char *)run->self + run->code->discrete_offset, sizeof end.dependent);
     int status = GIC_OK;
     if (weight(context, steps) != 0) {
@@ -263,7 +254,7 @@ int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, do
         memcpy(back.state, run->linear->along.y, (size_t)run->states * sizeof *back.state);
     }
     for (int64_t i = steps - 1; i >= 0 && status == GIC_OK; --i)
-        status = step_back(&back, first[i], first[i + 1], weight(context, i));
+        status = step_back(&back, trail_step(run->trail, i), weight(context, i));
     if (status != GIC_OK)
         return status;
     settle_back(&back, trail_event(run->trail, 0));

@@ -125,7 +125,7 @@ bool formula_blame(Pool *pool, const Model *from, Solve solve, const Instance *s
     memcpy(linear->along.y, along->y, (size_t)states * sizeof *along->y);
     memcpy(linear->along.u, along->u, (size_t)code->input_count * sizeof *along->u);
     memcpy(linear->along.p, along->p, (size_t)code->parameter_count * sizeof *along->p);
-    if (linear_slope(linear, there, model->outputs) != GIC_OK)
+    if (linear_slope(linear, there, LINEAR_RATE, model->outputs) != GIC_OK)
         return false;
     Bad bad = {model, linear->rate + states, linear->drate + states, -1};
     for (int i = 0; i < model->outputs && bad.found < 0; ++i)

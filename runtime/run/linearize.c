@@ -162,16 +162,16 @@ static int set_direction(const Linear *linear, const Direction *along, TapeJourn
 }
 
 /* linear->drate: derivatives of the state's rate and of the outputs along linear->along, one-sided where `kinks` are
- * met; linear->rate: their values on that side. `self` has just been evaluated at its state. sides: with the share of
- * the direction within which kinks are met. outputs: number of outputs; 0: they are not looked at. */
-static int rate_to_side(const Linear *linear, const Instance *self, const Sides *sides, int outputs)
+ * met; linear->rate: their values on that side; linear->link: links with their derivatives. `self` has just been
+ * evaluated at its state. sides: with the share of the direction within which kinks are met. outputs: number of
+ * outputs; 0: they are not looked at. part: what of it. */
+static int rate_to_side(const Linear *linear, const Instance *self, LinearPart part, const Sides *sides, int outputs)
 {
     const TapeEngine *engine = linear->engine;
     const gic_model *code = &engine->code;
     const double time = gic_time(self), *dy = linear->along.y;
     const int states = code->slow_count + code->fast_count;
     double *e = linear->euler[0], *de = linear->euler[1], *array[WHOLE_COUNT], *slope[WHOLE_COUNT];
-    *linear->dtime = 0;
     memcpy(linear->value, self, code->size);
     memset(linear->slope, 0, code->size);
     linear->slope->context = engine;
@@ -183,7 +183,8 @@ static int rate_to_side(const Linear *linear, const Instance *self, const Sides 
     if (status != GIC_OK)
         return status;
     scatter(linear, dy, linear->along.u);
-    status = recover(linear, y, dy, sides);
+    if (part != LINEAR_FAST)
+        status = recover(linear, y, dy, sides);
     if (status != GIC_OK)
         return status;
     const TapeWorld world = {.table = engine->table,
@@ -195,11 +196,14 @@ static int rate_to_side(const Linear *linear, const Instance *self, const Sides 
                              .kinks = sides->kinks,
                              .journal = sides->journal};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, linear->rate + states, array);
-    tape_arrays(linear->slope, linear->dtime, dy, de, linear->drate, NULL, linear->drate + states, slope);
-    if (engine->wheel)
-        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->frame);
-    if (status == GIC_OK)
-        status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
+    tape_arrays(linear->slope, linear->along.time, dy, de, linear->drate, NULL, linear->drate + states, slope);
+    if (engine->wheel && part != LINEAR_FAST)
+        status = tape_link_wheels_dual(engine, &world, array, slope, linear->link, linear->frame);
+    if (engine->wheel && part != LINEAR_LINKS && status == GIC_OK)
+        status = tape_turn_wheels_dual(engine, &world, array, slope, linear->link, linear->frame);
+    if (part != LINEAR_RATE || status != GIC_OK)
+        return status;
+    status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
     if (status == GIC_OK && outputs && engine->wrenches)
         status = tape_react_dual((Instance *const[]){linear->value, linear->slope}, linear->links, &world, array, slope,
                                  linear->frame);
@@ -233,6 +237,7 @@ static void turn_round(const Linear *linear)
         along->port[i] = -along->port[i];
     for (int i = 0; i < code->parameter_count; ++i)
         along->p[i] = -along->p[i];
+    *along->time = -*along->time;
 }
 
 /* linear->drate: derivatives of the state's rate and of the outputs along linear->along; at kinks the mean of both
@@ -243,13 +248,13 @@ static int rate_along(const Linear *linear, const Instance *self, double near, i
     double other_rate[count + 1], other[count + 1];
     int kinks = 0;
     const Sides sides = {near, &kinks, NULL};
-    int status = rate_to_side(linear, self, &sides, outputs);
+    int status = rate_to_side(linear, self, LINEAR_RATE, &sides, outputs);
     if (status != GIC_OK || !kinks)
         return status;
     memcpy(other_rate, linear->rate, (size_t)count * sizeof *other);
     memcpy(other, linear->drate, (size_t)count * sizeof *other);
     turn_round(linear);
-    status = rate_to_side(linear, self, &sides, outputs);
+    status = rate_to_side(linear, self, LINEAR_RATE, &sides, outputs);
     *jump = *jump || is_jump(count, near, (const double *const[]){linear->rate, other_rate},
                              (const double *const[]){linear->drate, other});
     for (int i = 0; i < count; ++i)
@@ -380,6 +385,7 @@ static double point_along(const Linear *linear, Instance *self, LinearKind kind,
     memset(along->u, 0, (size_t)code->input_count * sizeof *along->u);
     memset(along->port, 0, (size_t)code->port_count * sizeof *along->port);
     memset(along->p, 0, (size_t)code->parameter_count * sizeof *along->p);
+    *along->time = 0;
     double *const number[] = {
         [LINEAR_MOTION] = z, [LINEAR_INPUT] = along->u, [LINEAR_PORT] = along->port, [LINEAR_PARAMETER] = along->p};
     number[kind][j] = 1;
@@ -395,14 +401,18 @@ void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int
     (void)point_along(linear, self, kind, j, z);
 }
 
-int linear_slope(const Linear *linear, const Instance *self, int outputs)
+int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs)
 {
-    const int count = linear->engine->code.slow_count + linear->engine->code.fast_count + outputs;
+    const gic_model *code = &linear->engine->code;
+    const int states = code->slow_count + code->fast_count;
+    double *const result = part == LINEAR_LINKS ? linear->link[1] : linear->drate;
+    const int first = part == LINEAR_FAST ? code->slow_count : 0;
+    const int count = part == LINEAR_LINKS ? code->link_count : states + outputs - first;
     int kinks = 0;
-    const int status = rate_to_side(linear, self, &(Sides){.kinks = &kinks}, outputs);
-    if (status != GIC_OK || !kinks || !gic_finite(linear->drate, count)) /* on one side already: sqrt(abs(x)) at 0 */
+    const int status = rate_to_side(linear, self, part, &(Sides){.kinks = &kinks}, outputs);
+    if (status != GIC_OK || !kinks || !gic_finite(result + first, count)) /* on one side already: sqrt(abs(x)) at 0 */
         return status;
-    return rate_to_side(linear, self, &(Sides){.near = -1}, outputs);
+    return rate_to_side(linear, self, part, &(Sides){.near = -1}, outputs);
 }
 
 /* From derivatives by what orient(), scatter() and recover() made of the state and inputs to those by these. */
@@ -442,9 +452,9 @@ typedef struct Part {
     int count;
 } Part;
 
-enum { PARTS = 4 };
+enum { PARTS = 6 };
 
-static void parts_of(const Linear *linear, Part part[PARTS])
+static void parts_of(const Linear *linear, LinearPart of, Part part[PARTS])
 {
     const gic_model *code = &linear->engine->code;
     const Direction *along = &linear->along;
@@ -452,47 +462,61 @@ static void parts_of(const Linear *linear, Part part[PARTS])
     part[1] = (Part){along->u, code->input_count};
     part[2] = (Part){along->port, code->port_count};
     part[3] = (Part){along->p, code->parameter_count};
+    part[4] = (Part){linear->link[1], of == LINEAR_FAST ? code->link_count : 0};
+    part[5] = (Part){along->time, 1};
 }
 
 /* True if the derivatives along a direction with everything in it are finite: then what has infinite factors does not
  * change. The direction is lost. */
-static bool is_smooth(const Linear *linear, const Instance *self, int outputs, const Part part[PARTS])
+static bool is_smooth(const Linear *linear, const Instance *self, LinearPart of, int outputs, const Part part[PARTS])
 {
+    const gic_model *code = &linear->engine->code;
+    const int first = of == LINEAR_FAST ? code->slow_count : 0;
     for (int k = 0; k < PARTS; ++k)
         for (int i = 0; i < part[k].count; ++i)
             part[k].number[i] = 1 + 0.1 * i / part[k].count;
-    return linear_slope(linear, self, outputs) == GIC_OK && gic_finite(linear->drate, part[0].count + outputs);
+    return linear_slope(linear, self, of, outputs) == GIC_OK &&
+           (of == LINEAR_LINKS ? gic_finite(linear->link[1], code->link_count)
+                               : gic_finite(linear->drate + first, part[0].count - first + outputs));
 }
 
 /* The same, and the direction stays as it was. */
-static bool stays_smooth(const Linear *linear, const Instance *self, int outputs, const Part part[PARTS])
+static bool stays_smooth(const Linear *linear, const Instance *self, LinearPart of, int outputs,
+                         const Part part[PARTS])
 {
-    double kept[part[0].count + part[1].count + part[2].count + part[3].count + 1], *at = kept;
+    int count = 1;
+    for (int k = 0; k < PARTS; ++k)
+        count += part[k].count;
+    double kept[count], *at = kept;
     for (int k = 0; k < PARTS; at += part[k++].count)
         memcpy(at, part[k].number, (size_t)part[k].count * sizeof *at);
-    const bool smooth = is_smooth(linear, self, outputs, part);
+    const bool smooth = is_smooth(linear, self, of, outputs, part);
     at = kept;
     for (int k = 0; k < PARTS; at += part[k++].count)
         memcpy(part[k].number, at, (size_t)part[k].count * sizeof *at);
     return smooth;
 }
 
-int linear_pull(const Linear *linear, const Instance *self, int outputs)
+int linear_pull(const Linear *linear, const Instance *self, LinearPart of, int outputs)
 {
     Part part[PARTS];
-    parts_of(linear, part);
-    double weight[part[0].count + outputs + 1];
-    memcpy(weight, linear->drate, (size_t)(part[0].count + outputs) * sizeof *weight);
+    parts_of(linear, of, part);
+    const int links = linear->engine->code.link_count, results = part[0].count + outputs;
+    double weight[results + 1], of_link[links + 1];
+    memcpy(weight, linear->drate, (size_t)results * sizeof *weight);
+    memcpy(of_link, linear->link[1], (size_t)links * sizeof *of_link);
     for (int k = 0; k < PARTS; ++k)
         memset(part[k].number, 0, (size_t)part[k].count * sizeof(double));
     journal_begin(linear->journal);
-    const int status = rate_to_side(linear, self, &(Sides){.journal = linear->journal}, outputs);
+    const int status = rate_to_side(linear, self, of, &(Sides){.journal = linear->journal}, outputs);
     if (status != GIC_OK)
         return status;
-    memcpy(linear->drate, weight, (size_t)(part[0].count + outputs) * sizeof *weight);
+    memset(linear->link[1], 0, (size_t)links * sizeof *of_link);
+    memcpy(of == LINEAR_LINKS ? linear->link[1] : linear->drate, of == LINEAR_LINKS ? of_link : weight,
+           (size_t)(of == LINEAR_LINKS ? links : results) * sizeof *weight);
     const int infinite = journal_back(linear->journal);
     gather_back(linear);
-    return !infinite || stays_smooth(linear, self, outputs, part) ? GIC_OK : GIC_ERROR_RESULT;
+    return !infinite || stays_smooth(linear, self, of, outputs, part) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
 int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, double *df, int outputs, double *dout,
@@ -622,7 +646,7 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     int bodies = 0;
     for (int c = 0; c < f->sequence->classes; ++c)
         bodies = tape->class[c].layout->bodies > bodies ? tape->class[c].layout->bodies : bodies;
-    *linear = (Linear){.engine = tape, .journal = journal_new(pool), .dtime = pool_alloc(pool, sizeof(double))};
+    *linear = (Linear){.engine = tape, .journal = journal_new(pool)};
     for (int side = 0; side < 2; ++side) {
         linear->links[side] = pool_alloc(pool, sizeof *linear->links[side]);
         *linear->links[side] = tape_links_new(pool, f);
@@ -637,11 +661,14 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     linear->frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof(double));
     linear->q = pool_alloc(pool, (size_t)(7 * bodies + 1) * sizeof(double));
     linear->along = (Direction){.y = pool_alloc(pool, states * sizeof(double)),
+                                .time = pool_alloc(pool, sizeof(double)),
                                 .u = pool_alloc(pool, (size_t)(tape->code.input_count + 1) * sizeof(double)),
                                 .port = pool_alloc(pool, (size_t)(tape->code.port_count + 1) * sizeof(double)),
                                 .p = pool_alloc(pool, (size_t)(tape->code.parameter_count + 1) * sizeof(double))};
     linear->evaluated = pool_alloc(pool, states * sizeof(double));
     linear->rate = pool_alloc(pool, results * sizeof(double));
     linear->drate = pool_alloc(pool, results * sizeof(double));
+    for (int side = 0; side < 2; ++side)
+        linear->link[side] = pool_alloc(pool, (size_t)(tape->code.link_count + 1) * sizeof(double));
     return linear;
 }

@@ -15,9 +15,10 @@
 #include "tape/engine_tape.h"
 #include "tape/journal.h"
 
-/* A direction in which the state of FORMAT.md section 10, inputs, ports and parameters change. */
+/* A direction in which the state of FORMAT.md section 10, inputs, ports, parameters and the time that formulas read
+ * change. */
 typedef struct Direction {
-    double *y, *u, *port, *p;
+    double *y, *u, *port, *p, *time;
 } Direction;
 
 /* Small motions z of a model: `places` first, then their rates, then fast states. Places: of a free base displacements
@@ -40,7 +41,7 @@ typedef struct Linear {
     TapeLinks *links[2];     /* of both */
     Direction along;         /* work */
     TapeJournal *journal;
-    double *frame, *q, *step[2], *euler[2], *dtime, *evaluated, *rate, *drate;
+    double *frame, *q, *step[2], *euler[2], *link[2], *evaluated, *rate, *drate;
 } Linear;
 
 /* linearize.c: `engine` is the engine tape. */
@@ -55,15 +56,20 @@ int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, 
                   bool *jump);
 /* Set linear->along to the direction of one number; of a small motion at the state of the instance. */
 void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j);
+/* What of the vehicle: the rate of its state and the first outputs; the links of wheels with tires (gic_runtime.h) at
+ * its coordinates and the base; the rates of the fast states at given links. */
+typedef enum LinearPart { LINEAR_RATE, LINEAR_LINKS, LINEAR_FAST } LinearPart;
 /* linear->drate: derivatives along linear->along, in Euler parameters, of the rate of the state at which the instance
- * has just been evaluated, and behind it of the first outputs. At kinks those of the branch that is taken. Returns a
- * status. */
-int linear_slope(const Linear *linear, const Instance *self, int outputs);
-/* The same backwards: linear->along becomes the derivative, by each number of state, inputs, ports and parameters, of
- * the sum of the rate and the first outputs with the weights in linear->drate, whose contents are lost. linear->rate:
- * rate and outputs. The instance's bodies have been recovered at its state. GIC_ERROR_RESULT where a derivative is
- * infinite. */
-int linear_pull(const Linear *linear, const Instance *self, int outputs);
+ * has just been evaluated, and behind it of the first outputs (else 0 of them). LINEAR_LINKS: linear->link[1], of the
+ * links. LINEAR_FAST: linear->drate, of the fast states, along linear->along and links that change by linear->link[1];
+ * linear->link[0]: the links. At kinks those of the branch that is taken. Returns a status. */
+int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs);
+/* The same backwards: linear->along becomes the derivative, by each number of state, inputs, ports, parameters and
+ * by the time, of the sum of what linear_slope() finds with the weights in linear->drate (links: linear->link[1]), whose
+ * contents are lost. LINEAR_FAST: linear->link[1] becomes that by the links.
+ * linear->rate: rate and outputs. The instance's bodies have been recovered at its state. GIC_ERROR_RESULT where a
+ * derivative is infinite. */
+int linear_pull(const Linear *linear, const Instance *self, LinearPart part, int outputs);
 /* linear_model.c: the unit of one of the small motions. */
 const char *linear_unit(Pool *pool, const Linear *linear, int i);
 /* dz/dt = f + A z about the state of an instance at its time, with its inputs, parameters and road. f: [count]; A:

@@ -30,11 +30,14 @@ struct TangentRun {
     RunVariable *variable;
     bool shifted;                /* the run ended where a gear changes */
     int states, inputs, outputs; /* of the vehicle */
-    int64_t step;                /* under way, from 0 */
     Trail *trail;                /* NULL: forwards */
 };
 
 /* How the inputs change by a variable at a time: up to three numbers from the input on; returns how many. */
 int tangent_input(const RunVariable *variable, double time, double change[3]);
+/* State and inputs of the vehicle now: own[states + inputs]. */
+void tangent_state(const TangentRun *run, double *own);
+/* True if fast states take steps of their own. */
+bool tangent_dual(const TangentRun *run);
 
 #endif

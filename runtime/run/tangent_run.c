@@ -169,31 +169,55 @@ static void inputs_of_both(void *user, int32_t lane, double time, double *input)
     }
 }
 
-/* The vehicle at a state of both, with the inputs of both. */
-static void take_state(const TangentRun *run, double time, const double *state)
+/* The state of both has slow states, of the vehicle and by each variable, then fast ones. Part k of it, 0: of the
+ * vehicle, to own[states] and back. */
+static void take_part(const TangentRun *run, const double *both, int k, double *own)
+{
+    const int slow = run->code->slow_count, fast = run->code->fast_count;
+    memcpy(own, both + slow * k, (size_t)slow * sizeof *own);
+    memcpy(own + slow, both + slow * (1 + run->carried) + fast * k, (size_t)fast * sizeof *own);
+}
+
+static void put_part(const TangentRun *run, const double *own, int k, double *both)
+{
+    const int slow = run->code->slow_count, fast = run->code->fast_count;
+    memcpy(both + slow * k, own, (size_t)slow * sizeof *own);
+    memcpy(both + slow * (1 + run->carried) + fast * k, own + slow, (size_t)fast * sizeof *own);
+}
+
+/* The vehicle at a time, with the inputs of both. */
+static void take_inputs(const TangentRun *run, double time)
 {
     gic_head *head = &run->self->head;
     head->start_time = time;
     head->steps = 0;
     head->ahead = run->both->head.ahead;
-    memcpy(tape_array(run->self, run->code->state_offset), state, (size_t)run->states * sizeof *state);
     memcpy(tape_array(run->self, run->code->input_offset), array_of(run->both, run->descriptor.input_offset),
-           (size_t)run->inputs * sizeof *state);
+           (size_t)run->inputs * sizeof(double));
 }
 
-/* Derivatives along variable k, into linear->drate, of a vehicle that has just been evaluated. */
-static int slope_along(const TangentRun *run, const double *state, int k, int outputs)
+/* linear->along by variable k, but for the state. */
+static void point_at(const TangentRun *run, int k)
 {
     const Direction *along = &run->linear->along;
     const RunVariable *v = &run->variable[k];
-    memcpy(along->y, state + run->states * (1 + k), (size_t)run->states * sizeof *state);
+    memset(along->y, 0, (size_t)run->states * sizeof *along->y);
     memcpy(along->u, array_of(run->both, run->descriptor.input_offset) + run->inputs * (1 + k),
-           (size_t)run->inputs * sizeof *state);
+           (size_t)run->inputs * sizeof *along->u);
     memset(along->port, 0, (size_t)run->code->port_count * sizeof *along->port);
     memset(along->p, 0, (size_t)run->code->parameter_count * sizeof *along->p);
+    *along->time = 0;
     if (v->kind == BY_PARAMETER)
         along->p[v->index] = 1;
-    return linear_slope(run->linear, run->self, outputs);
+}
+
+/* Derivatives along variable k, into linear->drate, of a vehicle that has just been evaluated; state: of both. */
+static int slope_along(const TangentRun *run, const double *state, int k, int outputs)
+{
+    point_at(run, k);
+    take_part(run, state, 1 + k, run->linear->along.y);
+    const int status = linear_slope(run->linear, run->self, LINEAR_RATE, outputs);
+    return status != GIC_OK || gic_finite(run->linear->drate, run->states + outputs) ? status : GIC_ERROR_RESULT;
 }
 
 static int32_t dependent_of(const TangentRun *run)
@@ -203,82 +227,127 @@ static int32_t dependent_of(const TangentRun *run)
     return dependent;
 }
 
-/* Events of the trail: a right-hand side, and a state that was settled. */
-static void note_call(const TangentRun *run, double time, const double *state)
+/* An event of the trail: up to two arrays of numbers, and the inputs. */
+static void note(const TangentRun *run, TrailKind kind, double time, const double *first, int firsts,
+                 const double *second, int seconds)
 {
-    TrailEvent *event = trail_add(run->trail, run->states + run->inputs);
+    if (!run->trail)
+        return;
+    const int inputs = kind == TRAIL_SETTLED ? 0 : run->inputs;
+    TrailEvent *event = trail_add(run->trail, firsts + seconds + inputs);
     double *number = event->number;
-    *event = (TrailEvent){.time = time, .number = number, .step = run->step};
+    *event = (TrailEvent){.time = time, .number = number, .kind = kind};
     event->dependent = run->code->free_base ? dependent_of(run) : 0;
-    memcpy(number, state, (size_t)run->states * sizeof *state);
-    memcpy(number + run->states, array_of(run->both, run->descriptor.input_offset),
-           (size_t)run->inputs * sizeof *state);
-}
-
-static void note_settled(const TangentRun *run, const double *state, int32_t dependent)
-{
-    TrailEvent *event = trail_add(run->trail, run->code->free_base ? 4 : 0);
-    double *number = event->number;
-    *event = (TrailEvent){.number = number, .dependent = dependent, .step = run->step, .settled = true};
-    if (run->code->free_base)
-        memcpy(number, state + 3, 4 * sizeof *state);
+    memcpy(number, first, (size_t)firsts * sizeof *number);
+    memcpy(number + firsts, second, (size_t)seconds * sizeof *number);
+    memcpy(number + firsts + seconds, array_of(run->both, run->descriptor.input_offset),
+           (size_t)inputs * sizeof *number);
 }
 
 static int rate_of_both(void *self, double time, const double *state, double *rate)
 {
     const TangentRun *run = ((Both *)self)->run;
-    double *own = tape_array(run->self, run->code->state_offset);
-    take_state(run, time, state);
-    if (run->trail)
-        note_call(run, time, state);
-    int status = run->code->rhs(run->self, time, own, rate);
+    double *own = tape_array(run->self, run->code->state_offset), found[run->states + 1];
+    take_inputs(run, time);
+    take_part(run, state, 0, own);
+    note(run, TRAIL_RATE, time, own, run->states, own, 0);
+    int status = run->code->rhs(run->self, time, own, found);
+    put_part(run, found, 0, rate);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, 0);
-        if (status == GIC_OK && !gic_finite(run->linear->drate, run->states))
-            status = GIC_ERROR_RESULT;
-        memcpy(rate + run->states * (1 + k), run->linear->drate, (size_t)run->states * sizeof *rate);
+        put_part(run, run->linear->drate, 1 + k, rate);
     }
     return status;
+}
+
+/* Links of both are those of the vehicle, then those by each variable. */
+static int links_of_both(void *self, double time, const double *slow, double *link)
+{
+    const TangentRun *run = ((Both *)self)->run;
+    const gic_model *code = run->code;
+    double *own = tape_array(run->self, code->state_offset);
+    take_inputs(run, time);
+    memcpy(own, slow, (size_t)code->slow_count * sizeof *own);
+    note(run, TRAIL_LINKS, time, own, run->states, own, 0);
+    int status = code->link(run->self, time, own, link);
+    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
+        point_at(run, k);
+        memcpy(run->linear->along.y, slow + code->slow_count * (1 + k), (size_t)code->slow_count * sizeof *slow);
+        status = linear_slope(run->linear, run->self, LINEAR_LINKS, 0);
+        memcpy(link + code->link_count * (1 + k), run->linear->link[1], (size_t)code->link_count * sizeof *link);
+    }
+    return status;
+}
+
+static int fast_of_both(void *self, double time, const double *link, const double *fast, double *rate)
+{
+    const TangentRun *run = ((Both *)self)->run;
+    const gic_model *code = run->code;
+    const Linear *linear = run->linear;
+    const size_t links = (size_t)code->link_count * sizeof *link, states = (size_t)code->fast_count * sizeof *fast;
+    double *own = tape_array(run->self, code->state_offset) + code->slow_count;
+    take_inputs(run, time);
+    memcpy(own, fast, states);
+    note(run, TRAIL_FAST, time, fast, code->fast_count, link, code->link_count);
+    int status = code->fast(run->self, time, link, fast, rate);
+    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
+        point_at(run, k);
+        memcpy(linear->along.y + code->slow_count, fast + code->fast_count * (1 + k), states);
+        memcpy(linear->link[0], link, links);
+        memcpy(linear->link[1], link + code->link_count * (1 + k), links);
+        status = linear_slope(linear, run->self, LINEAR_FAST, 0);
+        memcpy(rate + code->fast_count * (1 + k), linear->drate + code->slow_count, states);
+    }
+    return status != GIC_OK || gic_finite(rate, code->fast_count * (1 + run->carried)) ? status : GIC_ERROR_RESULT;
 }
 
 /* The dependent Euler parameter follows from the others, and so does its change. */
 static int settle_both(void *self, double *state)
 {
     const TangentRun *run = ((Both *)self)->run;
-    const int status = run->code->settle(run->self, state);
-    const int dependent = run->code->free_base ? dependent_of(run) : 0;
-    if (status == GIC_OK && run->trail)
-        note_settled(run, state, dependent);
-    if (status != GIC_OK || !run->code->free_base)
+    double own[run->states + 1];
+    take_part(run, state, 0, own);
+    const int status = run->code->settle(run->self, own);
+    if (status != GIC_OK)
         return status;
-    for (int k = 0; k < run->carried; ++k) {
-        double *change = state + run->states * (1 + k) + 3, sum = 0;
+    put_part(run, own, 0, state);
+    note(run, TRAIL_SETTLED, 0, own + 3, run->code->free_base ? 4 : 0, own, 0);
+    const int dependent = run->code->free_base ? dependent_of(run) : 0;
+    for (int k = 0; k < run->carried && run->code->free_base; ++k) {
+        double *change = state + run->code->slow_count * (1 + k) + 3, sum = 0;
         for (int i = 0; i < 4; ++i)
-            sum += i == dependent ? 0 : state[3 + i] * change[i];
-        change[dependent] = -sum / state[3 + dependent];
+            sum += i == dependent ? 0 : own[3 + i] * change[i];
+        change[dependent] = -sum / own[3 + dependent];
     }
     return GIC_OK;
 }
 
 static void make_both(TangentRun *run)
 {
-    const size_t all = (size_t)(run->states * (1 + run->carried));
-    const size_t inputs = (size_t)(run->inputs * (1 + run->carried));
+    const gic_model *code = run->code;
+    const int parts = 1 + run->carried;
+    const size_t all = (size_t)(run->states * parts), inputs = (size_t)(run->inputs * parts);
+    const size_t fast = (size_t)(code->fast_count * parts);
     size_t at = sizeof(Both);
     gic_model *model = &run->descriptor;
     *model = (gic_model){.abi_version = GIC_ABI_VERSION,
                          .real_size = sizeof(double),
-                         .name = run->code->name,
-                         .slow_count = (int32_t)all,
+                         .name = code->name,
+                         .slow_count = code->slow_count * parts,
+                         .fast_count = code->fast_count * parts,
+                         .link_count = code->link_count * parts,
                          .input_count = (int32_t)inputs,
                          .rhs = rate_of_both,
+                         .link = links_of_both,
+                         .fast = fast_of_both,
                          .settle = settle_both};
     const struct {
         size_t *offset, count;
     } array[] = {{&model->state_offset, all},
                  {&model->rate_offset, all},
-                 {&model->history_offset, GIC_HISTORY(all, 0)},
+                 {&model->history_offset, GIC_HISTORY(all, fast)},
                  {&model->scratch_offset, GIC_SCRATCH(all, inputs)},
+                 {&model->link_offset, 5 * (size_t)model->link_count},
                  {&model->input_offset, inputs},
                  {&model->discrete_offset, 1}};
     for (size_t i = 0; i < sizeof array / sizeof *array; ++i) {
@@ -306,8 +375,7 @@ static void check_scene(Pool *pool, const Model *model, const Scene *scene)
         const char *what, *remedy;
     } refused[] = {
         {scene->method >= METHOD_ADAMS, "steps vary", "choose `integrator: rk4` or `ab3` and a `step`"},
-        {scene->ratio > 1 && model->fast_states, "fast states take steps of their own",
-         "`ratio: 1`, and a shorter `step`"},
+        {scene->steady > 0, "fast states take longer steps where they are steady", "leave `steady` out"},
         {scene->driver, "a driver drives", "give inputs over time"},
         {scene->actions, "conditions change the run", "leave `until` and `when` out"},
         {scene->rest, "the vehicle may sleep", "leave `sleep` out"},
@@ -420,17 +488,16 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     gic_restart(run->both, 0);
     if (run->trail)
         trail_begin(run->trail);
-    run->step = -1;
     memset(state, 0, (size_t)run->descriptor.slow_count * sizeof *state);
     int status = scene_start(run->engine, scene, &run->self->head);
     run->self->head.input_function = NULL;
     if (status != GIC_OK)
         return status;
-    memcpy(state, tape_array(run->self, run->code->state_offset), (size_t)run->states * sizeof *state);
+    put_part(run, tape_array(run->self, run->code->state_offset), 0, state);
     for (int k = 0; k < run->carried; ++k)
         if (run->variable[k].kind == BY_INITIAL) {
             linear_direction(run->linear, run->self, LINEAR_MOTION, run->variable[k].index);
-            memcpy(state + run->states * (1 + k), run->linear->along.y, (size_t)run->states * sizeof *state);
+            put_part(run, run->linear->along.y, 1 + k, state);
         }
     status = settle_both(run->both, state);
     memcpy(input, tape_array(run->self, run->code->input_offset),
@@ -442,41 +509,58 @@ int tangent_begin(TangentRun *run, const Scene *scene)
 int tangent_look(TangentRun *run, double *value, double *slope)
 {
     const double *state = array_of(run->both, run->descriptor.state_offset);
-    take_state(run, gic_time(run->both), state);
+    take_inputs(run, gic_time(run->both));
+    take_part(run, state, 0, tape_array(run->self, run->code->state_offset));
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, run->outputs);
-        if (status == GIC_OK && !gic_finite(run->linear->drate, run->states + run->outputs))
-            status = GIC_ERROR_RESULT;
         for (int i = 0; i < run->outputs; ++i)
             slope[i * run->variables + k] = run->linear->drate[run->states + i];
     }
     return status;
 }
 
+void tangent_state(const TangentRun *run, double *own)
+{
+    take_part(run, array_of(run->both, run->descriptor.state_offset), 0, own);
+    memcpy(own + run->states, array_of(run->both, run->descriptor.input_offset), (size_t)run->inputs * sizeof *own);
+}
+
 /* True where a gear changes: the run goes on in another way, from a time that the variables change. */
 static bool gear_changes(const TangentRun *run)
 {
+    double own[run->states + run->inputs];
+    tangent_state(run, own);
     memcpy(run->copy, run->self, run->code->size);
-    memcpy(tape_array(run->copy, run->code->state_offset), array_of(run->both, run->descriptor.state_offset),
-           (size_t)run->states * sizeof(double));
+    memcpy(tape_array(run->copy, run->code->state_offset), own, (size_t)run->states * sizeof *own);
     run->copy->head.start_time = gic_time(run->both);
     run->copy->head.steps = 0;
-    memcpy(tape_array(run->copy, run->code->input_offset), array_of(run->both, run->descriptor.input_offset),
-           (size_t)run->inputs * sizeof(double));
+    memcpy(tape_array(run->copy, run->code->input_offset), own + run->states, (size_t)run->inputs * sizeof *own);
     return run->code->shift && run->code->shift(run->copy);
+}
+
+bool tangent_dual(const TangentRun *run)
+{
+    return run->scene->method == GIC_AB3 && run->scene->ratio > 1 && run->code->fast_count;
 }
 
 int tangent_step(TangentRun *run)
 {
     gic_head *head = &run->both->head;
-    const double start = gic_time(head);
+    const double start = gic_time(head), h = run->scene->step;
     const int history = head->history;
-    ++run->step;
-    int status = gic_step(&run->descriptor, run->both, run->scene->step, run->scene->method);
+    TrailStep *step = run->trail ? trail_add_step(run->trail) : NULL;
+    if (step)
+        *step = (TrailStep){.start = start, .history = history, .first = trail_events(run->trail)};
+    int status = tangent_dual(run) ? gic_step_dual(&run->descriptor, run->both, h, run->scene->ratio)
+                                   : gic_step(&run->descriptor, run->both, h, run->scene->method);
+    if (step)
+        step->knots = trail_events(run->trail);
     if (status == GIC_OK)
         status = knots_cross(&run->descriptor, run->scene, head, start, history);
+    if (step)
+        step->end = trail_events(run->trail);
     if (status == GIC_OK && gear_changes(run)) {
         run->shifted = true;
         return GIC_ERROR_EVENTS;

@@ -12,6 +12,8 @@ struct Trail {
     double **number;
     int chunks, parts; /* of both */
     int events, part, used;
+    TrailStep *step;
+    int steps, step_room;
 };
 
 Trail *trail_new(Pool *pool)
@@ -23,7 +25,7 @@ Trail *trail_new(Pool *pool)
 
 void trail_begin(Trail *trail)
 {
-    trail->events = trail->part = trail->used = 0;
+    trail->events = trail->part = trail->used = trail->steps = 0;
 }
 
 static double *numbers(Trail *trail, int count)
@@ -59,4 +61,21 @@ int trail_events(const Trail *trail)
 const TrailEvent *trail_event(const Trail *trail, int i)
 {
     return &trail->event[i / CHUNK_EVENTS][i % CHUNK_EVENTS];
+}
+
+TrailStep *trail_add_step(Trail *trail)
+{
+    if (trail->steps == trail->step_room)
+        (void)POOL_PUSH(trail->pool, trail->step, trail->step_room);
+    return &trail->step[trail->steps++];
+}
+
+int64_t trail_steps(const Trail *trail)
+{
+    return trail->steps;
+}
+
+const TrailStep *trail_step(const Trail *trail, int64_t i)
+{
+    return &trail->step[i];
 }

@@ -9,13 +9,26 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A right-hand side, or a state that was settled. */
+/* What was evaluated, and the numbers of it; or a state that was settled, with its Euler parameters after that. */
+typedef enum TrailKind {
+    TRAIL_RATE,    /* state, inputs */
+    TRAIL_LINKS,   /* state, inputs */
+    TRAIL_FAST,    /* fast states, links, inputs */
+    TRAIL_SETTLED, /* Euler parameters */
+} TrailKind;
+
 typedef struct TrailEvent {
-    double time, *number; /* number: state and inputs; of a state that was settled its Euler parameters after that */
-    int32_t dependent;    /* Euler parameter: before a right-hand side, after settling */
-    int64_t step;         /* in which it was */
-    bool settled;
+    double time, *number;
+    int32_t dependent; /* Euler parameter: before a right-hand side, after settling */
+    TrailKind kind;
 } TrailEvent;
+
+/* A step: which events are its own, and behind them those of knots. */
+typedef struct TrailStep {
+    double start;    /* s */
+    int32_t history; /* past rates with which it began */
+    int first, knots, end;
+} TrailStep;
 
 typedef struct Trail Trail;
 
@@ -25,6 +38,10 @@ void trail_begin(Trail *trail);
 /* One more event with room for so many numbers, for the caller to fill; it stays where it is. */
 TrailEvent *trail_add(Trail *trail, int numbers);
 int trail_events(const Trail *trail);
+/* One more step, which stays where it is up to the next one. */
+TrailStep *trail_add_step(Trail *trail);
+int64_t trail_steps(const Trail *trail);
+const TrailStep *trail_step(const Trail *trail, int64_t i);
 const TrailEvent *trail_event(const Trail *trail, int i);
 
 #endif

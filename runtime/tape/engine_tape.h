@@ -153,10 +153,13 @@ int tape_refresh(Instance *self, double e[4]);
 /* wheels.c: the templates wheels.c.in and dual_rate.c.in, over tapes. */
 void tape_record_wheels(Pool *pool, TapeEngine *engine, const Element *array);
 int tape_turn_wheels(Instance *self, double time, const double *y, const double *e, double *rate);
-/* The same in dual numbers. array, slope: arrays of tape_arrays() for an instance at the state and for its derivatives;
- * the rates of the fast states and the grip are written there. slope_frame: as many numbers as the engine's frame. */
+/* The same in dual numbers, at links that tape_link_wheels_dual() has found or others. array, slope: arrays of
+ * tape_arrays() for an instance at the state and for its derivatives; the rates of the fast states and the grip are
+ * written there. link: of both. slope_frame: as many numbers as the engine's frame. */
+int tape_link_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                          double *const link[2], double *slope_frame);
 int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
-                          double *slope_frame);
+                          double *const link[2], double *slope_frame);
 /* Recover the bodies, unless the last recovery was for the same coordinates and velocities. */
 int tape_recover_once(Instance *self, const double turn[3]);
 /* For the descriptor. */

@@ -143,27 +143,40 @@ int tape_turn_wheels(Instance *self, double time, const double *y, const double 
     return grip(self, time, engine->link_row, y + engine->code.slow_count, rate);
 }
 
-int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
-                          double *slope_frame)
+/* Arrays of the wheels among those of the whole mechanism, in dual numbers, at given links. torque: room for what turns
+ * the wheels. */
+static Turning in_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                       double *const link[2], double *torque, double *slope_frame)
 {
-    const int slow = engine->code.slow_count, links = engine->formulation->wheels->links;
     const int torques = 2 * engine->formulation->wheels->count;
-    double link[2][links + 1], torque[2][torques + 1];
-    double *const own_link[] = {link[0], journal_numbers(world, link[1], links)};
-    double *const own_torque[] = {torque[0], journal_numbers(world, torque[1], torques)};
     Turning all = {.engine = engine, .world = *world, .slope_frame = slope_frame};
     for (int side = 0; side < 2; ++side) {
         double **own = all.array[side];
         memcpy(own, side ? slope : array, sizeof all.array[side]);
-        own[WHOLE_link] = own_link[side];
-        own[WHOLE_fast] = own[WHOLE_y] + slow;
-        own[WHOLE_torque] = own_torque[side];
-        own[WHOLE_rate] += slow;
+        own[WHOLE_link] = link[side];
+        own[WHOLE_fast] = own[WHOLE_y] + engine->code.slow_count;
+        own[WHOLE_torque] = side ? journal_numbers(world, torque + torques, torques) : torque;
+        own[WHOLE_rate] += engine->code.slow_count;
         own[WHOLE_grip] = own[WHOLE_GRIP];
         own[WHOLE_watch] = own[WHOLE_WATCH];
     }
-    const int status = play(&all, engine->link, 0);
-    return status == GIC_OK ? turn(&all) : status;
+    return all;
+}
+
+int tape_link_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                          double *const link[2], double *slope_frame)
+{
+    double torque[4 * engine->formulation->wheels->count + 1];
+    const Turning all = in_dual(engine, world, array, slope, link, torque, slope_frame);
+    return play(&all, engine->link, 0);
+}
+
+int tape_turn_wheels_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                          double *const link[2], double *slope_frame)
+{
+    double torque[4 * engine->formulation->wheels->count + 1];
+    const Turning all = in_dual(engine, world, array, slope, link, torque, slope_frame);
+    return turn(&all);
 }
 
 int tape_recover_once(Instance *self, const double turn[3])

@@ -77,12 +77,12 @@ static double compare(const Linear *linear, const Instance *self, Random *random
     memcpy(along->u, d + states, (size_t)inputs * sizeof *d);
     memcpy(along->port, d + states + inputs, (size_t)ports * sizeof *d);
     memcpy(along->p, d + states + inputs + ports, (size_t)parameters * sizeof *d);
-    if (linear_slope(linear, self, outputs) != GIC_OK || !gic_finite(linear->drate, rows))
+    if (linear_slope(linear, self, LINEAR_RATE, outputs) != GIC_OK || !gic_finite(linear->drate, rows))
         return 0;
     double size = 0;
     const double forwards = product(w, linear->drate, rows, &size);
     memcpy(linear->drate, w, (size_t)rows * sizeof *w);
-    assert_int_equal(linear_pull(linear, self, outputs), GIC_OK);
+    assert_int_equal(linear_pull(linear, self, LINEAR_RATE, outputs), GIC_OK);
     double backwards = product(along->y, d, states, &size);
     backwards += product(along->u, d + states, inputs, &size);
     backwards += product(along->port, d + states + inputs, ports, &size);

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What adjoint_run.c and adjoint_dual.c share: derivatives of a run's number on the way back. */
+#ifndef RUN_ADJOINT_PRIVATE_H
+#define RUN_ADJOINT_PRIVATE_H
+
+#include "run/tangent_private.h"
+
+enum { RK4_STAGES = 4 };
+
+/* All numbers are derivatives of the run's number, but for its value. */
+typedef struct Back {
+    TangentRun *run;
+    double *state;          /* [states] by the state where it has come to */
+    double *rate[3];        /* [states] by the rates at the starts of this step and the two before it; of dual rate those
+                               of the fast states are at fast steps */
+    double *link[4];        /* [links] of dual rate: at the start of this step and the two before it, and at its end */
+    double *sum, *stage[3]; /* [states] work */
+    double *moment;         /* [fast steps and 2 before][states] work of dual rate */
+    double *derivative;     /* [variables] of inputs */
+    double *parameter;      /* [parameters] */
+    double value;           /* the number itself */
+} Back;
+
+/* A knot of the inputs within a step. */
+typedef struct Knot {
+    double time, step;
+} Knot;
+
+/* Back through what was evaluated, whose derivatives are in linear->drate or, of links, in linear->link[1]: adds those
+ * by parameters and inputs to their sums, and leaves those by the state in linear->along.y, and of fast rates those by
+ * the links in linear->link[1]. weight: of the output, of a rate. knot: inputs were bent there; NULL: they were not.
+ * Returns a status. */
+int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot);
+/* The dependent Euler parameter followed from the others. */
+void settle_back(Back *back, const TrailEvent *settled);
+/* Back through a step of RK4 of h seconds, whose right-hand sides are four events from `event` on, and then its state.
+ * by_rate: by the rate at its start; weight: of the output there. */
+int rk4_back(Back *back, int event, double h, const double *by_rate, double weight);
+/* to += factor * from; to = factor * from */
+void adjoint_add(int count, double factor, const double *from, double *to);
+void adjoint_set(int count, double factor, const double *from, double *to);
+
+/* adjoint_dual.c: back through a step of dual rate. weight: of the output at its start. Returns a status. */
+int dual_back(Back *back, const TrailStep *step, double weight);
+
+#endif
