@@ -40,11 +40,10 @@ static int link_back(Back *back, int event, double *by)
 }
 
 /* Back through a right-hand side with derivatives by its rate. */
-static int rate_back(Back *back, int event, const double *by, double weight)
+static int call_back(Back *back, int event, const double *by, double weight)
 {
     const TangentRun *run = back->run;
-    memcpy(run->linear->drate, by, (size_t)run->states * sizeof *by);
-    const int status = event_back(back, trail_event(run->trail, event), weight, NULL);
+    const int status = rate_back(back, trail_event(run->trail, event), by, weight, NULL);
     adjoint_add(run->states, 1, run->linear->along.y, back->state);
     return status;
 }
@@ -92,7 +91,7 @@ static int march_back(Back *back, int first, double weight)
         return status;
     settle_back(back, trail_event(run->trail, first + 1));
     double *now = moment(back, 0);
-    memcpy(now, rate[0], (size_t)slow * sizeof *now);
+    adjoint_add(slow, 1, rate[0], now);
     memcpy(rate[0], rate[1], (size_t)slow * sizeof *now);
     clear(rate[1], slow);
     adjoint_add(slow, h * 23 / 12, state, now);
@@ -100,7 +99,7 @@ static int march_back(Back *back, int first, double weight)
     adjoint_add(slow, h * 5 / 12, state, rate[1]);
     memcpy(rate[0] + slow, moment(back, -1) + slow, (size_t)fast * sizeof *now);
     memcpy(rate[1] + slow, moment(back, -2) + slow, (size_t)fast * sizeof *now);
-    return rate_back(back, first, now, weight);
+    return call_back(back, first, now, weight);
 }
 
 /* Derivatives by the older rate that balance_start() made up, which are used up. at_end: by the rate at the end. */
@@ -133,7 +132,7 @@ static int start_back(Back *back, int first, int known, double weight)
     clear(rate[1], run->states);
     int status = link_back(back, end + known, back->link[3]);
     if (status == GIC_OK && known == 1)
-        status = rate_back(back, end, back->sum, 0);
+        status = call_back(back, end, back->sum, 0);
     for (int k = ratio - 1; k >= 0 && status == GIC_OK; --k) {
         const int event = calls + k * (RK4_STAGES + 1);
         settle_back(back, trail_event(run->trail, event + RK4_STAGES));
@@ -146,6 +145,7 @@ int dual_back(Back *back, const TrailStep *step, double weight)
 {
     links_back(back);
     clear(back->moment, (back->run->scene->ratio + 2) * (back->run->states + 1));
+    memcpy(moment(back, 0), back->start_rate, (size_t)back->run->states * sizeof *back->start_rate);
     return step->history == 2 ? march_back(back, step->first, weight)
                               : start_back(back, step->first, step->history, weight);
 }

@@ -11,11 +11,14 @@ enum { RK4_STAGES = 4 };
 /* All numbers are derivatives of the run's number, but for its value. */
 typedef struct Back {
     TangentRun *run;
-    double *state;          /* [states] by the state where it has come to */
-    double *rate[3];        /* [states] by the rates at the starts of this step and the two before it; of dual rate those
-                               of the fast states are at fast steps */
-    double *link[4];        /* [links] of dual rate: at the start of this step and the two before it, and at its end */
+    double *state;   /* [states] by the state where it has come to */
+    double *rate[3]; /* [states] by the rates at the starts of this step and the two before it; of dual rate those
+                        of the fast states are at fast steps */
+    double *link[4]; /* [links] of dual rate: at the start of this step and the two before it, and at its end */
     double *sum, *stage[3]; /* [states] work */
+    Rest rest;              /* of a step after a change of gear */
+    double by_late, *from;  /* by the time of the change; [states] by the state at the start of the step */
+    double *start_rate;     /* [states] by the rate at the start of the step, besides those that steps sum */
     double *moment;         /* [fast steps and 2 before][states] work of dual rate */
     double *derivative;     /* [variables] of inputs */
     double *parameter;      /* [parameters] */
@@ -34,6 +37,10 @@ typedef struct Knot {
 int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot);
 /* The dependent Euler parameter followed from the others. */
 void settle_back(Back *back, const TrailEvent *settled);
+/* Back through a right-hand side with derivatives by its rate; those by the state are in linear->along.y. */
+int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot);
+/* Add derivatives by the inputs at a time to those by the numbers of profiles. */
+void inputs_back(Back *back, double time, const double *by, const Knot *knot);
 /* Back through a step of RK4 of h seconds, whose right-hand sides are four events from `event` on, and then its state.
  * by_rate: by the rate at its start; weight: of the output there. */
 int rk4_back(Back *back, int event, double h, const double *by_rate, double weight);
@@ -41,6 +48,9 @@ int rk4_back(Back *back, int event, double h, const double *by_rate, double weig
 void adjoint_add(int count, double factor, const double *from, double *to);
 void adjoint_set(int count, double factor, const double *from, double *to);
 
+/* adjoint_gear.c: back through the change of gear within a step and the rest of the step after it, to the state at its
+ * end without it; back->from and back->start_rate are set. Returns a status. */
+int gear_back(Back *back, const TrailStep *step);
 /* adjoint_dual.c: back through a step of dual rate. weight: of the output at its start. Returns a status. */
 int dual_back(Back *back, const TrailStep *step, double weight);
 

@@ -26,9 +26,7 @@ bool adjoint_fits(const Model *model, const Scene *scene)
     return (step + 2 * sizeof(TrailStep)) * (double)(scene->outputs * scene->per_output) <= adjoint_most;
 }
 
-/* By the numbers of profiles, from those by the inputs at a time; knot: the inputs were bent there; NULL: they were
- * not. */
-static void inputs_back(Back *back, double time, const double *by, const Knot *knot)
+void inputs_back(Back *back, double time, const double *by, const Knot *knot)
 {
     const TangentRun *run = back->run;
     for (int k = 0; k < run->variables; ++k) {
@@ -64,11 +62,10 @@ static int go_to(const Back *back, const TrailEvent *event)
     memcpy(run->linear->link[0], event->number + states, (size_t)links * sizeof *own);
     memcpy(tape_array(run->self, code->input_offset), event->number + states + links,
            (size_t)run->inputs * sizeof(double));
-    if (fast)
-        return GIC_OK;
-    if (code->free_base)
-        memcpy((char *)run->self + code->discrete_offset, &event->dependent, sizeof event->dependent);
-    return tape_locate(run->self, event->time, own, e);
+    tangent_go(run, event);
+    if (code->shift && tape_engage(run->self) != GIC_OK)
+        return GIC_ERROR_INPUT;
+    return fast ? GIC_OK : tape_locate(run->self, event->time, own, e);
 }
 
 int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot)
@@ -111,11 +108,27 @@ void adjoint_set(int count, double factor, const double *from, double *to)
         to[i] = factor * from[i];
 }
 
-/* The same of a right-hand side, with derivatives by its rate. */
-static int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot)
+/* After a change of gear: by its time. */
+static void late_back(Back *back, double time, const double *by_rate)
+{
+    const TangentRun *run = back->run;
+    const Direction *along = &run->linear->along;
+    double rate[run->inputs + 1], by_time = *along->time;
+    tangent_input_rates(run, time, rate);
+    for (int i = 0; i < run->inputs; ++i)
+        by_time += along->u[i] * rate[i];
+    for (int i = 0; i < run->states; ++i)
+        back->by_late -= by_rate[i] * run->linear->rate[i] / back->rest.length;
+    back->by_late += (back->rest.end - time) / back->rest.length * by_time;
+}
+
+int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot)
 {
     memcpy(back->run->linear->drate, by_rate, (size_t)back->run->states * sizeof *by_rate);
-    return event_back(back, call, weight, knot);
+    const int status = event_back(back, call, weight, knot);
+    if (status == GIC_OK && back->rest.going)
+        late_back(back, call->time, by_rate);
+    return status;
 }
 
 void settle_back(Back *back, const TrailEvent *settled)
@@ -194,10 +207,11 @@ static int single_back(Back *back, const TrailStep *step, double weight)
 {
     const TangentRun *run = back->run;
     const double h = run->scene->step;
-    const int calls = step->knots - step->first - 1;
+    const int calls = step->gear - step->first - 1;
+    adjoint_add(run->states, 1, back->start_rate, back->rate[0]);
     settle_back(back, trail_event(run->trail, step->first + calls));
-    const int status = calls == 1 ? ab3_back(back, step->first, h, weight)
-                                  : rk4_back(back, step->first, h, back->rate[0], weight);
+    const int status =
+        calls == 1 ? ab3_back(back, step->first, h, weight) : rk4_back(back, step->first, h, back->rate[0], weight);
     double *done = back->rate[0];
     back->rate[0] = back->rate[1];
     back->rate[1] = back->rate[2];
@@ -216,9 +230,14 @@ static int step_back(Back *back, const TrailStep *step, double weight)
         knot[k] = scene_next_knot(run->scene, k ? knot[k - 1] : step->start);
     for (int k = knots - 1; k >= 0 && status == GIC_OK; --k)
         status = knot_back(back, step->knots + 3 * k, &(Knot){knot[k], run->scene->step}, step->start);
-    if (status != GIC_OK)
-        return status;
-    return (tangent_dual(run) ? dual_back : single_back)(back, step, weight);
+    memset(back->from, 0, (size_t)run->states * sizeof *back->from);
+    memset(back->start_rate, 0, (size_t)run->states * sizeof *back->start_rate);
+    if (status == GIC_OK && step->knots > step->gear)
+        status = gear_back(back, step);
+    if (status == GIC_OK)
+        status = (tangent_dual(run) ? dual_back : single_back)(back, step, weight);
+    adjoint_add(run->states, 1, back->from, back->state);
+    return status;
 }
 
 static Back back_new(TangentRun *run)
@@ -227,6 +246,8 @@ static Back back_new(TangentRun *run)
     Back back = {.run = run,
                  .state = pool_alloc(run->pool, state),
                  .sum = pool_alloc(run->pool, state),
+                 .from = pool_alloc(run->pool, state),
+                 .start_rate = pool_alloc(run->pool, state),
                  .derivative = pool_alloc(run->pool, ((size_t)run->variables + 1) * sizeof(double)),
                  .parameter = pool_alloc(run->pool, ((size_t)run->code->parameter_count + 1) * sizeof(double))};
     const int fast_steps = run->scene->ratio;
@@ -247,7 +268,7 @@ int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, do
     double last[run->states + run->inputs];
     tangent_state(run, last);
     TrailEvent end = {.time = tangent_time(run), .number = last, .kind = TRAIL_RATE};
-    memcpy(&end.dependent, (const char *)run->self + run->code->discrete_offset, sizeof end.dependent);
+    tangent_discrete(run, &end);
     int status = GIC_OK;
     if (weight(context, steps) != 0) {
         status = rate_back(&back, &end, back.sum, weight(context, steps), NULL);

@@ -183,7 +183,8 @@ static int rate_to_side(const Linear *linear, const Instance *self, LinearPart p
     if (status != GIC_OK)
         return status;
     scatter(linear, dy, linear->along.u);
-    if (part != LINEAR_FAST)
+    memset(linear->links[1]->turn, 0, sizeof linear->links[1]->turn);
+    if (part != LINEAR_FAST && part != LINEAR_SHIFT)
         status = recover(linear, y, dy, sides);
     if (status != GIC_OK)
         return status;
@@ -197,6 +198,8 @@ static int rate_to_side(const Linear *linear, const Instance *self, LinearPart p
                              .journal = sides->journal};
     tape_arrays(linear->value, &time, y, e, linear->rate, NULL, linear->rate + states, array);
     tape_arrays(linear->slope, linear->along.time, dy, de, linear->drate, NULL, linear->drate + states, slope);
+    if (part == LINEAR_SHIFT)
+        return tape_choose_dual(engine, &world, array, slope, linear->choice, linear->frame);
     if (engine->wheel && part != LINEAR_FAST)
         status = tape_link_wheels_dual(engine, &world, array, slope, linear->link, linear->frame);
     if (engine->wheel && part != LINEAR_LINKS && status == GIC_OK)
@@ -401,16 +404,29 @@ void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int
     (void)point_along(linear, self, kind, j, z);
 }
 
-int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs)
+/* Numbers of a part whose derivatives are found. */
+typedef struct Part {
+    double *number;
+    int count;
+} Part;
+
+static Part results_of(const Linear *linear, LinearPart part, int outputs)
 {
     const gic_model *code = &linear->engine->code;
-    const int states = code->slow_count + code->fast_count;
-    double *const result = part == LINEAR_LINKS ? linear->link[1] : linear->drate;
-    const int first = part == LINEAR_FAST ? code->slow_count : 0;
-    const int count = part == LINEAR_LINKS ? code->link_count : states + outputs - first;
+    switch (part) {
+    case LINEAR_LINKS: return (Part){linear->link[1], code->link_count};
+    case LINEAR_FAST: return (Part){linear->drate + code->slow_count, code->fast_count};
+    case LINEAR_SHIFT: return (Part){linear->choice[1], linear->choices};
+    default: return (Part){linear->drate, code->slow_count + code->fast_count + outputs};
+    }
+}
+
+int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs)
+{
+    const Part result = results_of(linear, part, outputs);
     int kinks = 0;
     const int status = rate_to_side(linear, self, part, &(Sides){.kinks = &kinks}, outputs);
-    if (status != GIC_OK || !kinks || !gic_finite(result + first, count)) /* on one side already: sqrt(abs(x)) at 0 */
+    if (status != GIC_OK || !kinks || !gic_finite(result.number, result.count)) /* on one side: sqrt(abs(x)) at 0 */
         return status;
     return rate_to_side(linear, self, part, &(Sides){.near = -1}, outputs);
 }
@@ -446,12 +462,7 @@ static void gather_back(const Linear *linear)
             along->y[3 + i] += de[i] - e[i] / e[dependent] * de[dependent];
 }
 
-/* The numbers of linear->along. */
-typedef struct Part {
-    double *number;
-    int count;
-} Part;
-
+/* The numbers of linear->along, and of links. */
 enum { PARTS = 6 };
 
 static void parts_of(const Linear *linear, LinearPart of, Part part[PARTS])
@@ -470,19 +481,15 @@ static void parts_of(const Linear *linear, LinearPart of, Part part[PARTS])
  * change. The direction is lost. */
 static bool is_smooth(const Linear *linear, const Instance *self, LinearPart of, int outputs, const Part part[PARTS])
 {
-    const gic_model *code = &linear->engine->code;
-    const int first = of == LINEAR_FAST ? code->slow_count : 0;
     for (int k = 0; k < PARTS; ++k)
         for (int i = 0; i < part[k].count; ++i)
             part[k].number[i] = 1 + 0.1 * i / part[k].count;
-    return linear_slope(linear, self, of, outputs) == GIC_OK &&
-           (of == LINEAR_LINKS ? gic_finite(linear->link[1], code->link_count)
-                               : gic_finite(linear->drate + first, part[0].count - first + outputs));
+    const Part result = results_of(linear, of, outputs);
+    return linear_slope(linear, self, of, outputs) == GIC_OK && gic_finite(result.number, result.count);
 }
 
 /* The same, and the direction stays as it was. */
-static bool stays_smooth(const Linear *linear, const Instance *self, LinearPart of, int outputs,
-                         const Part part[PARTS])
+static bool stays_smooth(const Linear *linear, const Instance *self, LinearPart of, int outputs, const Part part[PARTS])
 {
     int count = 1;
     for (int k = 0; k < PARTS; ++k)
@@ -501,19 +508,17 @@ int linear_pull(const Linear *linear, const Instance *self, LinearPart of, int o
 {
     Part part[PARTS];
     parts_of(linear, of, part);
-    const int links = linear->engine->code.link_count, results = part[0].count + outputs;
-    double weight[results + 1], of_link[links + 1];
-    memcpy(weight, linear->drate, (size_t)results * sizeof *weight);
-    memcpy(of_link, linear->link[1], (size_t)links * sizeof *of_link);
+    const Part result = results_of(linear, of, outputs);
+    double weight[result.count + 1];
+    memcpy(weight, result.number, (size_t)result.count * sizeof *weight);
     for (int k = 0; k < PARTS; ++k)
         memset(part[k].number, 0, (size_t)part[k].count * sizeof(double));
     journal_begin(linear->journal);
     const int status = rate_to_side(linear, self, of, &(Sides){.journal = linear->journal}, outputs);
     if (status != GIC_OK)
         return status;
-    memset(linear->link[1], 0, (size_t)links * sizeof *of_link);
-    memcpy(of == LINEAR_LINKS ? linear->link[1] : linear->drate, of == LINEAR_LINKS ? of_link : weight,
-           (size_t)(of == LINEAR_LINKS ? links : results) * sizeof *weight);
+    memset(linear->link[1], 0, (size_t)linear->engine->code.link_count * sizeof *weight);
+    memcpy(result.number, weight, (size_t)result.count * sizeof *weight);
     const int infinite = journal_back(linear->journal);
     gather_back(linear);
     return !infinite || stays_smooth(linear, self, of, outputs, part) ? GIC_OK : GIC_ERROR_RESULT;
@@ -668,7 +673,10 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     linear->evaluated = pool_alloc(pool, states * sizeof(double));
     linear->rate = pool_alloc(pool, results * sizeof(double));
     linear->drate = pool_alloc(pool, results * sizeof(double));
-    for (int side = 0; side < 2; ++side)
+    linear->choices = f->model->powertrain ? 2 * f->model->powertrain->forward : 0;
+    for (int side = 0; side < 2; ++side) {
+        linear->choice[side] = pool_alloc(pool, (size_t)(linear->choices + 1) * sizeof(double));
         linear->link[side] = pool_alloc(pool, (size_t)(tape->code.link_count + 1) * sizeof(double));
+    }
     return linear;
 }

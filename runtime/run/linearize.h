@@ -31,6 +31,7 @@ typedef struct Linear {
     bool *slips;             /* [count] true for the slip of a tire */
     bool *jumps;             /* [count] set by linearize(): a rate jumps where this number passes its value */
     int of_wheels;           /* number of fast states that belong to wheels; they come first */
+    int choices;             /* numbers of choice[]: what gears are chosen by (model/powertrain_numbers.h) */
     int clocks;              /* fast states after them that are held as they are: time since a shift, controllers */
     const char **name;       /* [count] */
     double *reach;           /* [count] units for comparison: 0.1 m, 0.1 rad, 0.1 m/s, 0.1 rad/s; 1 rad/s for spins, 0.1
@@ -41,7 +42,7 @@ typedef struct Linear {
     TapeLinks *links[2];     /* of both */
     Direction along;         /* work */
     TapeJournal *journal;
-    double *frame, *q, *step[2], *euler[2], *link[2], *evaluated, *rate, *drate;
+    double *frame, *q, *step[2], *euler[2], *link[2], *choice[2], *evaluated, *rate, *drate;
 } Linear;
 
 /* linearize.c: `engine` is the engine tape. */
@@ -57,15 +58,17 @@ int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, 
 /* Set linear->along to the direction of one number; of a small motion at the state of the instance. */
 void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j);
 /* What of the vehicle: the rate of its state and the first outputs; the links of wheels with tires (gic_runtime.h) at
- * its coordinates and the base; the rates of the fast states at given links. */
-typedef enum LinearPart { LINEAR_RATE, LINEAR_LINKS, LINEAR_FAST } LinearPart;
+ * its coordinates and the base; the rates of the fast states at given links; what gears are chosen by, of an instance
+ * whose coordinates are gathered (tape_gather()) and whose gears are engaged. */
+typedef enum LinearPart { LINEAR_RATE, LINEAR_LINKS, LINEAR_FAST, LINEAR_SHIFT } LinearPart;
 /* linear->drate: derivatives along linear->along, in Euler parameters, of the rate of the state at which the instance
  * has just been evaluated, and behind it of the first outputs (else 0 of them). LINEAR_LINKS: linear->link[1], of the
  * links. LINEAR_FAST: linear->drate, of the fast states, along linear->along and links that change by linear->link[1];
- * linear->link[0]: the links. At kinks those of the branch that is taken. Returns a status. */
+ * linear->link[0]: the links. LINEAR_SHIFT: linear->choice[1], and linear->choice[0] itself. At kinks those of the
+ * branch that is taken. Returns a status. */
 int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs);
 /* The same backwards: linear->along becomes the derivative, by each number of state, inputs, ports, parameters and
- * by the time, of the sum of what linear_slope() finds with the weights in linear->drate (links: linear->link[1]), whose
+ * by the time, of the sum of what linear_slope() finds with the weights in the arrays where that stores it, whose
  * contents are lost. LINEAR_FAST: linear->link[1] becomes that by the links.
  * linear->rate: rate and outputs. The instance's bodies have been recovered at its state. GIC_ERROR_RESULT where a
  * derivative is infinite. */

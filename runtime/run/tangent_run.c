@@ -4,8 +4,7 @@
  * other. Since steps are sums of rates, what comes out is the derivative of the steps themselves, not that of the
  * motion that they approximate.
  *
- * Derivatives are those of the branches that the run takes. What changes the branch within a step as a jump, a gear for
- * one, is refused. */
+ * Derivatives are those of the branches that the run takes. Gears that change: tangent_gear.c. */
 #include "run/tangent_private.h"
 #include "base/message.h"
 #include "engine/engine.h"
@@ -20,9 +19,9 @@
 #include <math.h>
 #include <string.h>
 
-static double *array_of(Both *both, size_t offset)
+double *tangent_array(const TangentRun *run, size_t offset)
 {
-    return (double *)(void *)((char *)both + offset);
+    return (double *)(void *)((char *)run->both + offset);
 }
 
 /* ---- variables ------------------------------------------------------------------------------------------- */
@@ -153,6 +152,33 @@ int tangent_input(const RunVariable *v, double time, double change[3])
     return driven ? 3 : 1;
 }
 
+/* The third derivative of a profile, by its second one, which is a polynomial of degree 3 between kinks: exact there.
+ */
+static double jerk_of(const Profile *profile, double time)
+{
+    const double apart = 1e-4, next = profile_next_kink(profile, time - 4 * apart);
+    const double side = next > time ? -apart : apart; /* away from a kink, if one is near */
+    double at[4][3];
+    for (int i = 0; i < 4; ++i)
+        profile_at(profile, time + i * side, at[i]);
+    return (-11 * at[0][2] + 18 * at[1][2] - 9 * at[2][2] + 2 * at[3][2]) / (6 * side);
+}
+
+void tangent_input_rates(const TangentRun *run, double time, double *rate)
+{
+    memset(rate, 0, (size_t)run->inputs * sizeof *rate);
+    for (int i = 0; i < run->scene->profiles; ++i) {
+        const Profile *profile = &run->scene->profile[i];
+        double at[3];
+        profile_at(profile, time, at);
+        rate[profile->input] = at[1];
+        if (!profile->driven)
+            continue;
+        rate[profile->input + 1] = at[2];
+        rate[profile->input + 2] = jerk_of(profile, time);
+    }
+}
+
 /* Inputs at a time, and how they change by each variable. A gic_input_function. */
 static void inputs_of_both(void *user, int32_t lane, double time, double *input)
 {
@@ -171,14 +197,14 @@ static void inputs_of_both(void *user, int32_t lane, double time, double *input)
 
 /* The state of both has slow states, of the vehicle and by each variable, then fast ones. Part k of it, 0: of the
  * vehicle, to own[states] and back. */
-static void take_part(const TangentRun *run, const double *both, int k, double *own)
+void tangent_take(const TangentRun *run, const double *both, int k, double *own)
 {
     const int slow = run->code->slow_count, fast = run->code->fast_count;
     memcpy(own, both + slow * k, (size_t)slow * sizeof *own);
     memcpy(own + slow, both + slow * (1 + run->carried) + fast * k, (size_t)fast * sizeof *own);
 }
 
-static void put_part(const TangentRun *run, const double *own, int k, double *both)
+void tangent_put(const TangentRun *run, const double *own, int k, double *both)
 {
     const int slow = run->code->slow_count, fast = run->code->fast_count;
     memcpy(both + slow * k, own, (size_t)slow * sizeof *own);
@@ -192,17 +218,17 @@ static void take_inputs(const TangentRun *run, double time)
     head->start_time = time;
     head->steps = 0;
     head->ahead = run->both->head.ahead;
-    memcpy(tape_array(run->self, run->code->input_offset), array_of(run->both, run->descriptor.input_offset),
+    memcpy(tape_array(run->self, run->code->input_offset), tangent_array(run, run->descriptor.input_offset),
            (size_t)run->inputs * sizeof(double));
 }
 
 /* linear->along by variable k, but for the state. */
-static void point_at(const TangentRun *run, int k)
+void tangent_point(const TangentRun *run, int k)
 {
     const Direction *along = &run->linear->along;
     const RunVariable *v = &run->variable[k];
     memset(along->y, 0, (size_t)run->states * sizeof *along->y);
-    memcpy(along->u, array_of(run->both, run->descriptor.input_offset) + run->inputs * (1 + k),
+    memcpy(along->u, tangent_array(run, run->descriptor.input_offset) + run->inputs * (1 + k),
            (size_t)run->inputs * sizeof *along->u);
     memset(along->port, 0, (size_t)run->code->port_count * sizeof *along->port);
     memset(along->p, 0, (size_t)run->code->parameter_count * sizeof *along->p);
@@ -211,11 +237,34 @@ static void point_at(const TangentRun *run, int k)
         along->p[v->index] = 1;
 }
 
+void tangent_go(const TangentRun *run, const TrailEvent *event)
+{
+    int32_t *discrete = (int32_t *)(void *)((char *)run->self + run->code->discrete_offset);
+    const int base = run->code->free_base;
+    if (base)
+        discrete[0] = event->dependent;
+    for (int i = 0; i < 2 && base + i < run->code->discrete_count; ++i)
+        discrete[base + i] = event->gear[i];
+}
+
+/* What is left of a step after a change of gear ends when it did, and has less time where the change comes later. */
+static void point_later(const TangentRun *run, int k, double time)
+{
+    const double late = (run->rest.end - time) / run->rest.length * run->rest.late[k];
+    double rate[run->inputs + 1];
+    tangent_input_rates(run, time, rate);
+    for (int i = 0; i < run->inputs; ++i)
+        run->linear->along.u[i] += late * rate[i];
+    *run->linear->along.time = late;
+}
+
 /* Derivatives along variable k, into linear->drate, of a vehicle that has just been evaluated; state: of both. */
 static int slope_along(const TangentRun *run, const double *state, int k, int outputs)
 {
-    point_at(run, k);
-    take_part(run, state, 1 + k, run->linear->along.y);
+    tangent_point(run, k);
+    tangent_take(run, state, 1 + k, run->linear->along.y);
+    if (run->rest.going)
+        point_later(run, k, gic_time(run->self));
     const int status = linear_slope(run->linear, run->self, LINEAR_RATE, outputs);
     return status != GIC_OK || gic_finite(run->linear->drate, run->states + outputs) ? status : GIC_ERROR_RESULT;
 }
@@ -227,9 +276,18 @@ static int32_t dependent_of(const TangentRun *run)
     return dependent;
 }
 
+void tangent_discrete(const TangentRun *run, TrailEvent *event)
+{
+    const int32_t *discrete = (const int32_t *)(const void *)((const char *)run->self + run->code->discrete_offset);
+    const int base = run->code->free_base;
+    event->dependent = base ? discrete[0] : 0;
+    for (int i = 0; i < 2 && base + i < run->code->discrete_count; ++i)
+        event->gear[i] = discrete[base + i];
+}
+
 /* An event of the trail: up to two arrays of numbers, and the inputs. */
-static void note(const TangentRun *run, TrailKind kind, double time, const double *first, int firsts,
-                 const double *second, int seconds)
+void tangent_note(const TangentRun *run, TrailKind kind, double time, const double *first, int firsts,
+                  const double *second, int seconds)
 {
     if (!run->trail)
         return;
@@ -237,10 +295,10 @@ static void note(const TangentRun *run, TrailKind kind, double time, const doubl
     TrailEvent *event = trail_add(run->trail, firsts + seconds + inputs);
     double *number = event->number;
     *event = (TrailEvent){.time = time, .number = number, .kind = kind};
-    event->dependent = run->code->free_base ? dependent_of(run) : 0;
+    tangent_discrete(run, event);
     memcpy(number, first, (size_t)firsts * sizeof *number);
     memcpy(number + firsts, second, (size_t)seconds * sizeof *number);
-    memcpy(number + firsts + seconds, array_of(run->both, run->descriptor.input_offset),
+    memcpy(number + firsts + seconds, tangent_array(run, run->descriptor.input_offset),
            (size_t)inputs * sizeof *number);
 }
 
@@ -249,13 +307,15 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     const TangentRun *run = ((Both *)self)->run;
     double *own = tape_array(run->self, run->code->state_offset), found[run->states + 1];
     take_inputs(run, time);
-    take_part(run, state, 0, own);
-    note(run, TRAIL_RATE, time, own, run->states, own, 0);
+    tangent_take(run, state, 0, own);
+    tangent_note(run, TRAIL_RATE, time, own, run->states, own, 0);
     int status = run->code->rhs(run->self, time, own, found);
-    put_part(run, found, 0, rate);
+    tangent_put(run, found, 0, rate);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         status = slope_along(run, state, k, 0);
-        put_part(run, run->linear->drate, 1 + k, rate);
+        for (int i = 0; i < run->states && run->rest.going; ++i)
+            run->linear->drate[i] -= run->rest.late[k] / run->rest.length * found[i];
+        tangent_put(run, run->linear->drate, 1 + k, rate);
     }
     return status;
 }
@@ -268,10 +328,10 @@ static int links_of_both(void *self, double time, const double *slow, double *li
     double *own = tape_array(run->self, code->state_offset);
     take_inputs(run, time);
     memcpy(own, slow, (size_t)code->slow_count * sizeof *own);
-    note(run, TRAIL_LINKS, time, own, run->states, own, 0);
+    tangent_note(run, TRAIL_LINKS, time, own, run->states, own, 0);
     int status = code->link(run->self, time, own, link);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
-        point_at(run, k);
+        tangent_point(run, k);
         memcpy(run->linear->along.y, slow + code->slow_count * (1 + k), (size_t)code->slow_count * sizeof *slow);
         status = linear_slope(run->linear, run->self, LINEAR_LINKS, 0);
         memcpy(link + code->link_count * (1 + k), run->linear->link[1], (size_t)code->link_count * sizeof *link);
@@ -288,10 +348,10 @@ static int fast_of_both(void *self, double time, const double *link, const doubl
     double *own = tape_array(run->self, code->state_offset) + code->slow_count;
     take_inputs(run, time);
     memcpy(own, fast, states);
-    note(run, TRAIL_FAST, time, fast, code->fast_count, link, code->link_count);
+    tangent_note(run, TRAIL_FAST, time, fast, code->fast_count, link, code->link_count);
     int status = code->fast(run->self, time, link, fast, rate);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
-        point_at(run, k);
+        tangent_point(run, k);
         memcpy(linear->along.y + code->slow_count, fast + code->fast_count * (1 + k), states);
         memcpy(linear->link[0], link, links);
         memcpy(linear->link[1], link + code->link_count * (1 + k), links);
@@ -306,12 +366,12 @@ static int settle_both(void *self, double *state)
 {
     const TangentRun *run = ((Both *)self)->run;
     double own[run->states + 1];
-    take_part(run, state, 0, own);
+    tangent_take(run, state, 0, own);
     const int status = run->code->settle(run->self, own);
     if (status != GIC_OK)
         return status;
-    put_part(run, own, 0, state);
-    note(run, TRAIL_SETTLED, 0, own + 3, run->code->free_base ? 4 : 0, own, 0);
+    tangent_put(run, own, 0, state);
+    tangent_note(run, TRAIL_SETTLED, 0, own + 3, run->code->free_base ? 4 : 0, own, 0);
     const int dependent = run->code->free_base ? dependent_of(run) : 0;
     for (int k = 0; k < run->carried && run->code->free_base; ++k) {
         double *change = state + run->code->slow_count * (1 + k) + 3, sum = 0;
@@ -356,6 +416,8 @@ static void make_both(TangentRun *run)
     }
     model->size = at;
     run->both = pool_alloc(run->pool, at);
+    run->from = pool_alloc(run->pool, (all + 1) * sizeof(double));
+    run->rest.late = pool_alloc(run->pool, (size_t)parts * sizeof(double));
     memset(run->both, 0, at);
     run->both->run = run;
     run->both->head.subset = run->both->head.condition = run->both->head.grown = -1;
@@ -406,8 +468,9 @@ static void check_names(const TangentRun *run, const char *const *wanted, int co
 void tangent_fail(const TangentRun *run, int status)
 {
     if (run->shifted)
-        diag_fail((Place){run->scene->source, 0, 0}, "end the run before, or keep the gear by its selector",
-                  "a gear changes at t = %.6g s: gradients through changes of gear are not found", tangent_time(run));
+        diag_fail((Place){run->scene->source, 0, 0}, "other speeds of `up` and `down`, or another `step`",
+                  "two changes of gear in the step to t = %.6g s, or one right at its end, have no derivatives",
+                  tangent_time(run));
     Blame blame;
     if (status == GIC_ERROR_RESULT &&
         formula_blame(run->pool, run->model, run->solve, run->self, &run->linear->along, &blame))
@@ -481,10 +544,10 @@ double tangent_time(const TangentRun *run)
 
 int tangent_begin(TangentRun *run, const Scene *scene)
 {
-    double *state = array_of(run->both, run->descriptor.state_offset);
-    double *input = array_of(run->both, run->descriptor.input_offset);
+    double *state = tangent_array(run, run->descriptor.state_offset);
+    double *input = tangent_array(run, run->descriptor.input_offset);
     run->scene = scene;
-    run->shifted = false;
+    run->shifted = run->rest.going = false;
     gic_restart(run->both, 0);
     if (run->trail)
         trail_begin(run->trail);
@@ -493,11 +556,11 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     run->self->head.input_function = NULL;
     if (status != GIC_OK)
         return status;
-    put_part(run, tape_array(run->self, run->code->state_offset), 0, state);
+    tangent_put(run, tape_array(run->self, run->code->state_offset), 0, state);
     for (int k = 0; k < run->carried; ++k)
         if (run->variable[k].kind == BY_INITIAL) {
             linear_direction(run->linear, run->self, LINEAR_MOTION, run->variable[k].index);
-            put_part(run, run->linear->along.y, 1 + k, state);
+            tangent_put(run, run->linear->along.y, 1 + k, state);
         }
     status = settle_both(run->both, state);
     memcpy(input, tape_array(run->self, run->code->input_offset),
@@ -508,9 +571,9 @@ int tangent_begin(TangentRun *run, const Scene *scene)
 
 int tangent_look(TangentRun *run, double *value, double *slope)
 {
-    const double *state = array_of(run->both, run->descriptor.state_offset);
+    const double *state = tangent_array(run, run->descriptor.state_offset);
     take_inputs(run, gic_time(run->both));
-    take_part(run, state, 0, tape_array(run->self, run->code->state_offset));
+    tangent_take(run, state, 0, tape_array(run->self, run->code->state_offset));
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
@@ -523,21 +586,8 @@ int tangent_look(TangentRun *run, double *value, double *slope)
 
 void tangent_state(const TangentRun *run, double *own)
 {
-    take_part(run, array_of(run->both, run->descriptor.state_offset), 0, own);
-    memcpy(own + run->states, array_of(run->both, run->descriptor.input_offset), (size_t)run->inputs * sizeof *own);
-}
-
-/* True where a gear changes: the run goes on in another way, from a time that the variables change. */
-static bool gear_changes(const TangentRun *run)
-{
-    double own[run->states + run->inputs];
-    tangent_state(run, own);
-    memcpy(run->copy, run->self, run->code->size);
-    memcpy(tape_array(run->copy, run->code->state_offset), own, (size_t)run->states * sizeof *own);
-    run->copy->head.start_time = gic_time(run->both);
-    run->copy->head.steps = 0;
-    memcpy(tape_array(run->copy, run->code->input_offset), own + run->states, (size_t)run->inputs * sizeof *own);
-    return run->code->shift && run->code->shift(run->copy);
+    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0, own);
+    memcpy(own + run->states, tangent_array(run, run->descriptor.input_offset), (size_t)run->inputs * sizeof *own);
 }
 
 bool tangent_dual(const TangentRun *run)
@@ -553,17 +603,19 @@ int tangent_step(TangentRun *run)
     TrailStep *step = run->trail ? trail_add_step(run->trail) : NULL;
     if (step)
         *step = (TrailStep){.start = start, .history = history, .first = trail_events(run->trail)};
+    memcpy(run->from, tangent_array(run, run->descriptor.state_offset),
+           (size_t)(run->descriptor.slow_count + run->descriptor.fast_count) * sizeof *run->from);
     int status = tangent_dual(run) ? gic_step_dual(&run->descriptor, run->both, h, run->scene->ratio)
                                    : gic_step(&run->descriptor, run->both, h, run->scene->method);
+    if (step)
+        step->gear = trail_events(run->trail);
+    if (status == GIC_OK && run->code->shift)
+        status = tangent_shift(run, start, step);
     if (step)
         step->knots = trail_events(run->trail);
     if (status == GIC_OK)
         status = knots_cross(&run->descriptor, run->scene, head, start, history);
     if (step)
         step->end = trail_events(run->trail);
-    if (status == GIC_OK && gear_changes(run)) {
-        run->shifted = true;
-        return GIC_ERROR_EVENTS;
-    }
     return status;
 }

@@ -15,19 +15,22 @@ typedef enum TrailKind {
     TRAIL_LINKS,   /* state, inputs */
     TRAIL_FAST,    /* fast states, links, inputs */
     TRAIL_SETTLED, /* Euler parameters */
+    TRAIL_SHIFT,   /* a change of gear (tangent_gear.h): state and inputs there, how the state moves on, guard */
 } TrailKind;
 
 typedef struct TrailEvent {
     double time, *number;
     int32_t dependent; /* Euler parameter: before a right-hand side, after settling */
+    int32_t gear[2];   /* before a right-hand side: the present and the previous one */
     TrailKind kind;
 } TrailEvent;
 
-/* A step: which events are its own, and behind them those of knots. */
+/* A step: which events are its own, then those of a change of gear, if one changes, and those of knots. */
 typedef struct TrailStep {
     double start;    /* s */
     int32_t history; /* past rates with which it began */
-    int first, knots, end;
+    double share;    /* of the step, where a gear changes */
+    int first, gear, knots, end;
 } TrailStep;
 
 typedef struct Trail Trail;

@@ -171,6 +171,10 @@ int tape_roll(void *self);
 int tape_engage(Instance *self);
 int tape_shift(void *self);
 void tape_start_gears(Instance *self);
+/* The same file: what gears are chosen by, in dual numbers; array, slope: as of tape_turn_wheels_dual(). choice: of
+ * both. */
+int tape_choose_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                     double *const choice[2], double *slope_frame);
 
 /* self_test.c: as the generated code tests itself. */
 int tape_self_test(void *self, gic_self_test *result);

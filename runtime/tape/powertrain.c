@@ -8,6 +8,7 @@
 #include "tape/record.h"
 
 #include <math.h>
+#include <string.h>
 
 static int32_t *gears_of(Instance *self)
 {
@@ -64,6 +65,18 @@ int tape_shift(void *instance)
     gears[0] = next;
     *age = 0;
     return 1;
+}
+
+int tape_choose_dual(const TapeEngine *engine, const TapeWorld *world, double *const *array, double *const *slope,
+                     double *const choice[2], double *slope_frame)
+{
+    double *own[2][WHOLE_COUNT];
+    for (int side = 0; side < 2; ++side) {
+        memcpy(own[side], side ? slope : array, sizeof own[side]);
+        own[side][WHOLE_fast] = own[side][WHOLE_y] + engine->code.slow_count;
+        own[side][WHOLE_choice] = choice[side];
+    }
+    return tape_play_dual(engine->shift, 0, own[0], own[1], world, engine->frame, slope_frame);
 }
 
 void tape_start_gears(Instance *self)

@@ -46,7 +46,9 @@ mistake 1 'the vehicle may sleep' --gradient chassis.x "$car" "$work/bad.scene"
 scene 'step: 0.005\nlocate: true'
 mistake 1 'steps end where contacts' --gradient chassis.x "$car" "$work/bad.scene"
 scene 'step: 0.001\ninitial: {speed: 10, gear: 1}'
-mistake 1 'a gear changes at t = ' --gradient chassis.x "$complete" "$work/bad.scene"
+cp -r "$models/parts" "$models/tires" "$models"/hmmwv*.veh "$work"
+sed -i 's/latency: 1$/latency: 0.0004/; s/duration: 0.3/duration: 0.0004/' "$work/parts/hmmwv_powertrain.veh"
+mistake 1 'two changes of gear in the step to t = 0.001 s' --gradient chassis.x "$work/hmmwv_vehicle.veh" "$work/bad.scene"
 sed 's/duration: 40/duration: 1/; s/ratio: 6/ratio: 1/' "$models/scenes/steady_circle.scene" >"$work/bad.scene"
 mistake 1 'a driver drives' --gradient chassis.x "$complete" "$work/bad.scene"
 scene 'step: 0.001'

@@ -6,6 +6,7 @@ backwards through the run, against one by one, which is forwards."""
 import csv
 import math
 import re
+import shutil
 import sys
 from decimal import Decimal, getcontext
 from pathlib import Path
@@ -322,6 +323,65 @@ for method in ("ab3", "rk4"):
     slope = (side[0] - side[3] + 8 * (side[2] - side[1])) / (12 * small)
     near(f"tumbling, {method}: steps that turn far, against differences", end(2.0)[1]["initial/roll.rate"], slope, 1e-8)
     both_ways(f"tumbling, {method}", "rock.x", tumbler, path)
+
+# ---- gears that change ----------------------------------------------------------------------------------------------------------
+
+# tables without kinks, so that remainders are of order 2; selector and pedal change within steps
+for name in ("parts", "tires"):
+    shutil.copytree(f"{models}/{name}", f"{work}/smooth/{name}", dirs_exist_ok=True)
+for name in ("hmmwv.veh", "hmmwv_tires.veh", "hmmwv_vehicle.veh"):
+    shutil.copy(f"{models}/{name}", f"{work}/smooth")
+shafts = Path(f"{work}/smooth/parts/hmmwv_powertrain.veh")
+shafts.write_text(shafts.read_text().replace("]}\n", "], interpolation: cubic}\n").replace("-400]\n", "-400]\n    interpolation: cubic\n")
+                  .replace("\nparameters:\n", "\nparameters:\n  early: {value: 1, tunable: true}\n")
+                  .replace("up: [2500 * rpm,", "up: [2500 * rpm * early,"))
+smooth = f"{work}/smooth/hmmwv_vehicle.veh"
+drive = """gicscene: 1
+duration: 0.8
+step: 0.006
+integrator: METHOD
+initial: {position: [0, 0, 0.4825], velocity: [VX, 0.1, 0], gear: 1, coordinates: {spring_f_l: FRONT},
+          states: {engine.speed: 240, SPINS}}
+parameters: {early: EARLY}
+inputs:
+  accelerator: {step: {from: 0.5, to: PEDAL, rise: 0.5, start: 0.01}}
+  rack: {step: {to: RACK, rise: 0.8, start: 0.05}}
+"""
+# a speed that changes leaves spins and slips as they are only where the scene has them
+drive = drive.replace("SPINS", ", ".join(f"tire_{a}_{b}.{c}: {v}" for a in "fr" for b in "lr"
+                                         for c, v in (("spin", 9.4), ("slip_x", 0.01), ("slip_y", 0.02))))
+knobs = {"initial/x.rate": ("VX", 4.4, 0.2), "initial/spring_f_l": ("FRONT", 0.25, 0.01),
+         "parameter/early": ("EARLY", 1.0, 0.01), "input/accelerator[1]": ("PEDAL", 0.9, 0.3),
+         "input/rack[1]": ("RACK", -0.01, 0.003)}
+for method, step in (("ab3\nratio: 6", "0.006"), ("rk4", "0.002"), ("ab3", "0.002")):
+    scene = drive.replace("METHOD", method).replace("0.006", step)
+    path = f"{work}/shift.scene"
+    text = scene
+    for mark, value, unit in knobs.values():
+        text = text.replace(mark, repr(value))
+    Path(path).write_text(text)
+    rows = list(csv.DictReader(gic("-q", "--general", smooth, path, "-o", "-").splitlines()))
+    gears = [float(value) for row in rows for name, value in row.items() if name.startswith("drive.gear")]
+    check(f"{method!r}: the gear changes", gears[0] == 1 and gears[-1] == 2)
+    value, d = gradient("chassis.x", smooth, path, *knobs)
+    last = [float(value) for name, value in rows[-1].items() if name.startswith("chassis.x")][0]
+    near(f"{method!r}: a run with a change of gear is that of gicrun", value, last, 1e-12)
+    for formula in ("chassis.x", "integral(chassis.y * drive.turbine_speed)"):
+        taylor(f"a change of gear, {method!r}, {formula}", formula, smooth, scene, knobs, 0.005)
+        Path(path).write_text(text)
+        both_ways(f"a change of gear, {method!r}, {formula}", formula, smooth, path)
+
+# the selector, which is let go of in a step: by an input that moves, whose values change the time
+moved = drive.replace("METHOD", "rk4").replace("0.006", "0.002").replace("VX", "3").replace("FRONT", "0.25").replace(
+    "EARLY", "1").replace("PEDAL", "0.5").replace("RACK", "0") + "  selector: {step: {from: FIRST, to: LAST, rise: 0.2, start: 0.1}}\n"
+lever = {"input/selector[0]": ("FIRST", 1.0, 0.3), "input/selector[1]": ("LAST", -0.1, 0.3)}
+taylor("the selector", "chassis.x", smooth, moved, lever, 0.01)
+
+# the complete drive: two changes up, one down
+whole = gradient("chassis.x", f"{models}/hmmwv_vehicle.veh", f"{models}/scenes/full_run.scene")[1]
+for name in ("initial/y.rate", "initial/spring_r_l", "input/accelerator[1]", "input/rack[6]"):
+    one = gradient("chassis.x", f"{models}/hmmwv_vehicle.veh", f"{models}/scenes/full_run.scene", name)[1][name]
+    near(f"the complete drive: {name} both ways", whole[name], one, 1e-12 * max(1, abs(one)))
 
 # ---- a run of gicrun ends there -------------------------------------------------------------------------------------------------
 
