@@ -40,7 +40,10 @@ const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *sce
 
 /* ---- gradient_report.c */
 
-/* --gradient: a table, or CSV by the ending of the file. */
+/* --gradient: a table, and a file: a page where its name ends in .html, else CSV. */
 void gradient_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+
+/* ---- gradient_page.c: sensitivities as bars. number: a line that says what they are of. */
+void gradient_page(Pool *pool, const char *name, const Gradient *gradient, const char *number, const char *path);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Gradients for people and programs. */
+#include "base/file.h"
 #include "base/message.h"
 #include "base/text.h"
 #include "host/host.h"
@@ -37,15 +38,18 @@ void gradient_report(Pool *pool, const Model *model, const Scene *scene, const R
     const Scalar scalar = scalar_read(pool, model, request->formula);
     scene = equilibrium_start(pool, model, scene, request->solve);
     const Gradient *gradient = gradient_find(pool, &scalar, scene, request->solve, request->key, request->keys);
-    if (request->results)
+    static const char *const at[] = {
+        [SCALAR_END] = "at the end,", [SCALAR_INTEGRAL] = "up to", [SCALAR_MAXIMUM] = "at its maximum,"};
+    const char *number =
+        pool_print(pool, "%s = %.12g %s %.9g s", request->formula, gradient->value, at[scalar.kind], gradient->time);
+    if (request->results && path_ends(request->results, ".html"))
+        gradient_page(pool, model->name, gradient, number, request->results);
+    else if (request->results)
         write_csv(pool, gradient, request->results);
     if (request->results && !strcmp(request->results, "-"))
         return;
-    static const char *const at[] = {
-        [SCALAR_END] = "at the end,", [SCALAR_INTEGRAL] = "up to", [SCALAR_MAXIMUM] = "at its maximum,"};
     Text out = {.pool = pool};
-    text_print(&out, "%s: %s = %.12g %s %.9g s\n\n", model->name, request->formula, gradient->value, at[scalar.kind],
-               gradient->time);
+    text_print(&out, "%s: %s\n\n", model->name, number);
     text_print(&out, "%-40s  %16s  %-8s  %16s\n", "variable", "value", "unit", "derivative");
     for (int k = 0; k < gradient->variables; ++k) {
         const RunVariable *v = &gradient->variable[k];

@@ -20,6 +20,16 @@ run --gradient 'chassis.x' "$car" "$work/short.scene" -o "$work/b.csv"
 check 'the same bytes again' cmp "$work/a.csv" "$work/b.csv"
 check 'columns' grep -qx 'variable,value,unit,derivative' "$work/a.csv"
 
+run --gradient 'chassis.x' "$car" "$work/short.scene" -o "$work/a.html"
+check 'a page' prints '^initial/x.rate .* m/s '
+bars() { # a row and a bar a variable, changes from the largest to the smallest, the largest bar half the width
+    [ "$(grep -c '<tr><td>' "$work/a.html")" -eq "$(($(wc -l <"$work/a.csv") - 2))" ] && ! grep -q 'nan\|inf' "$work/a.html" &&
+        sed -n 's/.*<td class="n">\([-+.e0-9]*\)<\/td><td><svg.*width="\([0-9.]*\)" height="14" fill.*/\1 \2/p' "$work/a.html" |
+        awk '{ c = $1 < 0 ? -$1 : $1; if (NR == 1) most = c; bad += NR > 1 && c > last; bad += ($2 - 200 * c / most) ^ 2 > 0.01; last = c }
+            END { exit !(NR > 10 && !bad) }'
+}
+check 'bars, the largest first' bars
+
 # ---- what is refused
 rm -f "$work"/no.*
 ends() { exits "$1" && says "$2" && [ ! -e "$work/no.csv" ]; }

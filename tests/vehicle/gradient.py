@@ -264,8 +264,8 @@ taylor("tunable geometry", "chassis.z", car, scene, chosen, 0.02)
 # ---- backwards and forwards -----------------------------------------------------------------------------------------------------
 
 
-def both_ways(what, formula, model, scene):
-    value, back = gradient(formula, model, scene)
+def both_ways(what, formula, model, scene, names=()):
+    value, back = gradient(formula, model, scene, *names)
     check(f"{what}: more variables than go forwards", len(back) > 2)
     sizes = {}
     for name in back:
@@ -369,7 +369,8 @@ for method, step in (("ab3\nratio: 6", "0.006"), ("rk4", "0.002"), ("ab3", "0.00
     for formula in ("chassis.x", "integral(chassis.y * drive.turbine_speed)"):
         taylor(f"a change of gear, {method!r}, {formula}", formula, smooth, scene, knobs, 0.005)
         Path(path).write_text(text)
-        both_ways(f"a change of gear, {method!r}, {formula}", formula, smooth, path)
+        both_ways(f"a change of gear, {method!r}, {formula}", formula, smooth, path, list(knobs) +
+                  ["initial/yaw.rate", "initial/engine.speed", "initial/tire_f_l.slip_y", "input/accelerator[0]"])
 
 # the selector, which is let go of in a step: by an input that moves, whose values change the time
 moved = drive.replace("METHOD", "rk4").replace("0.006", "0.002").replace("VX", "3").replace("FRONT", "0.25").replace(
