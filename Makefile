@@ -373,6 +373,7 @@ bench: all
 	@sh tests/bench/parts.sh begin $(BUILD)/bench/parts.csv $(PARTS)
 	$(foreach part,$(PARTS),@sh tests/bench/parts.sh run $(BUILD)/bench/parts.csv $(part) \
 	    $(BUILD)/gicbench $(if $(QUICK),--quick) $(measured_$(part))$(newline))
+	$(if $(QUICK),,sh tests/bench/fleet.sh $(BUILD)/gicgen >$(BUILD)/bench/fleet.txt)
 
 # what it measured, into the pages
 tables:

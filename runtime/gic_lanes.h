@@ -106,8 +106,38 @@
 #define LANE_REDUCE(x, turns) GIC_LANES_NAME(lane_reduce_, GIC_LANES)(x, turns)
 #define LANE_HALF_WAVE(r) GIC_LANES_NAME(lane_half_wave_, GIC_LANES)(r)
 #define LANE_ARC(y, x) GIC_LANES_NAME(lane_arc_, GIC_LANES)(y, x)
+#define LANE_SMALL_ARC(t, eighths) GIC_LANES_NAME(lane_small_arc_, GIC_LANES)(t, eighths)
 #define LANE_SMALL_ASIN(x, z) GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(x, z)
 #define LANE_GROWTH(x, scale) GIC_LANES_NAME(lane_growth_, GIC_LANES)(x, scale)
+
+/* What compilers make of the loops over signs and roots only if they are told to: of the 32 bytes of AVX, and of the 64
+ * of AVX-512. */
+#ifdef GIC_FLOAT
+#define GIC_REAL_BYTES 4
+#define GIC_SIGNS_32(x) __builtin_ia32_movmskps256(x)
+#define GIC_ROOTS_32(x) __builtin_ia32_sqrtps256(x)
+#define GIC_SIGNS_64(x) __builtin_ia32_cvtd2mask512(x)
+#ifdef __clang__
+#define GIC_ROOTS_64(x) __builtin_ia32_sqrtps512(x, 4)
+#else
+#define GIC_ROOTS_64(x) __builtin_ia32_sqrtps512_mask(x, x, -1, 4)
+#endif
+#else
+#define GIC_REAL_BYTES 8
+#define GIC_SIGNS_32(x) __builtin_ia32_movmskpd256(x)
+#define GIC_ROOTS_32(x) __builtin_ia32_sqrtpd256(x)
+#define GIC_SIGNS_64(x) __builtin_ia32_cvtq2mask512(x)
+#ifdef __clang__
+#define GIC_ROOTS_64(x) __builtin_ia32_sqrtpd512(x, 4)
+#else
+#define GIC_ROOTS_64(x) __builtin_ia32_sqrtpd512_mask(x, x, -1, 4)
+#endif
+#endif
+#ifdef GIC_FLOAT
+typedef int32_t gic_whole_of_lane;
+#else
+typedef long long gic_whole_of_lane;
+#endif
 
 /* Adding it to a number that is not large leaves the nearest whole number in the last bits. */
 #ifdef GIC_FLOAT
@@ -162,16 +192,24 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_of_, GIC_LANES)(gic_real x)
 
 LANE_FUNCTION int GIC_LANES_NAME(lane_any_, GIC_LANES)(gic_mask m)
 {
-#if defined(__AVX__) && !defined(GIC_FLOAT) && GIC_LANES == 4
-    typedef double four __attribute__((vector_size(32)));
-    return __builtin_ia32_movmskpd256((four)m) != 0;
-#else
-    int l;
-    gic_mask any = m;
-    FOR_LANES(l)
-    any[0] |= m[l];
-    return any[0] != 0;
+    int l = 0, any = 0;
+#ifdef __AVX512DQ__
+    for (; (l + 64 / GIC_REAL_BYTES) <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
+        gic_whole_of_lane part __attribute__((vector_size(64)));
+        memcpy(&part, (const char *)&m + l * GIC_REAL_BYTES, sizeof part);
+        any |= GIC_SIGNS_64(part) != 0;
+    }
 #endif
+#ifdef __AVX__
+    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
+        gic_real part __attribute__((vector_size(32)));
+        memcpy(&part, (const char *)&m + l * GIC_REAL_BYTES, sizeof part);
+        any |= GIC_SIGNS_32(part) != 0;
+    }
+#endif
+    for (; l < GIC_LANES; ++l)
+        any |= m[l] != 0;
+    return any;
 }
 
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_select_, GIC_LANES)(gic_mask m, gic_lane yes, gic_lane no)
@@ -192,13 +230,20 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_max_, GIC_LANES)(gic_lane x, gic_lane
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_sqrt_, GIC_LANES)(gic_lane x)
 {
     int l = 0;
-    /* compilers combine such roots only if told to */
-#if defined(__AVX__) && !defined(GIC_FLOAT)
-    for (; l + 4 <= GIC_LANES; l += 4) {
-        double four __attribute__((vector_size(32)));
-        memcpy(&four, (const char *)&x + l * (int)sizeof(double), sizeof four);
-        four = __builtin_ia32_sqrtpd256(four);
-        memcpy((char *)&x + l * (int)sizeof(double), &four, sizeof four);
+#ifdef __AVX512F__
+    for (; l + 64 / GIC_REAL_BYTES <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
+        gic_real part __attribute__((vector_size(64)));
+        memcpy(&part, (const char *)&x + l * GIC_REAL_BYTES, sizeof part);
+        part = GIC_ROOTS_64(part);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &part, sizeof part);
+    }
+#endif
+#ifdef __AVX__
+    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
+        gic_real part __attribute__((vector_size(32)));
+        memcpy(&part, (const char *)&x + l * GIC_REAL_BYTES, sizeof part);
+        part = GIC_ROOTS_32(part);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &part, sizeof part);
     }
 #endif
     for (; l < GIC_LANES; ++l)
@@ -338,15 +383,10 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_tan_, GIC_LANES)(gic_lane x)
 
 /* ---- their inverses --------------------------------------------------------------------------------------------- */
 
-/* atan(y / x) of x, y >= 0, not both 0 or infinite: of (y - x) / (y + x) and pi/4, or of -x / y and pi/2, where that is
- * nearer to 0. */
-LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_arc_, GIC_LANES)(gic_lane y, gic_lane x)
+/* eighths pi/4 + atan t of |t| <= tan(pi/8) */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_small_arc_, GIC_LANES)(gic_lane t, gic_lane eighths)
 {
-    const gic_mask above = (gic_mask)(y > GIC_TAN_PI_8 * x), far = (gic_mask)(x < GIC_TAN_PI_8 * y);
-    const gic_lane over = LANE_SELECT(far, -x, LANE_SELECT(above, y - x, y));
-    const gic_lane under = LANE_SELECT(far, y, LANE_SELECT(above, y + x, x));
-    const gic_lane eighths = LANE_WHERE(above, LANE(GIC_R(1.0))) + LANE_WHERE(far, LANE(GIC_R(1.0)));
-    const gic_lane t = over / under, z = t * t;
+    const gic_lane z = t * t;
 #ifdef GIC_FLOAT
     const gic_real eighth = GIC_R(0.785398185), rest = GIC_R(-2.18556941e-8);
     const gic_lane share =
@@ -366,9 +406,27 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_arc_, GIC_LANES)(gic_lane y, gic_lane
     return eighths * eighth + (t + (t * (z * share) + eighths * rest));
 }
 
+/* atan(y / x) of x, y >= 0, not both 0 or infinite: of (y - x) / (y + x) and pi/4, or of -x / y and pi/2, where that is
+ * nearer to 0. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_arc_, GIC_LANES)(gic_lane y, gic_lane x)
+{
+    const gic_mask above = (gic_mask)(y > GIC_TAN_PI_8 * x), far = (gic_mask)(x < GIC_TAN_PI_8 * y);
+    const gic_lane over = LANE_SELECT(far, -x, LANE_SELECT(above, y - x, y));
+    const gic_lane under = LANE_SELECT(far, y, LANE_SELECT(above, y + x, x));
+    const gic_lane eighths = LANE_WHERE(above, LANE(GIC_R(1.0))) + LANE_WHERE(far, LANE(GIC_R(1.0)));
+    return LANE_SMALL_ARC(over / under, eighths);
+}
+
+/* Where no lane asks for it, the quotient is left out: by 1 it changes nothing. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_atan_, GIC_LANES)(gic_lane x)
 {
-    return (gic_lane)((gic_mask)LANE_ARC(LANE_FABS(x), LANE(GIC_R(1.0))) ^ LANE_SIGN(x));
+    const gic_lane a = LANE_FABS(x), zero = {GIC_R(0.0)};
+    gic_lane arc;
+    if (LANE_ANY((gic_mask)(a > GIC_TAN_PI_8)))
+        arc = LANE_ARC(a, LANE(GIC_R(1.0)));
+    else
+        arc = LANE_SMALL_ARC(a, zero);
+    return (gic_lane)((gic_mask)arc ^ LANE_SIGN(x));
 }
 
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_atan2_, GIC_LANES)(gic_lane y, gic_lane x)

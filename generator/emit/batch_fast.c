@@ -38,22 +38,31 @@ static void write_alone(void *context, Text *out, int indent)
     line(out, indent + 4, "force[i] = LANE_WHERE(loaded, force[i]);");
 }
 
+/* A part of a wheel. Functions of vectors are long chains of operations: those that do not wait for each other stand
+ * side by side. */
+static void write_part(Expansion *x, Text *out, const Block *part, int indent)
+{
+    Block block = *part;
+    block.scheduled = true;
+    write_fast_block(x->g, out, &block, SCOPE_WHEEL, &x->constants, indent);
+}
+
 static void write_contact(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_fast_block(x->g, out, &x->class->contact, SCOPE_WHEEL, &x->constants, indent);
+    write_part(x, out, &x->class->contact, indent);
 }
 
 static void write_tire(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_fast_block(x->g, out, &x->class->tire, SCOPE_WHEEL, &x->constants, indent);
+    write_part(x, out, &x->class->tire, indent);
 }
 
 static void write_balance(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_fast_block(x->g, out, &x->class->balance, SCOPE_WHEEL, &x->constants, indent);
+    write_part(x, out, &x->class->balance, indent);
 }
 
 static const Insertion wheel_point[] = {{"comment", write_comment},

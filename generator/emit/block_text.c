@@ -117,6 +117,12 @@ static void mark_uses(Emitter *m, Ex root)
     }
 }
 
+/* Elementary functions of one vehicle a lane are long chains of operations, not calls. */
+static bool are_chains(const Style *style)
+{
+    return style->lanes && !style->width;
+}
+
 /* Arguments have smaller numbers, so one sweep upwards sizes every text. */
 static void size_texts(Emitter *m)
 {
@@ -134,7 +140,9 @@ static void size_texts(Emitter *m)
             sum += own ? own : 1;
         }
         bool again = m->uses[e] > 1 && node->op != OP_ROAD_PART;
-        m->leaves[e] = again || sum > m->style->leaves || node->op == OP_ROAD || node->op == OP_ROAD_CHANGE ? 0 : sum;
+        const bool alone = m->block->scheduled && are_chains(m->style) && node->op >= OP_SIN && node->op <= OP_ATAN2;
+        const bool whole = again || alone || node->op == OP_ROAD || node->op == OP_ROAD_CHANGE;
+        m->leaves[e] = whole || sum > m->style->leaves ? 0 : sum;
     }
 }
 
@@ -609,7 +617,7 @@ void block_emit(Text *out, const Block *block, const Style *style, Constants *co
         *POOL_PUSH(pool, m.step, m.steps) = (Step){e, -1};
     }
     if (block->scheduled)
-        schedule_steps(pool, block->dag, m.step, m.steps);
+        schedule_steps(pool, block->dag, m.step, m.steps, are_chains(style));
     if (style->naming)
         find_names(&m);
     const bool *early = find_early(&m);

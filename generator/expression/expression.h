@@ -433,7 +433,7 @@ typedef struct Step {
 
 /* Put steps [steps], which come with operands before what needs them, into the order in which a processor is the least
  * time without work. Checks keep theirs, and what may not be computed before a check, roots and quotients, comes after
- * the checks that it came after. */
-void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps);
+ * the checks that it came after. chains: elementary functions are operations in place, not calls. */
+void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps, bool chains);
 
 #endif

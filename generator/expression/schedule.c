@@ -14,7 +14,7 @@ typedef struct Cost {
 } Cost;
 
 /* Of processors of today, roughly: an order that is good for one is good for its neighbours. */
-static Cost cost_of(Op op)
+static Cost cost_of(Op op, bool chains)
 {
     switch (op) {
     case OP_LITERAL:
@@ -33,7 +33,7 @@ static Cost cost_of(Op op)
     case OP_LANE_SUM: return (Cost){24, 3};
     case OP_DIV: return (Cost){28, 8};
     case OP_SQRT: return (Cost){40, 8};
-    default: return (Cost){80, 60};
+    default: return chains ? (Cost){140, 46} : (Cost){80, 60};
     }
 }
 
@@ -49,6 +49,7 @@ typedef struct Task {
 typedef struct Planner {
     Pool *pool;
     const Dag *dag;
+    bool chains;  /* of schedule_steps() */
     int *step_of; /* [nodes] 1 + the step that computes it; 0: it is part of another one, or a leaf */
     int *height;  /* [nodes] from its result to the end, the longest way */
     int *there;   /* [nodes] when its result is there */
@@ -58,6 +59,11 @@ typedef struct Planner {
 static const Node *node_of(const Planner *p, Ex e)
 {
     return &p->dag->node[e];
+}
+
+static Cost cost(const Planner *p, Ex e)
+{
+    return cost_of((Op)node_of(p, e)->op, p->chains);
 }
 
 static int arguments(const Planner *p, Ex e)
@@ -75,7 +81,7 @@ static void measure_heights(Planner *p, const Step *step, int steps)
     for (int e = nodes - 1; e >= 0; --e)
         for (int i = 0; i < arguments(p, (Ex)e); ++i) {
             const Ex argument = node_of(p, (Ex)e)->arg[i];
-            const int way = p->height[e] + cost_of((Op)node_of(p, (Ex)e)->op).latency;
+            const int way = p->height[e] + cost(p, (Ex)e).latency;
             p->height[argument] = way > p->height[argument] ? way : p->height[argument];
         }
 }
@@ -83,10 +89,9 @@ static void measure_heights(Planner *p, const Step *step, int steps)
 /* What a step computes beside what other steps compute. Recursion is as deep as one line's text. */
 static void collect(Planner *p, Task *task, Ex e, bool *guarded)
 {
-    const Cost cost = cost_of((Op)node_of(p, e)->op);
-    const int way = p->height[e] + cost.latency;
+    const int way = p->height[e] + cost(p, e).latency;
     task->way = way > task->way ? way : task->way;
-    task->busy += cost.busy;
+    task->busy += cost(p, e).busy;
     *guarded = *guarded || node_of(p, e)->op == OP_SQRT || node_of(p, e)->op == OP_DIV;
     for (int i = 0; i < arguments(p, e); ++i) {
         const Ex argument = node_of(p, e)->arg[i];
@@ -108,7 +113,7 @@ static int finish(Planner *p, Ex e, bool top)
         const int there = finish(p, node_of(p, e)->arg[i], false);
         latest = there > latest ? there : latest;
     }
-    return p->there[e] = latest + cost_of((Op)node_of(p, e)->op).latency;
+    return p->there[e] = latest + cost(p, e).latency;
 }
 
 /* The task to begin next: of those that can begin now the one with the longest way, else the one that can begin first.
@@ -132,11 +137,12 @@ static int choose(const Planner *p, const Task *task, int tasks)
     return best;
 }
 
-void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps)
+void schedule_steps(Pool *pool, const Dag *dag, Step *step, int steps, bool chains)
 {
     const size_t nodes = (size_t)dag->nodes, count = (size_t)(steps ? steps : 1);
     Planner p = {.pool = pool,
                  .dag = dag,
+                 .chains = chains,
                  .step_of = pool_alloc(pool, nodes * sizeof(int)),
                  .height = pool_alloc(pool, nodes * sizeof(int)),
                  .there = pool_alloc(pool, nodes * sizeof(int))};

@@ -55,7 +55,7 @@ static void test_order_is_kept(void **state)
         static Step before[2 * NODES + INPUTS], after[2 * NODES + INPUTS];
         const int steps = plan(dag, 0, before);
         memcpy(after, before, sizeof before);
-        schedule_steps(pool, dag, after, steps);
+        schedule_steps(pool, dag, after, steps, false);
         moved += memcmp(before, after, (size_t)steps * sizeof *before) != 0;
         int checks = 0;
         for (int i = 0; i < steps; ++i) {
@@ -115,7 +115,7 @@ static void test_gaps_are_filled(void **state)
         if (dag->node[e].op != OP_INPUT && dag->node[e].level == LEVEL_VARIABLE)
             before[steps++] = (Step){e, -1};
     memcpy(after, before, sizeof before);
-    schedule_steps(pool, dag, after, steps);
+    schedule_steps(pool, dag, after, steps, false);
     const double alone = LINKS * (20 + 13), apart = (int)SUMS / 2.0;
     assert_true(time_of(dag, before, steps) >= alone + apart);
     /* at most a tenth above the chain alone */
