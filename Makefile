@@ -36,6 +36,10 @@ MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&
     $(if $(findstring /,$(shell $(CC) -print-file-name=libdmumps_seq.so)),-ldmumps_seq) \
     $(wildcard /usr/lib/*/libdmumps_seq-*.so)))
 
+# of the plug-in that writes HDF5, where it is there; Debian has the library in variants
+HDF5 := $(if $(shell for header in hdf5.h hdf5/serial/hdf5.h; do $(CC) -E -include $$header -x c /dev/null >/dev/null 2>&1 && \
+    echo there; done),$(firstword $(foreach name,hdf5_serial hdf5,$(if $(findstring /,$(shell $(CC) -print-file-name=lib$(name).so)),-l$(name)))))
+
 # between the commands of a foreach
 define newline
 
@@ -62,10 +66,10 @@ archive := $(BUILD)/gicgen.a
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-# gicrun looks for it there, beside programs or beside their folder: runtime/compare/mumps_load.c
-plugin := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so)
+# programs look for them there, beside programs or beside their folder: runtime/host/plugin.c
+plugins := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so) $(if $(HDF5),$(BUILD)/lib/gicgen/hdf5.so)
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugin) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugins) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client
 
 $(archive): $(objects)
 	rm -f $@
@@ -106,11 +110,15 @@ $(BUILD)/libgic.so: $(library) $(archive) $(BUILD)/libtcc_shared.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libgic.so.1 -Wl,--exclude-libs,libtcc_shared.a -o $@ $^ \
 	    $(filter-out -ltcc,$(LIBRARIES)) -lpthread
 
-$(BUILD)/runtime/plugin/mumps_plugin.o: COMPILE += -fvisibility=default
+$(BUILD)/runtime/plugin/mumps_plugin.o $(BUILD)/runtime/plugin/hdf5_plugin.o: COMPILE += -fvisibility=default
 
 $(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(MUMPS)
+
+$(BUILD)/lib/gicgen/hdf5.so: $(BUILD)/runtime/plugin/hdf5_plugin.o
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(HDF5)
 
 # gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/base/plant.h
 planting := $(shell grep -rlE --include='*.c' '"(base/plant|vehicle/plant_stores)\.h"' generator)
@@ -445,7 +453,7 @@ $(BUILD)/install/libgic_runtime.a: $(core)
 	$(AR) rcs $@ $^
 
 install: all $(BUILD)/install/libgic_runtime.a
-	BUILD=$(BUILD) VERSION=$(version) PLUGIN=$(plugin) sh runtime/host/install.sh $(manuals) $(installed_models)
+	BUILD=$(BUILD) VERSION=$(version) PLUGINS="$(plugins)" sh runtime/host/install.sh $(manuals) $(installed_models)
 
 uninstall:
 	sh runtime/host/install.sh --remove

@@ -8,10 +8,10 @@ dry=
 [ "$1" != --dry-run ] || { dry=yes && shift; }
 [ $# -eq 0 ] || { [ $# -eq 1 ] && [ "$1" = test ]; } || { echo "usage: install.sh [--dry-run] [test]" >&2; exit 2; }
 # a name with ^ is the beginning of one that has a version in it
-packages="gcc libc6-dev make libyaml-dev libminizip-dev zlib1g-dev libgsl-dev libsuitesparse-dev libtcc-dev gnuplot-nox"
+packages="gcc libc6-dev make libyaml-dev libminizip-dev zlib1g-dev libgsl-dev libsuitesparse-dev libtcc-dev libhdf5-dev gnuplot-nox"
 # MUMPS without its packages for linking, which bring MPI and a Fortran compiler: 14 MB, not 250
 [ "$1" = test ] && packages="$packages libmumps-headers-dev ^libmumps-seq-5 g++ clang libclang-rt-dev libcmocka-dev \
-    graphviz python3-jsonschema python3-numpy python3-scipy python3-yaml gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm \
+    graphviz python3-jsonschema python3-h5py python3-numpy python3-scipy python3-yaml gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm \
     gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user mandoc patch pkgconf tcc chromium libc6-dev-i386 lib32gcc-dev \
     lld wasi-libc libclang-rt-dev-wasm32 clang-format clang-tidy shellcheck libsundials-dev libxml2-dev libxml2-utils gcc-mingw-w64-x86-64-win32"
 

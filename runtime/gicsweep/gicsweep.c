@@ -34,8 +34,10 @@ static const char help[] =
     "                     parameters, over output times; rms(FORMULA, WEIGHT) and\n"
     "                     crossing(FORMULA, LEVEL), too: models/SCENE.md section 6\n"
     "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
-    "  -o, --output FILE  results as CSV; default: sweep.csv. Finished runs are kept in\n"
-    "                     FILE.journal: the same command goes on where it was stopped\n"
+    "  -o, --output FILE  results as CSV, or as HDF5 if FILE ends in .h5; default: sweep.csv.\n"
+    "                     Finished runs are kept in FILE.journal: the same command goes on\n"
+    "                     where it was stopped\n"
+    "      --series       in HDF5 also the scene's outputs at all output times\n"
     "      --shard I/N    only part I of N of the runs, 1 to N, perhaps each on another machine;\n"
     "                     -o names the folder of all parts, each of which goes on where it was\n"
     "                     stopped\n"
@@ -65,7 +67,7 @@ typedef struct Asked {
     const char **vary, **metric;  /* [count of words] */
     const char *planned, *merged; /* folders of --slurm and --merge; NULL: not asked for */
     double chunk;                 /* s; 0: not given */
-    bool quiet;
+    bool series, quiet;
 } Asked;
 
 static void read_vary(void *asked, char *word)
@@ -142,6 +144,7 @@ static void read_command_line(Asked *asked, int count, char **word)
         {"metric", .read = read_metric},
         {"seed", .read = read_seed},
         {"output", 'o', .text = &sweep->results},
+        {"series", .on = &asked->series},
         {"shard", .read = read_shard},
         {"slurm", .text = &asked->planned},
         {"chunk", .read = read_chunk},
@@ -157,6 +160,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned))
         usage_fail("gicsweep", "--merge takes -o alone; all else is in the folder", asked->merged);
     sweep->quiet = asked->quiet;
+    sweep->series = asked->series;
     if (!sweep->results)
         sweep->results = sweep->part ? NULL : asked->planned ? asked->planned : "sweep.csv";
     else if (asked->planned)
@@ -177,6 +181,9 @@ static void read_command_line(Asked *asked, int count, char **word)
         usage_fail("gicsweep", "nothing is varied: --vary NAME=LOW:HIGH:COUNT", NULL);
     if (file_is_special(sweep->results) || !strcmp(sweep->results, "-"))
         usage_fail("gicsweep", "results go into a file, so that a stopped sweep can go on, not to", sweep->results);
+    if (asked->series && !sweep->part && !asked->planned && !path_ends(sweep->results, ".h5") &&
+        !path_ends(sweep->results, ".hdf5"))
+        usage_fail("gicsweep", "--series needs HDF5: -o FILE.h5, not", sweep->results);
     asked->model = word[first];
     sweep->scene = word[first + 1];
     sweep->vary = asked->vary;
@@ -209,6 +216,8 @@ static int command_of(const Asked *asked, char *const *called, const char **word
         memcpy(word + words, more, sizeof more);
         words += 4;
     }
+    if (sweep->series)
+        word[words++] = "--series";
     const char *const pair[][2] = {{"--engine", sweep->alone ? asked->options.engine : NULL},
                                    {"--cc", asked->options.compiler},
                                    {"--cflags", asked->options.flags}};
@@ -222,7 +231,7 @@ static int command_of(const Asked *asked, char *const *called, const char **word
 
 int main(int count, char **word)
 {
-    enum { OTHERS = 13 };
+    enum { OTHERS = 14 };
     const char *vary[count], *metric[count], *command[2 * count + OTHERS];
     enum { CHUNK = 600 /* s */ };
     Asked asked = {.options = {.size = sizeof asked.options},

@@ -78,6 +78,10 @@ const char *nameless_text(Pool *pool, int file);
 /* $TMPDIR or /tmp. */
 const char *temporary_folder(void);
 
+/* plugin.c: the data of a name in a plug-in, lib/gicgen/NAME beside the folder of the running program, of the library
+ * that we are in, or in it. NULL: it is not there or can't be loaded, *why. */
+const void *plugin_load(Pool *pool, const char *name, const char *symbol, const char **why);
+
 /* ---- csv.c */
 
 typedef struct Unfinished Unfinished;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # install.sh [--remove | FILE...]: what `make install` and `make uninstall` do, with their DESTDIR, PREFIX, BUILD, VERSION
-# and PLUGIN (a file or nothing) in the environment; FILE: manuals, by their ending .1, and models.
+# and PLUGINS (files or nothing) in the environment; FILE: manuals, by their ending .1, and models.
 #
 # share/gicgen/installed lists what was installed, and --remove goes by it: other files and their folders stay.
 set -e
@@ -63,7 +63,7 @@ python=$([ -x /usr/bin/python3 ] && echo /usr/bin/python3 || echo python3)
 packages=lib/$([ "$PREFIX" = /usr ] && echo python3 ||
     "$python" -c 'import sys; print("python3.%d" % sys.version_info[1])' 2>/dev/null || echo python3)/dist-packages
 for file in runtime/python/gicgen/*.py; do put 644 "$file" "$packages/gicgen"; done
-[ -z "$PLUGIN" ] || put 644 "$PLUGIN" lib/gicgen
+for file in $PLUGINS; do put 644 "$file" lib/gicgen; done
 put 644 runtime/gic_runtime.c share/gicgen
 put 644 runtime/gic_road.c share/gicgen
 for file; do

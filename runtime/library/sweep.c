@@ -54,6 +54,7 @@ static void sweep(void *context)
                             .metric = metric,
                             .latin = asked->latin,
                             .seed = asked->seed,
+                            .series = asked->series,
                             .part = asked->part,
                             .parts = asked->parts,
                             .quiet = asked->quiet};
@@ -70,20 +71,20 @@ static void keep(void *context)
     Sweeping *s = context;
     const SweepTable *table = &s->table;
     Pool *pool = pool_new();
-    double *value = pool_alloc(pool, sizeof *value * (size_t)(table->runs * table->columns + 1)), *next = value;
-    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)table->columns);
-    for (int c = 0; c < table->columns; ++c)
-        signal[c] = (gic_signal){pool_print(pool, "%s", table->signal[c].name),
-                                 pool_print(pool, "%s", table->signal[c].unit ? table->signal[c].unit : "1")};
+    double *value = pool_alloc(pool, sizeof *value * (size_t)(table->runs * table->form.columns + 1)), *next = value;
+    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)table->form.columns);
+    for (int c = 0; c < table->form.columns; ++c)
+        signal[c] = (gic_signal){pool_print(pool, "%s", table->form.column[c].name),
+                                 pool_print(pool, "%s", table->form.column[c].unit ? table->form.column[c].unit : "1")};
     for (int64_t r = 0; r < table->runs; ++r) {
         const char *text = table->row[r];
         char *end;
-        for (int c = 0; c < table->columns; ++c, text = *end ? end + 1 : end)
+        for (int c = 0; c < table->form.columns; ++c, text = *end ? end + 1 : end)
             *next++ = strtod(text, &end);
     }
     s->result = pool_alloc(pool, sizeof *s->result);
     s->result->pool = pool;
-    result_add(s->result, "runs", table->runs, table->columns, value, NULL, signal);
+    result_add(s->result, "runs", table->runs, table->form.columns, value, NULL, signal);
 }
 
 static int check(const gicl_sweep *asked, gicl_messages *said)
@@ -99,6 +100,9 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
         return call_wrong(said, NULL, "parts are 1 to %d, or 0: no parts, and a part is one of them", GICL_PARTS_MOST);
     if (asked->metrics < 0 || (asked->metrics && !asked->metric))
         return call_wrong(said, NULL, "'metrics' is the number of words in 'metric'");
+    if (asked->series && !asked->parts && !table_is_hdf5(asked->results))
+        return call_wrong(said, "name a file that ends in .h5", "series over time go into HDF5, not into '%s'",
+                          asked->results);
     for (int m = 0; m < asked->metrics; ++m)
         if (!asked->metric[m])
             return call_wrong(said, NULL, "number %d of the metrics is NULL", m);

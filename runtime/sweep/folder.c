@@ -40,9 +40,16 @@ static const char *plan_text(Pool *pool, const FolderPlan *plan)
     Text text = {.pool = pool};
     text_print(&text, "gicsweep plan %s\nkey %s\nruns %lld\nparts %d\n", GICGEN_VERSION, plan->key,
                (long long)plan->runs, plan->parts);
-    for (int c = 0; c < plan->columns; ++c)
-        text_print(&text, "column %s%s%s\n", plan->signal[c].name, plan->signal[c].unit ? "\t" : "",
-                   plan->signal[c].unit ? plan->signal[c].unit : "");
+    const SweepForm *form = &plan->form;
+    for (int f = 0; f < form->facts; ++f)
+        text_print(&text, "fact %s\t%s\n", form->fact[f].name, form->fact[f].value);
+    if (form->samples)
+        text_print(&text, "samples %lld\napart %.17g\n", (long long)form->samples, form->apart);
+    for (int c = 0; c < form->columns + form->series; ++c) {
+        const SweepColumn *column = &form->column[c];
+        text_print(&text, "%s %s\t%s\t%s\t%s\n", c < form->columns ? "column" : "series", column->group, column->name,
+                   column->description, column->unit ? column->unit : "");
+    }
     text_print(&text, "%s%016llx\n", last, (unsigned long long)text_hash(text.s, text.size));
     return text.s;
 }
@@ -62,6 +69,46 @@ static char *after(char **line, const char *word)
     *end = 0;
     *line = end + 1;
     return text + strlen(word);
+}
+
+/* The text up to a tab, which it ends; *text moves past it. NULL: there is none. */
+static char *before_tab(char **text)
+{
+    char *from = *text, *tab = from ? strchr(from, '\t') : NULL;
+    *text = tab ? tab + 1 : NULL;
+    if (tab)
+        *tab = 0;
+    return tab ? from : NULL;
+}
+
+/* What the table looks like, from the lines after the first ones. False: they are none of ours. */
+static bool form_read(Pool *pool, char **line, SweepForm *form)
+{
+    char *text;
+    while ((text = after(line, "fact "))) {
+        const char *name = before_tab(&text);
+        *POOL_PUSH(pool, form->fact, form->facts) = (SweepFact){name, text};
+        if (!name)
+            return false;
+    }
+    const char *samples = after(line, "samples "), *apart = samples ? after(line, "apart ") : NULL;
+    form->samples = apart ? strtoll(samples, NULL, 10) : 0;
+    form->apart = apart ? strtod(apart, NULL) : 0;
+    for (bool series = false;; series = true) {
+        while ((text = after(line, series ? "series " : "column "))) {
+            SweepColumn column = {.group = before_tab(&text)};
+            column.name = before_tab(&text);
+            column.description = before_tab(&text);
+            if (!column.description)
+                return false;
+            column.unit = *text ? text : NULL;
+            int *count = series ? &form->series : &form->columns, all = form->columns + form->series;
+            *POOL_PUSH(pool, form->column, all) = column;
+            ++*count;
+        }
+        if (series)
+            return form->columns && form->samples >= 0 && !form->series == !form->samples;
+    }
 }
 
 FolderPlan folder_plan_read(Pool *pool, const char *folder)
@@ -88,12 +135,8 @@ FolderPlan folder_plan_read(Pool *pool, const char *folder)
     plan.parts = parts ? (int)strtol(parts, NULL, 10) : 0;
     if (!plan.key || plan.runs < 1 || plan.runs > SWEEP_RUNS_MOST || plan.parts < 1 || plan.parts > plan.runs)
         refuse(path, "is no plan of gicsweep");
-    for (char *name; (name = after(&line, "column "));) {
-        char *unit = strchr(name, '\t');
-        if (unit)
-            *unit++ = 0;
-        *POOL_PUSH(pool, plan.signal, plan.columns) = (gic_signal){name, unit};
-    }
+    if (!form_read(pool, &line, &plan.form))
+        refuse(path, "is no plan of gicsweep");
     return plan;
 }
 
@@ -163,33 +206,36 @@ void folder_merge(Pool *pool, const char *folder, const char *results, bool quie
     if (files_are_one(results, plan_path(pool, folder)))
         diag_fail_call(program_place(), "choose another file", "results do not go to %s", results);
     interrupt_hold();
-    Csv csv = csv_open(pool, results);
-    for (int c = 0; c < plan.columns; ++c)
-        csv_name(&csv, plan.signal[c].name, plan.signal[c].unit);
-    csv_end_row(&csv);
+    table_check(pool, results, &plan.form);
+    const size_t numbers = (size_t)plan.form.series * (size_t)plan.form.samples;
+    double *value = pool_alloc(pool, (numbers + 1) * sizeof *value);
+    Table *table = table_open(pool, results, &plan.form, plan.runs);
     for (int part = 1; part <= plan.parts; ++part) {
         Pool *own = pool_new(); /* one part at a time is in memory */
         const int64_t first = part_first(plan.runs, part, plan.parts);
         const int64_t runs = part_first(plan.runs, part + 1, plan.parts) - first;
         const Journal journal =
-            journal_read(own, folder_journal(own, folder, part), folder_key(own, &plan, part), first, runs);
+            journal_read(own, folder_journal(own, folder, part), folder_key(own, &plan, part), &plan.form, first, runs);
         failed += journal.failed;
         if (journal.finished < runs)
             add_missing(&missing, part, runs - journal.finished);
         for (int64_t r = 0; r < runs && !missing.parts; ++r) {
-            fputs(journal.row[r], csv.file);
-            csv_end_row(&csv);
+            if (journal.series && !series_get(journal.series, first + r, value))
+                diag_fail(program_place(), "try again", "%s changes while it is read", journal.series->path);
+            table_row(table, journal.row[r], value);
         }
+        if (journal.series)
+            series_close(journal.series);
         pool_free(own);
     }
     if (missing.parts) {
-        csv_abandon(&csv);
+        table_abandon(table);
         put_range(&missing);
         diag_fail(program_place(), missing_remedy(pool, &missing, folder, plan.parts),
                   "%lld of %lld runs in %s are missing, in %s %s of %d", (long long)missing.runs, (long long)plan.runs,
                   folder, missing.parts > 1 ? "parts" : "part", missing.list.s, plan.parts);
     }
-    csv_close(&csv);
+    table_close(table);
     interrupt_release();
     if (!quiet)
         diag_note(pool_print(pool, "%s: %lld runs of %d parts in %s, %lld failed\n", program_place().source->path,

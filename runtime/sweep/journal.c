@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The journal of a sweep: lines are appended, never changed, and written to the disk before the next batch begins.
- * The first line identifies the sweep. Each other line has a checksum: an incomplete or damaged one is ignored, so that
- * its run is made again. */
+ * The journal of a sweep: lines are appended, never changed, and written before the next batch begins: a kill takes
+ * none of them. Onto the disk they go once a second; what a machine that stops loses of them is made again. The first
+ * line identifies the sweep. Each other line has a checksum: an incomplete or damaged one is ignored, so that its run
+ * is made again. */
 #include "base/catch.h"
 #include "base/file.h"
 #include "base/message.h"
@@ -23,6 +24,19 @@ static _Noreturn void journal_fail(const Journal *journal, const char *what)
     diag_fail(program_place(), file_remedy(errno), "can't %s %s: %s", what, journal->path, strerror(errno));
 }
 
+static const double behind_most = 1; /* s by which the disk is behind, where runs are added */
+
+/* Onto the disk. */
+static void sync_now(Journal *journal)
+{
+    journal->behind = false;
+    if (journal->series)
+        series_sync(journal->series);
+    if (fsync(journal->file) && errno != EINVAL) /* not every file system knows it */
+        journal_fail(journal, "write");
+    journal->synced = clock_seconds(CLOCK_MONOTONIC);
+}
+
 static void append(Journal *journal, const char *bytes, size_t size)
 {
     while (size) {
@@ -32,8 +46,7 @@ static void append(Journal *journal, const char *bytes, size_t size)
         bytes += n;
         size -= (size_t)n;
     }
-    if (fsync(journal->file) && errno != EINVAL) /* not every file system knows it */
-        journal_fail(journal, "write");
+    journal->behind = true;
 }
 
 static void note(Journal *journal, const RunResult *result)
@@ -70,7 +83,8 @@ static void take_line(Journal *journal, const char *line)
         return;
     const int64_t run = strtoll(end + 1, &end, 10);
     const int status = (int)strtol(end, &end, 10);
-    if (*end == ' ' && run >= journal->first && run < journal->first + journal->runs)
+    const bool ours = *end == ' ' && run >= journal->first && run < journal->first + journal->runs;
+    if (ours && (!journal->series || series_get(journal->series, run, journal->room)))
         note(journal, &(RunResult){run, status, end + 1, NULL});
 }
 
@@ -105,9 +119,10 @@ static size_t take(Journal *journal, const char *first)
     return good;
 }
 
-static Journal journal_new(Pool *pool, const char *path, int64_t first, int64_t runs)
+static Journal journal_new(Pool *pool, const char *path, const Series *series, int64_t first, int64_t runs)
 {
-    Journal journal = {.pool = pool, .path = path, .file = -1, .first = first, .runs = runs};
+    Journal journal = {.pool = pool, .path = path, .file = -1, .series = series, .first = first, .runs = runs};
+    journal.room = series ? pool_alloc(pool, series->numbers * sizeof *journal.room) : NULL;
     journal.row = pool_alloc(pool, sizeof *journal.row * (size_t)(runs + 1));
     return journal;
 }
@@ -117,9 +132,10 @@ static const char *first_line(Pool *pool, const char *key)
     return pool_print(pool, "gicsweep journal %s\n", key);
 }
 
-Journal journal_read(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs)
+Journal journal_read(Pool *pool, const char *path, const char *key, const SweepForm *form, int64_t first, int64_t runs)
 {
-    Journal journal = journal_new(pool, path, first, runs);
+    const Series *series = form->samples ? series_read(pool, series_path(pool, path), form, first) : NULL;
+    Journal journal = journal_new(pool, path, series, first, runs);
     const char *line = first_line(pool, key);
     struct stat is = {.st_size = 0};
     if (stat(path, &is) && errno != ENOENT)
@@ -135,9 +151,10 @@ static void let_go(void *held)
     close(*(const int *)held);
 }
 
-Journal journal_open(Pool *pool, const char *path, const char *key, int64_t first_run, int64_t runs)
+Journal journal_open(Pool *pool, const char *path, const char *key, const SweepForm *form, int64_t first_run,
+                     int64_t runs)
 {
-    Journal journal = journal_new(pool, path, first_run, runs);
+    Journal journal = journal_new(pool, path, NULL, first_run, runs);
     const char *first = first_line(pool, key);
     journal.file = open(journal.path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (journal.file < 0)
@@ -152,6 +169,10 @@ Journal journal_open(Pool *pool, const char *path, const char *key, int64_t firs
     if (flock(journal.file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         diag_fail(program_place(), "wait for it, or choose another place with -o", "another gicsweep is writing %s",
                   journal.path);
+    if (form->samples) { /* by the holder of the lock */
+        journal.series = series_open(pool, series_path(pool, path), form, first_run);
+        journal.room = pool_alloc(pool, journal.series->numbers * sizeof *journal.room);
+    }
     const off_t size = lseek(journal.file, 0, SEEK_END);
     if (size < (off_t)strlen(first)) {
         const char *bytes = file_read(journal.pool, journal.path, SIZE_MAX, &(size_t){0});
@@ -160,6 +181,7 @@ Journal journal_open(Pool *pool, const char *path, const char *key, int64_t firs
         if (ftruncate(journal.file, 0))
             journal_fail(&journal, "write");
         append(&journal, first, strlen(first));
+        sync_now(&journal);
     } else if (ftruncate(journal.file, (off_t)take(&journal, first))) {
         journal_fail(&journal, "write");
     }
@@ -174,10 +196,16 @@ void journal_add(Journal *journal, const RunResult *result, int results)
         note(journal, &result[i]);
     }
     append(journal, text.s, text.size);
+    if (clock_seconds(CLOCK_MONOTONIC) - journal->synced >= behind_most)
+        sync_now(journal);
 }
 
-void journal_close(const Journal *journal)
+void journal_close(Journal *journal)
 {
+    if (journal->behind)
+        sync_now(journal);
+    if (journal->series)
+        series_close(journal->series);
     caught_disown(journal->held);
     close(journal->file);
 }
@@ -185,5 +213,8 @@ void journal_close(const Journal *journal)
 void journal_remove(Journal *journal)
 {
     unlink(journal->path);
+    if (journal->series)
+        series_remove(journal->series);
+    journal->behind = false;
     journal_close(journal);
 }

@@ -42,6 +42,8 @@ typedef struct Slot {
     bool begun;          /* if there was one */
     Range *range;        /* [columns] */
     MetricState *metric; /* [metrics] */
+    int64_t sample;      /* output times so far, */
+    double *series;      /* and values at them, [series][samples]; NULL: not asked for */
     StepWatch *watch;    /* NULL: not watched */
 } Slot;
 
@@ -143,6 +145,16 @@ static void record_all(const Sweep *sweep, Slot *slot, double time, double (*val
         metric_see(metric, &slot->metric[m], time, value(of, metric->signal),
                    metric->other >= 0 ? value(of, metric->other) : 1);
     }
+}
+
+/* The same at an output time of its own, for series. */
+static void record_sample(const Sweep *sweep, Slot *slot, double time, double (*value)(const void *of, int signal),
+                          const void *of)
+{
+    record_all(sweep, slot, time, value, of);
+    for (int c = 0; slot->series && c < sweep->form->series; ++c)
+        slot->series[c * sweep->form->samples + slot->sample] = value(of, sweep->scene->column[c]);
+    ++slot->sample;
 }
 
 static void add_number(Text *row, double value)
@@ -295,7 +307,7 @@ static void look_at_batch(Runner *r)
         many->store(r->batch, i, r->one);
         set_status(r, slot, many->status(r->batch, i), r->one);
         if (slot->status == GIC_OK) {
-            record_all(sweep, slot, gic_time(r->one), value_in_lanes, &(InLanes){r, i});
+            record_sample(sweep, slot, gic_time(r->one), value_in_lanes, &(InLanes){r, i});
             memcpy(slot->before, r->one, sweep->engine->code->size);
             slot->begun = true;
         } else if (slot->begun) {
@@ -400,7 +412,7 @@ static void look_at_one(Runner *r)
     memcpy(r->copy, r->one, code->size); /* outputs are computed on a copy */
     set_status(r, slot, code->outputs(r->copy), r->copy);
     if (slot->status == GIC_OK)
-        record_all(sweep, slot, gic_time(r->one), value_alone, r);
+        record_sample(sweep, slot, gic_time(r->one), value_alone, r);
     else
         end_failed(r, slot, r->copy);
 }
@@ -451,12 +463,17 @@ static void take_up(Runner *r, Slot *slot, int64_t run)
         slot->range[c] = (Range){NAN, NAN, NAN};
     for (int m = 0; m < sweep->metrics; ++m)
         slot->metric[m] = (MetricState){0};
+    slot->sample = 0;
+    for (int64_t i = 0; slot->series && i < sweep->form->series * sweep->form->samples; ++i)
+        slot->series[i] = NAN;
 }
 
-/* The result of a slot's run; its texts live as long as the journal. */
+/* The result of a slot's run; its texts live as long as the journal. Its series are written. */
 static RunResult result_of(const Runner *r, const Slot *slot)
 {
     Pool *pool = r->sweep->journal->pool;
+    if (r->sweep->journal->series)
+        series_put(r->sweep->journal->series, slot->run, slot->series);
     return (RunResult){slot->run, slot->status, row_text(r->pool, r->sweep, slot),
                        slot->reason ? pool_print(pool, "%s", slot->reason) : NULL};
 }
@@ -514,6 +531,8 @@ static Runner runner_open(const Sweep *sweep)
     for (int i = 0; i < r.slots; ++i) {
         r.slot[i].range = pool_alloc(pool, sizeof(Range) * (size_t)(sweep->scene->columns + 1));
         r.slot[i].metric = pool_alloc(pool, sizeof(MetricState) * (size_t)(sweep->metrics + 1));
+        const size_t numbers = (size_t)sweep->form->series * (size_t)sweep->form->samples;
+        r.slot[i].series = numbers ? pool_alloc(pool, sizeof(double) * numbers) : NULL;
         r.slot[i].before = sweep->many ? instance_new(pool, sweep->engine) : NULL;
     }
     r.one = instance_new(pool, sweep->engine);

@@ -74,25 +74,66 @@ static uint64_t program_hash(Pool *pool)
     return file_hash(pool, library ? is.dli_fname : self);
 }
 
-/* A key of all that determines the results: the program, model and scene with all files that they name, the varied
- * numbers, and how code is compiled. */
-static const char *sweep_key(Pool *pool, const Sweep *sweep, const EngineOptions *code)
+/* A text without tabs and line ends. */
+static const char *one_line(Pool *pool, const char *text)
 {
-    Text text = {.pool = pool};
+    char *line = pool_print(pool, "%s", text);
+    for (char *c = line; *c; ++c)
+        if ((unsigned char)*c < ' ')
+            *c = ' ';
+    return line;
+}
+
+static void add_fact(Pool *pool, SweepForm *form, const char *name, const char *value)
+{
+    *POOL_PUSH(pool, form->fact, form->facts) = (SweepFact){name, one_line(pool, value)};
+}
+
+static const char *hash_text(Pool *pool, uint64_t hash)
+{
+    return pool_print(pool, "%016llx", (unsigned long long)hash);
+}
+
+/* All that determines the results: the program, model and scene with all files that they name, the varied numbers, and
+ * how code is compiled; but for what is in the compiler. Nothing of where it is and when it was made. */
+static void add_facts(Pool *pool, const Sweep *sweep, const EngineOptions *code, SweepForm *form)
+{
+    Text options = {.pool = pool}, compiler = {.pool = pool};
     const SweepPlan *plan = sweep->plan;
-    text_print(&text, "%s %016llx %016llx %016llx %s %d %lld %llu", GICGEN_VERSION,
-               (unsigned long long)program_hash(pool), (unsigned long long)source_hash(sweep->model->source),
-               (unsigned long long)source_hash(sweep->scene->source), sweep->engine->name, sweep->many != NULL,
-               (long long)plan->latin, (unsigned long long)plan->seed);
     for (int v = 0; v < plan->varied; ++v)
-        text_print(&text, " %s=%.17g:%.17g:%lld", plan->vary[v].name, plan->vary[v].low, plan->vary[v].high,
+        text_print(&options, plan->vary[v].count ? "%s--vary %s=%.17g:%.17g:%lld" : "%s--vary %s=%.17g:%.17g",
+                   v ? " " : "", plan->vary[v].name, plan->vary[v].low, plan->vary[v].high,
                    (long long)plan->vary[v].count);
+    if (plan->latin)
+        text_print(&options, " --latin %lld --seed %llu", (long long)plan->latin, (unsigned long long)plan->seed);
     for (int m = 0; m < sweep->metrics; ++m)
-        text_print(&text, " %s", sweep->metric[m].word);
+        text_print(&options, " --metric '%s'", sweep->metric[m].word);
+    if (form->samples)
+        text_print(&options, " --series");
     int words;
     const char **word = compiler_words(pool, code->compiler, build_flags, code->flags, &words);
     for (int i = 0; i < words; ++i)
-        text_print(&text, " %s", word[i]);
+        text_print(&compiler, "%s%s", i ? " " : "", word[i]);
+    add_fact(pool, form, "format", "gicsweep 1");
+    add_fact(pool, form, "gicgen", GICGEN_VERSION);
+    add_fact(pool, form, "program_hash", hash_text(pool, program_hash(pool)));
+    add_fact(pool, form, "model", sweep->model->name);
+    add_fact(pool, form, "model_hash", hash_text(pool, source_hash(sweep->model->source)));
+    add_fact(pool, form, "scene_hash", hash_text(pool, source_hash(sweep->scene->source)));
+    add_fact(pool, form, "engine", sweep->engine->name);
+    add_fact(pool, form, "lanes", sweep->many ? "yes" : "no");
+    add_fact(pool, form, "options", options.s);
+    add_fact(pool, form, "compiler", compiler.s);
+}
+
+/* A key of the facts, and of the compiler. */
+static const char *sweep_key(Pool *pool, const SweepForm *form, const EngineOptions *code)
+{
+    Text text = {.pool = pool};
+    int words;
+    const char **word = compiler_words(pool, code->compiler, build_flags, code->flags, &words);
+    for (int f = 0; f < form->facts; ++f)
+        text_print(&text, "%s %s\n", form->fact[f].name, form->fact[f].value);
     return cache_key(pool, (const char *const[]){text.s, compiler_contents(pool, word, words), NULL});
 }
 
@@ -107,52 +148,77 @@ static const char *unit_of(const Sweep *sweep, const Vary *vary)
     }
 }
 
-/* Columns: the number of the run, the varied numbers, status and time, three of each output of the scene, metrics. */
-static gic_signal *signals_of(const Sweep *sweep, int *count)
+/* Columns: the number of the run, the varied numbers, status and time, three of each output of the scene, metrics; and,
+ * if asked for, series of the scene's outputs. */
+static SweepForm form_of(const Sweep *sweep, bool series)
 {
-    static const char *const part[] = {"end", "min", "max"};
+    static const char *const part[][2] = {
+        {"end", "at the end"}, {"min", "the least at output times"}, {"max", "the greatest at output times"}};
     enum { OTHERS = 3, PARTS = sizeof part / sizeof *part };
     Pool *pool = sweep->pool;
+    const Scene *scene = sweep->scene;
     const int varied = sweep->plan->varied;
-    *count = OTHERS + varied + PARTS * sweep->scene->columns + sweep->metrics;
-    gic_signal *signal = pool_alloc(pool, sizeof *signal * (size_t)*count), *next = signal;
-    *next++ = (gic_signal){"run", NULL};
-    for (int v = 0; v < varied; ++v)
-        *next++ = (gic_signal){sweep->plan->vary[v].name, unit_of(sweep, &sweep->plan->vary[v])};
-    *next++ = (gic_signal){"status", NULL};
-    *next++ = (gic_signal){"time", "s"};
-    for (int c = 0; c < sweep->scene->columns; ++c) {
-        const gic_signal *of = &sweep->scene->signal[sweep->scene->column[c]];
-        for (int p = 0; p < PARTS; ++p)
-            *next++ = (gic_signal){pool_print(pool, "%s.%s", of->name, part[p]), of->unit};
+    SweepForm form = {.columns = OTHERS + varied + PARTS * scene->columns + sweep->metrics,
+                      .series = series ? scene->columns : 0};
+    SweepColumn *next = form.column = pool_alloc(pool, sizeof *next * (size_t)(form.columns + form.series));
+    form.samples = form.series ? scene->outputs + 1 : 0;
+    form.apart = form.series ? scene->output_step : 0;
+    *next++ = (SweepColumn){"runs", "run", NULL, "number of the run"};
+    for (int v = 0; v < varied; ++v) {
+        const Vary *vary = &sweep->plan->vary[v];
+        *next++ = (SweepColumn){"parameters", one_line(pool, vary->name), unit_of(sweep, vary),
+                                pool_print(pool, "from %.17g to %.17g", vary->low, vary->high)};
     }
-    for (int m = 0; m < sweep->metrics; ++m)
-        *next++ = (gic_signal){sweep->metric[m].name, sweep->metric[m].unit};
-    return signal;
+    Text status = {.pool = pool};
+    for (int s = 0; s >= GIC_ERROR_PIVOT; --s)
+        text_print(&status, "%s%d: %s", s ? "; " : "", s, gic_status_text(s));
+    *next++ = (SweepColumn){"runs", "status", NULL, one_line(pool, status.s)};
+    *next++ = (SweepColumn){"runs", "time", "s", "that the run reached"};
+    for (int c = 0; c < scene->columns; ++c) {
+        const gic_signal *of = &scene->signal[scene->column[c]];
+        for (int p = 0; p < PARTS; ++p)
+            *next++ = (SweepColumn){"outputs", pool_print(pool, "%s.%s", of->name, part[p][0]), of->unit,
+                                    pool_print(pool, "%s, %s", of->name, part[p][1])};
+    }
+    for (int m = 0; m < sweep->metrics; ++m) {
+        const char *equals = strchr(sweep->metric[m].word, '=') + 1;
+        *next++ = (SweepColumn){"metrics", sweep->metric[m].name, sweep->metric[m].unit,
+                                one_line(pool, equals + strspn(equals, " "))};
+    }
+    for (int c = 0; c < form.series; ++c) {
+        const gic_signal *of = &scene->signal[scene->column[c]];
+        *next++ = (SweepColumn){"series", of->name, of->unit,
+                                pool_print(pool, "%s over time; nan: the run had ended", of->name)};
+    }
+    return form;
 }
 
 /* No two columns have one name. */
-static void check_names(const Sweep *sweep, const gic_signal *signal, int columns)
+static void check_names(const Sweep *sweep, const SweepForm *form)
 {
     for (int m = 0; m < sweep->metrics; ++m)
-        for (int c = 0; c < columns; ++c)
-            if (c != columns - sweep->metrics + m && !strcmp(signal[c].name, sweep->metric[m].name))
+        for (int c = 0; c < form->columns; ++c)
+            if (c != form->columns - sweep->metrics + m && !strcmp(form->column[c].name, sweep->metric[m].name))
                 diag_fail_call(program_place(), "give it another name",
-                               "the table has a column '%s' without the metric of this name", signal[c].name);
+                               "the table has a column '%s' without the metric of this name", form->column[c].name);
 }
 
-static void write_results(const Sweep *sweep, const char *path, const gic_signal *signal, int columns)
+static void write_results(const Sweep *sweep, const char *path)
 {
     Pool *pool = sweep->pool;
-    Csv csv = csv_open(pool, path);
-    for (int c = 0; c < columns; ++c)
-        csv_name(&csv, signal[c].name, signal[c].unit);
-    csv_end_row(&csv);
+    const Journal *journal = sweep->journal;
+    const SweepForm *form = sweep->form;
+    double *value = pool_alloc(pool, sizeof *value * ((size_t)form->series * (size_t)form->samples + 1));
+    Table *table = table_open(pool, path, form, sweep->plan->count);
     for (int64_t r = 0; r < sweep->plan->count; ++r) {
-        fputs(sweep->journal->row[r], csv.file);
-        csv_end_row(&csv);
+        if (journal->series && !series_get(journal->series, sweep->plan->first + r, value)) {
+            table_abandon(table);
+            diag_fail(program_place(), "the same command makes these runs again", "%s has lost the series of run %lld",
+                      journal->series->path, (long long)r);
+        }
+        table_row(table, journal->row[r], value);
     }
-    csv_close(&csv);
+    table_close(table);
 }
 
 /* begun: when the sweep began, which compiles first; start: when the runs did; results: where they are. */
@@ -178,7 +244,7 @@ static void summary(const Sweep *sweep, int64_t before, double begun, double sta
 }
 
 /* All that comes before the runs: names are looked up, code is compiled. */
-static void open_sweep(Sweep *sweep, const SweepRequest *request, SweepTable *table)
+static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, SweepTable *table)
 {
     Pool *pool = sweep->pool;
     const Model *model = sweep->model;
@@ -195,8 +261,12 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, SweepTable *ta
     sweep->engine = open_code(pool, request, model, sweep->scene, &sweep->many);
     table->engine = sweep->engine;
     plan_close(pool, sweep->plan, model, sweep->engine);
-    table->signal = signals_of(sweep, &table->columns);
-    check_names(sweep, table->signal, table->columns);
+    table->form = form_of(sweep, request->series);
+    add_facts(pool, sweep, &request->code, &table->form);
+    sweep->form = &table->form;
+    check_names(sweep, sweep->form);
+    if (!sweep->plan->parts && !planned)
+        table_check(pool, request->results, sweep->form);
 }
 
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
@@ -211,17 +281,16 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
                    .metric = request->metric,
                    .quiet = request->quiet,
                    .processes = share_processes()};
-    open_sweep(&sweep, request, table);
-    const FolderPlan parts = {sweep_key(pool, &sweep, &request->code), plan.runs, plan.parts, table->columns,
-                              (gic_signal *)table->signal};
+    open_sweep(&sweep, request, false, table);
+    const FolderPlan parts = {sweep_key(pool, sweep.form, &request->code), plan.runs, plan.parts, table->form};
 
     interrupt_hold();
     if (plan.part)
         folder_plan_write(pool, request->results, &parts);
     const char *path = plan.part ? folder_journal(pool, request->results, plan.part)
                                  : pool_print(pool, "%s.journal", request->results);
-    Journal journal =
-        journal_open(pool, path, plan.part ? folder_key(pool, &parts, plan.part) : parts.key, plan.first, plan.count);
+    Journal journal = journal_open(pool, path, plan.part ? folder_key(pool, &parts, plan.part) : parts.key, sweep.form,
+                                   plan.first, plan.count);
     const int64_t before = journal.finished;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     sweep.journal = &journal;
@@ -237,7 +306,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
     if (plan.part) {
         journal_close(&journal);
     } else {
-        write_results(&sweep, request->results, table->signal, table->columns);
+        write_results(&sweep, request->results);
         journal_remove(&journal);
     }
     interrupt_release();
@@ -257,7 +326,7 @@ void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepR
                    .metrics = request->metrics,
                    .metric = request->metric,
                    .quiet = request->quiet};
-    open_sweep(&sweep, request, table);
+    open_sweep(&sweep, request, true, table);
     interrupt_hold();
     const double each = sweep_seconds(&sweep);
     if (each < 0)
@@ -266,8 +335,7 @@ void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepR
     const double wanted = plan.parts ? plan.parts : fmax(1, ceil(all / seconds)), most = fmin(JOBS, (double)plan.runs);
     const int parts = (int)(plan.parts ? wanted : fmin(wanted, most));
     folder_plan_write(pool, request->results,
-                      &(FolderPlan){sweep_key(pool, &sweep, &request->code), plan.runs, parts, table->columns,
-                                    (gic_signal *)table->signal});
+                      &(FolderPlan){sweep_key(pool, sweep.form, &request->code), plan.runs, parts, table->form});
     job_write(pool, request->results, command, words, parts, SLACK * all / parts);
     interrupt_release();
     if (!request->quiet)

@@ -119,14 +119,78 @@ int share_processes(void);
  * process that fails ends the program with a message. */
 bool share_runs(Pool *pool, const Share *share, size_t processes);
 
+/* ---- table.c: results as a file ---------------------------------------------------------------------------- */
+
+/* A column of results. group: in HDF5; descriptions have no line ends and no tabs. */
+typedef struct SweepColumn {
+    const char *group, *name, *unit, *description; /* unit: NULL: none is known */
+} SweepColumn;
+
+/* What results come from, in HDF5. */
+typedef struct SweepFact {
+    const char *name, *value;
+} SweepFact;
+
+/* What results look like: a row for each run, and, if asked for, values of `series` outputs at output times. */
+typedef struct SweepForm {
+    int columns, series;
+    SweepColumn *column; /* [columns + series] */
+    int64_t samples;     /* of each series, 0: there are none */
+    double apart;        /* s between them */
+    int facts;
+    SweepFact *fact;
+} SweepForm;
+
+/* A file of results that is being written: beside `path`, renamed when it is closed. */
+typedef struct Table Table;
+
+/* Is the file one of HDF5, by the ending of its name? */
+bool table_is_hdf5(const char *path);
+/* Call before the runs: ends in diag_fail if no file of this kind can be written here. */
+void table_check(Pool *pool, const char *path, const SweepForm *form);
+Table *table_open(Pool *pool, const char *path, const SweepForm *form, int64_t runs);
+/* The next run: its row, numbers separated by commas; series[form->series][form->samples], NULL: there are none. */
+void table_row(Table *table, const char *row, const double *series);
+void table_close(Table *table);
+void table_abandon(Table *table);
+
+/* ---- series.c: outputs over time of finished runs ------------------------------------------------------------ */
+
+/* A file with a place for each run, in which processes write side by side. What is in it counts where its checksum is
+ * right and the journal has the run. */
+typedef struct Series {
+    const char *path;
+    int file, *held; /* as in Journal */
+    int64_t first;
+    size_t numbers; /* of a run */
+} Series;
+
+/* The file beside a journal. */
+const char *series_path(Pool *pool, const char *journal);
+/* NULL: the form has no series. */
+Series *series_open(Pool *pool, const char *path, const SweepForm *form, int64_t first);
+/* Only read it; a file that is missing has no run. */
+Series *series_read(Pool *pool, const char *path, const SweepForm *form, int64_t first);
+void series_put(const Series *series, int64_t run, const double *value);
+/* value[numbers]; false: the run is not there, or damaged. */
+bool series_get(const Series *series, int64_t run, double *value);
+/* Onto the disk. */
+void series_sync(const Series *series);
+void series_close(const Series *series);
+void series_remove(const Series *series);
+
 /* ---- journal.c: what is finished --------------------------------------------------------------------- */
 
 /* Rows of finished runs, each written to the file before the next batch begins, so that a kill loses no finished
- * run. */
+ * run; and onto the disk once a second, so that a machine that loses its power loses little more. */
 typedef struct Journal {
     Pool *pool;
     const char *path;
     int file, *held;                       /* held: the same, closed where a failure ends a call */
+    const Series *series;                  /* NULL: none */
+    double *room;                          /* for those of a run */
+    double synced;                         /* when the file was written onto the disk, s */
+    bool behind;                           /* there is something that was not */
     int64_t first, runs, finished, failed; /* of runs from `first` on */
     const char **row;                      /* [runs] text of each row; NULL: not finished */
     int first_status;                      /* of the failed run with the lowest number; GIC_OK: none failed */
@@ -134,14 +198,15 @@ typedef struct Journal {
     const char *first_reason; /* NULL: an earlier gicsweep recorded the failure */
 } Journal;
 
-/* Open a journal: take what an earlier gicsweep with the same key finished, or begin one. */
-Journal journal_open(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs);
+/* Open a journal: take what an earlier gicsweep with the same key finished, or begin one. form: a run with series
+ * counts where these are there, too. */
+Journal journal_open(Pool *pool, const char *path, const char *key, const SweepForm *form, int64_t first, int64_t runs);
 /* Only read it, perhaps while another process writes it; no file: no run is finished. */
-Journal journal_read(Pool *pool, const char *path, const char *key, int64_t first, int64_t runs);
-/* Rows of runs, into the file and onto the disk; texts stay in use. */
+Journal journal_read(Pool *pool, const char *path, const char *key, const SweepForm *form, int64_t first, int64_t runs);
+/* Rows of runs, into the file; texts stay in use. */
 void journal_add(Journal *journal, const RunResult *result, int results);
-/* Keep it for later. */
-void journal_close(const Journal *journal);
+/* Keep it for later, on the disk. */
+void journal_close(Journal *journal);
 /* Remove the journal after the results are written. */
 void journal_remove(Journal *journal);
 
@@ -156,6 +221,7 @@ typedef struct Sweep {
     const gic_batch_model *many; /* NULL: no lanes */
     int metrics;
     const Metric *metric;
+    const SweepForm *form;
     int processes; /* most processes */
     Journal *journal;
     bool quiet;
@@ -178,8 +244,8 @@ enum { SWEEP_PARTS_MOST = 10000 };
 typedef struct FolderPlan {
     const char *key; /* of all that determines the results */
     int64_t runs;
-    int parts, columns;
-    gic_signal *signal; /* [columns] of the table */
+    int parts;
+    SweepForm form;
 } FolderPlan;
 
 /* Write the plan into a folder, which is made; where there is a plan it must be the same. */
@@ -209,15 +275,15 @@ typedef struct SweepRequest {
     const Metric *metric; /* read before the scene: the model has their formulas */
     int64_t latin;        /* 0: a grid */
     uint64_t seed;
+    bool series;     /* keep outputs over time; results are HDF5 then */
     int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */
     bool quiet;
 } SweepRequest;
 
 /* What became of it. */
 typedef struct SweepTable {
-    const Engine *engine;     /* for the caller to close; NULL: not opened */
-    const gic_signal *signal; /* [columns] */
-    int columns;
+    const Engine *engine; /* for the caller to close; NULL: not opened */
+    SweepForm form;
     int64_t runs;
     const char **row; /* [runs] numbers separated by commas */
 } SweepTable;

@@ -204,11 +204,12 @@ class Model:
         time = math.nan if at is None else _number(at, "at")
         return Linear(self._result("linearize", _bytes(scene), time)[0])
 
-    def sweep(self, scene, vary, results, *, latin=0, seed=1, alone=False, metrics=None):
+    def sweep(self, scene, vary, results, *, latin=0, seed=1, alone=False, metrics=None, series=False):
         """A scene with many values, as gicsweep: vary is {name: (low, high, count)}, or {name: (low, high)} with `latin`
         runs of a Latin hypercube. A table with a row for each run, which is written to the file `results` too; beside that
         finished runs are kept, so that the same call goes on after an interrupt. alone: each run by itself, by the model's
-        engine. metrics: {name: "rms(chassis.z)"}, further columns."""
+        engine. metrics: {name: "rms(chassis.z)"}, further columns. A file whose name ends in .h5 is HDF5; series: with the
+        scene's outputs over time."""
         metric = [_bytes(f"{name}={value}") for name, value in (metrics or {}).items()]
         words = [_bytes(f"{name}=" + ":".join(repr(_number(value, name)) if i < 2 else str(_count(value, name, 1, 10**7))
                                               for i, value in enumerate(values)))
@@ -216,7 +217,8 @@ class Model:
         sweep = _library.Sweep(ctypes.sizeof(_library.Sweep), _bytes(scene), _bytes(results),
                                (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _count(latin, "latin", 0, 10**7),
                                _count(seed, "seed", 0, 2**63 - 1), bool(alone), True, 0, 0,
-                               (ctypes.c_char_p * (len(metric) + 1))(*metric), len(metric))
+                               (ctypes.c_char_p * (len(metric) + 1))(*metric), len(metric),
+                               bool(series))
         data, _, _, names, units = self._result("sweep_run", ctypes.byref(sweep))[0]["runs"]
         return Table(data, names, units)
 
