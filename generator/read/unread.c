@@ -62,8 +62,10 @@ void unread_tell(const Reader *reader)
         const Signal *signal = &model->signal[i];
         if (signal->law && !is_image(signal->at) && !signal_is_read(reader, i))
             diag_warn(signal->at,
-                      pool_print(reader->pool, "take it away, or show it: `outputs: {%s: {type: signal, signal: %s}}`",
+                      pool_print(reader->pool,
+                                 "take it away, unless a scene or a metric reads it, or show it: "
+                                 "`outputs: {%s: {type: signal, signal: %s}}`",
                                  signal->name, signal->name),
-                      "nothing reads signal '%s'", signal->name);
+                      "nothing in the model reads signal '%s'", signal->name);
     }
 }

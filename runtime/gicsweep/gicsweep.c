@@ -12,6 +12,7 @@
 static const char help[] =
     "usage: gicsweep MODEL.veh SCENE --vary NAME=LOW:HIGH:COUNT ... [-o results.csv]\n"
     "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
+    "       gicsweep MODEL.veh SCENE --sobol COUNT --vary NAME=LOW:HIGH ... --metric ...\n"
     "       gicsweep MODEL.veh SCENE --vary ... --slurm FOLDER | --shard I/N -o FOLDER\n"
     "       gicsweep --merge FOLDER [-o results.csv]\n"
     "\n"
@@ -28,10 +29,12 @@ static const char help[] =
     "                     grid the last one varies fastest\n"
     "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
     "                     once, in random order\n"
+    "      --sobol COUNT  sensitivity: runs at COUNT base points, each as many as numbers vary and\n"
+    "                     two more; Sobol' indices of each metric go to standard output\n"
     "      --metric 'NAME [UNIT]=FUNCTION(FORMULA)'\n"
-    "                     one more column: end, min, max, mean, rms, integral, time_of_min,\n"
-    "                     time_of_max, crossing or overshoot of a formula of outputs, inputs and\n"
-    "                     parameters, over output times; rms(FORMULA, WEIGHT) and\n"
+    "                     one more column: end, min, max, mean, rms, rms_wk, rms_wd, integral,\n"
+    "                     time_of_min, time_of_max, crossing or overshoot of a formula of outputs,\n"
+    "                     inputs and parameters, over output times; rms(FORMULA, WEIGHT) and\n"
     "                     crossing(FORMULA, LEVEL), too: models/SCENE.md section 6\n"
     "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
     "  -o, --output FILE  results as CSV, or as HDF5 if FILE ends in .h5; default: sweep.csv.\n"
@@ -88,6 +91,12 @@ static void read_latin(void *asked, char *word)
         usage_whole("gicsweep", "--latin takes 1 to 10000000 runs, not", word, 1, GICL_SWEEP_MOST);
 }
 
+static void read_sobol(void *asked, char *word)
+{
+    ((Asked *)asked)->sweep.sobol =
+        usage_whole("gicsweep", "--sobol takes 16 to 10000000 base points, not", word, 16, GICL_SWEEP_MOST);
+}
+
 static void read_seed(void *asked, char *word)
 {
     ((Asked *)asked)->sweep.seed =
@@ -141,6 +150,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     const Option option[] = {
         {"vary", .read = read_vary},
         {"latin", .read = read_latin},
+        {"sobol", .read = read_sobol},
         {"metric", .read = read_metric},
         {"seed", .read = read_seed},
         {"output", 'o', .text = &sweep->results},
@@ -181,6 +191,10 @@ static void read_command_line(Asked *asked, int count, char **word)
         usage_fail("gicsweep", "nothing is varied: --vary NAME=LOW:HIGH:COUNT", NULL);
     if (file_is_special(sweep->results) || !strcmp(sweep->results, "-"))
         usage_fail("gicsweep", "results go into a file, so that a stopped sweep can go on, not to", sweep->results);
+    if (sweep->sobol && sweep->latin)
+        usage_fail("gicsweep", "--latin or --sobol, not both", NULL);
+    if (sweep->sobol && !sweep->metrics)
+        usage_fail("gicsweep", "--sobol needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
     if (asked->series && !sweep->part && !asked->planned && !path_ends(sweep->results, ".h5") &&
         !path_ends(sweep->results, ".hdf5"))
         usage_fail("gicsweep", "--series needs HDF5: -o FILE.h5, not", sweep->results);
@@ -194,7 +208,7 @@ static void read_command_line(Asked *asked, int count, char **word)
 static int command_of(const Asked *asked, char *const *called, const char **word)
 {
     static char self[4096];
-    static char number[2][24];
+    static char number[3][24];
     const gicl_sweep *sweep = &asked->sweep;
     const ssize_t size = readlink("/proc/self/exe", self, sizeof self - 1);
     int words = 0;
@@ -216,6 +230,11 @@ static int command_of(const Asked *asked, char *const *called, const char **word
         memcpy(word + words, more, sizeof more);
         words += 4;
     }
+    if (sweep->sobol) {
+        snprintf(number[2], sizeof number[2], "%lld", (long long)sweep->sobol);
+        word[words++] = "--sobol";
+        word[words++] = number[2];
+    }
     if (sweep->series)
         word[words++] = "--series";
     const char *const pair[][2] = {{"--engine", sweep->alone ? asked->options.engine : NULL},
@@ -231,7 +250,7 @@ static int command_of(const Asked *asked, char *const *called, const char **word
 
 int main(int count, char **word)
 {
-    enum { OTHERS = 14 };
+    enum { OTHERS = 16 };
     const char *vary[count], *metric[count], *command[2 * count + OTHERS];
     enum { CHUNK = 600 /* s */ };
     Asked asked = {.options = {.size = sizeof asked.options},

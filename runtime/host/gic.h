@@ -286,8 +286,8 @@ GICL_API int gicl_write(gicl_library *library, gicl_handle model, const gicl_stu
 
 enum { GICL_SWEEP_MOST = 10000000 }; /* runs */
 
-/* One scene with many values. Members are gicsweep's options. Results are HDF5 where their name ends in .h5 or .hdf5, else
- * CSV. */
+/* One scene with many values. Members are gicsweep's options. Results are HDF5 where their name ends in .h5 or .hdf5,
+ * else CSV. */
 typedef struct gicl_sweep {
     size_t size;             /* sizeof(gicl_sweep) */
     const char *scene;       /* a path */
@@ -304,6 +304,9 @@ typedef struct gicl_sweep {
     const char *const *metric; /* [metrics] NAME=FUNCTION(FORMULA) */
     int metrics;
     int series; /* 1: the scene's outputs at output times too, in HDF5 */
+    /* base points of Sobol' indices of the metrics, each `varied` + 2 runs; the table of indices is a message,
+     * GICL_TEXT. 0: none */
+    int64_t sobol;
 } gicl_sweep;
 
 /* Runs are made in $OMP_NUM_THREADS processes, by default one for each processor. *result (result NULL: not wanted):

@@ -53,6 +53,7 @@ static void sweep(void *context)
                             .metrics = asked->metrics,
                             .metric = metric,
                             .latin = asked->latin,
+                            .sobol = asked->sobol,
                             .seed = asked->seed,
                             .series = asked->series,
                             .part = asked->part,
@@ -96,6 +97,12 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
         return call_wrong(said, NULL, "a sweep needs a scene, a file for results, and what varies");
     if (asked->latin < 0 || asked->latin > GICL_SWEEP_MOST)
         return call_wrong(said, NULL, "runs of a Latin hypercube are 1 to %d, or 0: a grid", GICL_SWEEP_MOST);
+    if (asked->sobol < 0 || asked->sobol > GICL_SWEEP_MOST || (asked->sobol && asked->latin))
+        return call_wrong(said, NULL,
+                          "base points are 1 to %d, or 0: no Sobol' indices, and no Latin hypercube with them",
+                          GICL_SWEEP_MOST);
+    if (asked->sobol && !asked->metrics)
+        return call_wrong(said, "give 'metric'", "Sobol' indices are those of metrics, and there is none");
     if (asked->parts < 0 || asked->parts > GICL_PARTS_MOST || asked->part < 0 || asked->part > asked->parts)
         return call_wrong(said, NULL, "parts are 1 to %d, or 0: no parts, and a part is one of them", GICL_PARTS_MOST);
     if (asked->metrics < 0 || (asked->metrics && !asked->metric))

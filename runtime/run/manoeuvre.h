@@ -262,8 +262,4 @@ void manoeuvre_ride_speeds(Manoeuvre *manoeuvre);
  */
 double manoeuvre_top_speed(TestCar *car, const char **why);
 
-/* manoeuvre_ride.c: factors of accelerations for people at a frequency, Hz: W_k of vertical ones, W_d of others. */
-typedef enum RideWeight { RIDE_K, RIDE_D } RideWeight;
-double ride_weight(RideWeight weight, double frequency);
-
 #endif

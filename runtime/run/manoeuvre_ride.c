@@ -3,6 +3,7 @@
  * tires that change. */
 #include "gic_runtime.h"
 #include "run/manoeuvre.h"
+#include "run/ride_filter.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,27 +14,6 @@ static const double pi = 3.141592653589793;
 static const double run_in = 5;         /* s from the start, which are left out */
 static const double sampling = 0.005;   /* s */
 static const double band[] = {0.5, 80}; /* Hz, of weighted accelerations */
-
-/* ---- weighting: the analogue filters of ISO 2631-1 ------------------------------------------------------- */
-
-/* The size of 1 / (1 + s / (Q w) + (s / w)^2) at s = 2 pi i f, of w = 2 pi corner. */
-static double second_order(double f, double corner, double Q)
-{
-    const double r = f / corner;
-    return 1 / hypot(1 - r * r, r / Q);
-}
-
-double ride_weight(RideWeight weight, double f)
-{
-    const double Q = 0.70710678118654752, high = 0.4, low = 100;
-    const bool vertical = weight == RIDE_K;
-    const double turn = vertical ? 12.5 : 2, r = f / high;
-    double w = r * r * second_order(f, high, Q) * second_order(f, low, Q);
-    w *= hypot(1, f / turn) * second_order(f, turn, 0.63);
-    if (vertical) /* a step upwards */
-        w *= second_order(f, 3.35, 0.91) / second_order(f, 2.37, 0.91) * (2.37 / 3.35) * (2.37 / 3.35);
-    return w;
-}
 
 /* ---- spectral density after Welch ------------------------------------------------------------------------ */
 

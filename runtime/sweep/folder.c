@@ -43,6 +43,8 @@ static const char *plan_text(Pool *pool, const FolderPlan *plan)
     const SweepForm *form = &plan->form;
     for (int f = 0; f < form->facts; ++f)
         text_print(&text, "fact %s\t%s\n", form->fact[f].name, form->fact[f].value);
+    if (form->bases)
+        text_print(&text, "bases %lld\n", (long long)form->bases);
     if (form->samples)
         text_print(&text, "samples %lld\napart %.17g\n", (long long)form->samples, form->apart);
     for (int c = 0; c < form->columns + form->series; ++c) {
@@ -91,6 +93,8 @@ static bool form_read(Pool *pool, char **line, SweepForm *form)
         if (!name)
             return false;
     }
+    const char *bases = after(line, "bases ");
+    form->bases = bases ? strtoll(bases, NULL, 10) : 0;
     const char *samples = after(line, "samples "), *apart = samples ? after(line, "apart ") : NULL;
     form->samples = apart ? strtoll(samples, NULL, 10) : 0;
     form->apart = apart ? strtod(apart, NULL) : 0;
@@ -135,7 +139,7 @@ FolderPlan folder_plan_read(Pool *pool, const char *folder)
     plan.parts = parts ? (int)strtol(parts, NULL, 10) : 0;
     if (!plan.key || plan.runs < 1 || plan.runs > SWEEP_RUNS_MOST || plan.parts < 1 || plan.parts > plan.runs)
         refuse(path, "is no plan of gicsweep");
-    if (!form_read(pool, &line, &plan.form))
+    if (!form_read(pool, &line, &plan.form) || plan.form.bases < 0 || plan.form.bases > plan.runs)
         refuse(path, "is no plan of gicsweep");
     return plan;
 }

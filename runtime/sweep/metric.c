@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const kind_name[METRIC_KINDS] = {"end",      "min",         "max",         "mean",     "rms",
-                                                    "integral", "time_of_min", "time_of_max", "crossing", "overshoot"};
+static const char *const kind_name[METRIC_KINDS] = {"end",      "min",       "max",         "mean",
+                                                    "rms",      "integral",  "time_of_min", "time_of_max",
+                                                    "crossing", "overshoot", "rms_wk",      "rms_wd"};
 
 static _Noreturn void refuse(const char *why, const char *word)
 {
@@ -79,9 +80,10 @@ const Model *metric_read(Pool *pool, const Model *model, const char *word, Metri
         if ((inside = formula_inside(pool, call, kind_name[k])))
             metric->kind = (MetricKind)k;
     if (!inside)
-        refuse("--metric knows end, min, max, mean, rms, integral, time_of_min, time_of_max, crossing and overshoot of "
-               "a formula, not",
-               word);
+        refuse(
+            "--metric knows end, min, max, mean, rms, rms_wk, rms_wd, integral, time_of_min, time_of_max, crossing and "
+            "overshoot of a formula, not",
+            word);
     const char *comma = comma_of(inside);
     if (comma && metric->kind != METRIC_RMS && metric->kind != METRIC_CROSSING)
         refuse("only rms takes a weight and crossing a level after a comma, not", word);
@@ -102,10 +104,22 @@ static double half_sum(double step, double before, double now)
     return step * 0.5 * (before + now);
 }
 
+static bool is_ride(const Metric *metric)
+{
+    return metric->kind == METRIC_RMS_WK || metric->kind == METRIC_RMS_WD;
+}
+
 /* What happens between two samples, in which values change linearly, or their squares do. */
 static void pass(const Metric *metric, MetricState *s, double time, double value, double other)
 {
     const double step = time - s->time;
+    if (is_ride(metric)) {
+        const double before = s->filtered;
+        s->filtered = ride_filter_step(&s->filter, step, value);
+        s->integral += half_sum(step, before * before, s->filtered * s->filtered);
+        s->weight += step;
+        return;
+    }
     if (metric->kind == METRIC_RMS) {
         s->integral += half_sum(step, s->other * s->value * s->value, other * value * value);
         s->weight += half_sum(step, s->other, other);
@@ -133,6 +147,8 @@ void metric_see(const Metric *metric, MetricState *s, double time, double value,
                            .time_of_least = time,
                            .time_of_greatest = time,
                            .crossing = value == level ? time : (double)NAN};
+        if (is_ride(metric))
+            s->filter = ride_filter_begin(metric->kind == METRIC_RMS_WK ? RIDE_K : RIDE_D, value);
     }
     if (value < s->least) {
         s->least = value;
@@ -162,6 +178,8 @@ double metric_value(const Metric *metric, const MetricState *s)
         return !spread && metric->other < 0 ? fabs(s->value)
                : s->weight > 0              ? sqrt(s->integral / s->weight)
                                             : (double)NAN;
+    case METRIC_RMS_WK:
+    case METRIC_RMS_WD: return spread ? sqrt(s->integral / s->weight) : (double)NAN;
     case METRIC_INTEGRAL: return s->integral;
     case METRIC_TIME_OF_MIN: return s->time_of_least;
     case METRIC_TIME_OF_MAX: return s->time_of_greatest;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The runs of a sweep: a grid, or a Latin hypercube. */
+#include "base/catch.h"
 #include "base/message.h"
 #include "engine/engine.h"
 #include "host/host.h"
@@ -11,6 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <gsl/gsl_qrng.h>
 
 /* A mistake in a word of the call. */
 static _Noreturn void refuse(const char *message, const char *word)
@@ -118,8 +121,7 @@ static uint64_t next_random(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-/* From 0 to below 1. */
-static double next_share(uint64_t *state)
+double random_share(uint64_t *state)
 {
     return (double)(next_random(state) >> 11) * 0x1p-53;
 }
@@ -138,13 +140,13 @@ static void make_latin(Pool *pool, SweepPlan *plan)
         for (int64_t i = 0; i < plan->latin; ++i)
             place[i] = (int32_t)i;
         for (int64_t i = plan->latin - 1; i > 0; --i) {
-            const int64_t other = (int64_t)(next_share(&state) * (double)(i + 1));
+            const int64_t other = (int64_t)(random_share(&state) * (double)(i + 1));
             const int32_t kept = place[i];
             place[i] = place[other];
             place[other] = kept;
         }
         for (int64_t i = 0; i < plan->latin; ++i) {
-            const double share = next_share(&state);
+            const double share = random_share(&state);
             const int64_t at = i - plan->first;
             if (at < 0 || at >= plan->count)
                 continue;
@@ -153,6 +155,29 @@ static void make_latin(Pool *pool, SweepPlan *plan)
         }
     }
     pool_free(scratch);
+}
+
+/* Where a failure ends a call and not the program. */
+static void free_sequence(void *sequence)
+{
+    gsl_qrng_free(sequence);
+}
+
+/* Points of Sobol's sequence, from its beginning, though only those of this part are kept. */
+static void make_points(Pool *pool, SweepPlan *plan)
+{
+    const int each = plan->varied + 2, numbers = 2 * plan->varied;
+    const int64_t first = plan->first / each, last = (plan->first + plan->count - 1) / each;
+    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)numbers);
+    if (!sequence)
+        out_of_memory();
+    caught_own(free_sequence, sequence);
+    double unused[2 * SOBOL_MOST];
+    plan->point = pool_alloc(pool, sizeof *plan->point * (size_t)((last - first + 1) * numbers));
+    for (int64_t j = 0; j <= last; ++j)
+        gsl_qrng_get(sequence, j < first ? unused : plan->point + (j - first) * numbers);
+    caught_disown(sequence);
+    gsl_qrng_free(sequence);
 }
 
 int64_t part_first(int64_t runs, int part, int parts)
@@ -171,14 +196,23 @@ void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *e
                 refuse("--vary is given twice for", vary->name);
         if (plan->latin && vary->count)
             refuse("with --latin a range has no count of its own:", vary->name);
-        if (!plan->latin && !vary->count)
-            refuse("without --latin a range needs a count, name=low:high:count:", vary->name);
+        if (plan->bases && vary->count)
+            refuse("with --sobol a range has no count of its own:", vary->name);
+        if (!plan->latin && !plan->bases && !vary->count)
+            refuse("without --latin or --sobol a range needs a count, name=low:high:count:", vary->name);
         plan->runs *= vary->count ? vary->count : 1;
         if (plan->runs > SWEEP_RUNS_MOST)
             refuse("these are more than ten million runs; --latin takes fewer, not so many as", vary->name);
     }
     if (plan->latin)
         plan->runs = plan->latin;
+    if (plan->bases && plan->varied > SOBOL_MOST)
+        refuse("--sobol takes 20 numbers that vary at most, not so many as", plan->vary[plan->varied - 1].name);
+    if (plan->bases)
+        plan->runs = plan->bases * (plan->varied + 2);
+    if (plan->runs > SWEEP_RUNS_MOST)
+        refuse("these are more than ten million runs: --sobol takes so many times the varied numbers and two, not with",
+               plan->vary[plan->varied - 1].name);
     plan->count = plan->runs;
     if (plan->parts > plan->runs)
         diag_fail_call(program_place(), "choose fewer", "%d parts are more than the %lld runs of this sweep",
@@ -189,6 +223,8 @@ void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *e
     }
     if (plan->latin)
         make_latin(pool, plan);
+    if (plan->bases)
+        make_points(pool, plan);
 }
 
 double plan_value(const SweepPlan *plan, int varied, int64_t run)
@@ -197,6 +233,12 @@ double plan_value(const SweepPlan *plan, int varied, int64_t run)
     if (plan->latin) {
         const int64_t at = varied * plan->count + run - plan->first;
         const double share = ((double)plan->place[at] + plan->share[at]) / (double)plan->latin;
+        return vary->low + share * (vary->high - vary->low);
+    }
+    if (plan->bases) {
+        const int each = plan->varied + 2, which = (int)(run % each); /* A, B, or A with B's value of one number */
+        const double *point = plan->point + (run / each - plan->first / each) * 2 * plan->varied;
+        const double share = point[which == 1 || which == varied + 2 ? plan->varied + varied : varied];
         return vary->low + share * (vary->high - vary->low);
     }
     for (int v = plan->varied - 1; v > varied; --v)

@@ -106,6 +106,8 @@ static void add_facts(Pool *pool, const Sweep *sweep, const EngineOptions *code,
                    (long long)plan->vary[v].count);
     if (plan->latin)
         text_print(&options, " --latin %lld --seed %llu", (long long)plan->latin, (unsigned long long)plan->seed);
+    if (plan->bases)
+        text_print(&options, " --sobol %lld", (long long)plan->bases);
     for (int m = 0; m < sweep->metrics; ++m)
         text_print(&options, " --metric '%s'", sweep->metric[m].word);
     if (form->samples)
@@ -159,7 +161,8 @@ static SweepForm form_of(const Sweep *sweep, bool series)
     const Scene *scene = sweep->scene;
     const int varied = sweep->plan->varied;
     SweepForm form = {.columns = OTHERS + varied + PARTS * scene->columns + sweep->metrics,
-                      .series = series ? scene->columns : 0};
+                      .series = series ? scene->columns : 0,
+                      .bases = sweep->plan->bases};
     SweepColumn *next = form.column = pool_alloc(pool, sizeof *next * (size_t)(form.columns + form.series));
     form.samples = form.series ? scene->outputs + 1 : 0;
     form.apart = form.series ? scene->output_step : 0;
@@ -272,7 +275,11 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
 {
     const double begun = clock_seconds(CLOCK_MONOTONIC);
-    SweepPlan plan = {.latin = request->latin, .seed = request->seed, .part = request->part, .parts = request->parts};
+    SweepPlan plan = {.latin = request->latin,
+                      .seed = request->seed,
+                      .bases = request->sobol,
+                      .part = request->part,
+                      .parts = request->parts};
     Sweep sweep = {.pool = pool,
                    .model = model,
                    .scene = scene,
@@ -318,7 +325,7 @@ void sweep_plan(Pool *pool, const Model *model, const Scene *scene, const SweepR
                 const char *const *command, int words, SweepTable *table)
 {
     enum { JOBS = 1000 /* of an array, as Slurm has it without another setting */, SLACK = 4 };
-    SweepPlan plan = {.latin = request->latin, .seed = request->seed, .parts = request->parts};
+    SweepPlan plan = {.latin = request->latin, .seed = request->seed, .bases = request->sobol, .parts = request->parts};
     Sweep sweep = {.pool = pool,
                    .model = model,
                    .scene = scene,

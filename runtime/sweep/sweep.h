@@ -8,6 +8,7 @@
 #include "engine/engine.h"
 #include "gic_batch.h"
 #include "model/model.h"
+#include "run/ride_filter.h"
 #include "scene/scene.h"
 
 /* ---- plan.c: which runs there are ------------------------------------------------------------------ */
@@ -32,6 +33,8 @@ typedef struct SweepPlan {
     int64_t runs;
     int64_t latin; /* 0: a grid, the last number varies fastest */
     uint64_t seed;
+    int64_t bases;        /* of Saltelli's runs, `varied` + 2 for each base point; 0: there are none */
+    double *point;        /* [bases of this part][2 varied] from 0 to 1: A and B of sobol.c */
     int32_t *place;       /* [varied][count] which of `latin` equal parts of the range */
     double *share;        /* [varied][count] where within it */
     int part, parts;      /* part 1 to `parts` of the sweep, 0: all of it; parts 0: it is not planned in parts */
@@ -44,6 +47,8 @@ void vary_read(Pool *pool, SweepPlan *plan, const char *word);
 void plan_close(Pool *pool, SweepPlan *plan, const Model *model, const Engine *engine);
 /* The first run of part 1 to `parts`; with part = parts + 1: the number of runs. */
 int64_t part_first(int64_t runs, int part, int parts);
+/* A number of the generator splitmix64, from 0 to below 1: the same ones on every machine. */
+double random_share(uint64_t *state);
 /* The value of a varied number in a run of this part. */
 double plan_value(const SweepPlan *plan, int varied, int64_t run);
 
@@ -60,6 +65,8 @@ typedef enum MetricKind {
     METRIC_TIME_OF_MAX,
     METRIC_CROSSING,
     METRIC_OVERSHOOT,
+    METRIC_RMS_WK, /* weighted by frequency after ISO 2631-1 */
+    METRIC_RMS_WD,
     METRIC_KINDS
 } MetricKind;
 
@@ -79,6 +86,8 @@ typedef struct MetricState {
     double least, greatest, time_of_least, time_of_greatest;
     double integral, weight; /* of the value, of its square times the weight, or of the weight */
     double crossing;         /* NAN: none yet */
+    RideFilter filter;       /* of METRIC_RMS_WK and _WD, */
+    double filtered;         /* and what came out last */
 } MetricState;
 
 /* Read NAME=FUNCTION(FORMULA) or NAME [UNIT]=..., and add its formulas to the outputs of the model. Ends in diag_fail.
@@ -119,6 +128,20 @@ int share_processes(void);
  * process that fails ends the program with a message. */
 bool share_runs(Pool *pool, const Share *share, size_t processes);
 
+/* ---- sobol.c: sensitivity ------------------------------------------------------------------------------------ */
+
+typedef struct SweepForm SweepForm;
+typedef struct Sobol Sobol;
+
+enum { SOBOL_MOST = 20 /* varied numbers: the sequence has 40 */ };
+
+Sobol *sobol_open(Pool *pool, const SweepForm *form);
+/* The next run's row. */
+void sobol_row(Sobol *sobol, const char *row);
+/* After the last one, once: a table as CSV, with intervals of 95 percent by resampling base points. Points of which a
+ * run has no finite number are left out. nan: fewer than 16 are left, or the metric does not vary. */
+const char *sobol_text(const Sobol *sobol);
+
 /* ---- table.c: results as a file ---------------------------------------------------------------------------- */
 
 /* A column of results. group: in HDF5; descriptions have no line ends and no tabs. */
@@ -132,14 +155,15 @@ typedef struct SweepFact {
 } SweepFact;
 
 /* What results look like: a row for each run, and, if asked for, values of `series` outputs at output times. */
-typedef struct SweepForm {
+struct SweepForm {
     int columns, series;
     SweepColumn *column; /* [columns + series] */
+    int64_t bases;       /* base points of Saltelli's runs, 0: they are others */
     int64_t samples;     /* of each series, 0: there are none */
     double apart;        /* s between them */
     int facts;
     SweepFact *fact;
-} SweepForm;
+};
 
 /* A file of results that is being written: beside `path`, renamed when it is closed. */
 typedef struct Table Table;
@@ -151,6 +175,7 @@ void table_check(Pool *pool, const char *path, const SweepForm *form);
 Table *table_open(Pool *pool, const char *path, const SweepForm *form, int64_t runs);
 /* The next run: its row, numbers separated by commas; series[form->series][form->samples], NULL: there are none. */
 void table_row(Table *table, const char *row, const double *series);
+/* Tells the Sobol' indices, too. */
 void table_close(Table *table);
 void table_abandon(Table *table);
 
@@ -273,7 +298,8 @@ typedef struct SweepRequest {
     int varied;
     int metrics;
     const Metric *metric; /* read before the scene: the model has their formulas */
-    int64_t latin;        /* 0: a grid */
+    int64_t latin;        /* 0: a grid, */
+    int64_t sobol;        /* if this is 0, too: base points of Saltelli's runs */
     uint64_t seed;
     bool series;     /* keep outputs over time; results are HDF5 then */
     int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */

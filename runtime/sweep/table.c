@@ -23,6 +23,7 @@ struct Table {
     Csv csv;                /* in HDF5 the name of the unfinished file */
     const Hdf5Plugin *hdf5; /* NULL: CSV */
     void *file;
+    Sobol *sobol;       /* NULL: the runs are not made for that */
     int64_t runs, row;  /* row: the next one */
     int64_t rows, many; /* rows of a block, of a block of a series */
     double *block;      /* [columns][rows] */
@@ -216,6 +217,7 @@ Table *table_open(Pool *pool, const char *path, const SweepForm *form, int64_t r
 {
     Table *table = pool_alloc(pool, sizeof *table);
     *table = (Table){.pool = pool, .form = form, .csv = {.path = path}, .runs = runs};
+    table->sobol = form->bases ? sobol_open(pool, form) : NULL;
     if (table_is_hdf5(path)) {
         table->hdf5 = plugin(pool);
         return open_hdf5(table);
@@ -229,6 +231,8 @@ Table *table_open(Pool *pool, const char *path, const SweepForm *form, int64_t r
 
 void table_row(Table *table, const char *row, const double *series)
 {
+    if (table->sobol)
+        sobol_row(table->sobol, row);
     if (table->hdf5) {
         add_row(table, row, series);
         return;
@@ -246,6 +250,8 @@ void table_close(Table *table)
                   table->csv.path, why);
     }
     csv_close(&table->csv);
+    if (table->sobol)
+        diag_text(sobol_text(table->sobol));
 }
 
 void table_abandon(Table *table)

@@ -177,7 +177,7 @@ sed -i 's/^duration: .*/duration: 100/' coast.scene
     awk '{ exit !($1 > 20 - 1e-6 && $1 < 20 + 1e-6) }'
 verdict $? "a run until a signal has a value: $(column air_speed until.csv | tail -n 1)"
 sed '/air_speed: {type/d; s/force: .*/force: [-v.x, 0, 0]}}/' coast.veh >unread.veh
-"$gicgen" unread.veh -o unread.c 2>said && grep -q "unread.veh:8:11: warning: nothing reads signal 'air_speed'" said
+"$gicgen" unread.veh -o unread.c 2>said && grep -q "unread.veh:8:11: warning: nothing in the model reads signal 'air_speed'" said
 verdict $? "a signal that nothing reads: $(head -n 1 said)"
 
 # ---- entries that nothing reads: one warning each at its place, none of a mirror image whose original is read

@@ -180,6 +180,51 @@ echo '{gicscene: 1, duration: 2, integrator: rk4, step: 1, initial: {coordinates
     --metric 'f=mean(x)' --metric 'g=integral(x)' 2>"$work/err"
 check "a run without duration" [ "$(sed -n 2p "$work/f.csv" | rev | cut -d, -f1-5 | rev)" = "1,nan,nan,1,0" ]
 
+# ---- ISO 2631-1: SciPy's filters from the standard's formulas, for an input that is linear between output times
+
+cat >"$work/ride.py" <<'YYY'
+import sys
+import numpy
+from scipy import signal
+def corner(f):
+    return 2 * numpy.pi * f
+def second(f, q):
+    return numpy.array([1 / corner(f)**2, 1 / (q * corner(f)), 1])
+def filters(turn, step):
+    top = numpy.polymul([1 / corner(0.4)**2, 0, 0], [1 / corner(turn), 1])
+    below = numpy.polymul(numpy.polymul(second(0.4, 0.5**0.5), second(100, 0.5**0.5)), second(turn, 0.63))
+    if step:
+        top = numpy.polymul(top, second(2.37, 0.91)) * (2.37 / 3.35)**2
+        below = numpy.polymul(below, second(3.35, 0.91))
+    return signal.StateSpace(*signal.zpk2ss(*signal.tf2zpk(top, below)))
+sweep = numpy.genfromtxt(sys.argv[1], delimiter=",", names=True, deletechars="")
+run = numpy.genfromtxt(sys.argv[2], delimiter=",", skip_header=1)
+t, x = run[:, 0], run[:, 1]
+for name, filter in (("wk", filters(12.5, True)), ("wd", filters(2, False))):
+    even = numpy.linspace(0, t[-1], len(t))
+    assert numpy.allclose(even, t, atol=1e-12)
+    y = signal.lsim(filter, x - x[0], even)[1]
+    want = numpy.sqrt(numpy.sum((y[1:]**2 + y[:-1]**2) / 2) / (len(t) - 1))
+    have = float(sweep[name][0])
+    print(name, have, want, have / want - 1)
+    assert abs(have / want - 1) < 1e-8
+# a sine in the steady state has the filter's size
+for hertz, name in ((1, "one"), (5, "five")):
+    for end, filter in (("k", filters(12.5, True)), ("d", filters(2, False))):
+        size = abs(signal.freqresp(filter, [corner(hertz)])[1][0]) / 2**0.5
+        have = float(sweep[name + end][0])
+        print(name, have, size)
+        assert abs(have / size - 1) < 2e-2
+YYY
+echo '{gicscene: 1, duration: 40, step: 0.001, output_step: 0.002, initial: {coordinates: {x: 1}}, parameters: {k: 900, c: 0.5}}' >"$work/f.scene"
+"$gicrun" -q "$work/driven.veh" "$work/f.scene" -o "$work/run.csv" 2>"$work/err"
+"$gicsweep" -q "$work/driven.veh" "$work/f.scene" --vary k=900:900:1 -o "$work/f.csv" --metric 'wk=rms_wk(x)' --metric 'wd=rms_wd(x)' \
+    --metric 'onek=rms_wk(sin(2*pi*time))' --metric 'oned=rms_wd(sin(2*pi*time))' --metric 'fivek=rms_wk(sin(10*pi*time))' \
+    --metric 'fived=rms_wd(sin(10*pi*time))' --metric 'still=rms_wk(9.81)' --metric 'none=rms_wd(0*time)' 2>"$work/err"
+/usr/bin/python3 "$work/ride.py" "$work/f.csv" "$work/run.csv" >"$work/out" 2>&1
+verdict $? "ISO 2631-1"
+check "what does not change is not felt" [ "$(sed -n 2p "$work/f.csv" | rev | cut -d, -f1,2 | rev)" = "0,0" ]
+
 # ---- blanks, and names
 
 "$gicsweep" -q "$work/driven.veh" "$work/f.scene" --vary k=1:1:1 -o "$work/f.csv" --metric ' a  [mm] = end( x.value ) ' --metric 'b=end( x.value)' \
@@ -197,6 +242,7 @@ check "no function" refuses "knows end, min" 2 --metric 'a=median(chassis.z)'
 check "no formula" refuses "knows end, min" 2 --metric 'a=chassis.z'
 check "no name" refuses "takes NAME=FUNCTION" 2 --metric '=end(chassis.z)'
 check "an unknown signal" refuses "--metric:1:.*chassis.q" 1 --metric 'a=end(chassis.q)'
+check "two arguments of a filter" refuses "only rms takes a weight" 2 --metric 'a=rms_wk(chassis.z, 1)'
 check "a comma too many" refuses "only rms takes a weight" 2 --metric 'a=end(chassis.z, 1)'
 check "an open formula" refuses "--metric:1:" 1 --metric 'a=end(2*)'
 check "two of a name" refuses "two metrics 'a'" 2 --metric 'a=end(time)' --metric 'a=max(time)'

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Factors of accelerations for people, against the table of ISO 2631-1 (thirds of octaves, thousandths). */
-#include "run/manoeuvre.h"
+#include "run/ride_filter.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -39,7 +39,8 @@ class Sweep(ctypes.Structure):
     _fields_ = [("size", ctypes.c_size_t), ("scene", ctypes.c_char_p), ("results", ctypes.c_char_p),
                 ("vary", ctypes.POINTER(ctypes.c_char_p)), ("varied", ctypes.c_int), ("latin", ctypes.c_int64),
                 ("seed", ctypes.c_uint64), ("alone", ctypes.c_int), ("quiet", ctypes.c_int), ("part", ctypes.c_int),
-                ("parts", ctypes.c_int), ("metric", ctypes.POINTER(ctypes.c_char_p)), ("metrics", ctypes.c_int), ("series", ctypes.c_int)]
+                ("parts", ctypes.c_int), ("metric", ctypes.POINTER(ctypes.c_char_p)), ("metrics", ctypes.c_int), ("series", ctypes.c_int),
+                ("sobol", ctypes.c_int64)]
 
 
 class Array(ctypes.Structure):
