@@ -73,9 +73,7 @@ static void connect(RideWeight weight, double output[RIDE_STATES], double *direc
 RideFilter ride_filter_begin(RideWeight weight, double input)
 {
     Section section[RIDE_SECTIONS];
-    RideFilter filter = {.weight = weight, .states = 2 * sections_of(weight, section), .input = input};
-    filter.state[0] = input; /* the high-pass, after which there is nothing */
-    return filter;
+    return (RideFilter){.weight = weight, .states = 2 * sections_of(weight, section), .first = input};
 }
 
 /* Matrices for a step: the exponential of (rates, input, input's change) times the step. */
@@ -106,6 +104,7 @@ static void prepare(RideFilter *f, double step)
 double ride_filter_step(RideFilter *f, double step, double input)
 {
     double next[RIDE_STATES] = {0}, output[RIDE_STATES], direct, y;
+    input -= f->first;                      /* of which nothing passes */
     if (fabs(step - f->step) > 1e-9 * step) /* output times are products, so that differences have rounding */
         prepare(f, step);
     for (int i = 0; i < f->states; ++i) {

@@ -16,7 +16,7 @@ enum { RIDE_SECTIONS = 4, RIDE_STATES = 2 * RIDE_SECTIONS };
 typedef struct RideFilter {
     RideWeight weight;
     int states;
-    double input, state[RIDE_STATES];
+    double first, input, state[RIDE_STATES]; /* input: beside the first one */
     /* from one sample to the next, `step` seconds later, with an input that changes linearly */
     double step, turn[RIDE_STATES][RIDE_STATES], kept[RIDE_STATES], change[RIDE_STATES];
 } RideFilter;

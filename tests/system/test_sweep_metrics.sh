@@ -197,7 +197,8 @@ def filters(turn, step):
         top = numpy.polymul(top, second(2.37, 0.91)) * (2.37 / 3.35)**2
         below = numpy.polymul(below, second(3.35, 0.91))
     return signal.StateSpace(*signal.zpk2ss(*signal.tf2zpk(top, below)))
-sweep = numpy.genfromtxt(sys.argv[1], delimiter=",", names=True, deletechars="")
+read = numpy.atleast_1d(numpy.genfromtxt(sys.argv[1], delimiter=",", names=True, deletechars=""))
+sweep = {name.split("_[")[0]: read[name] for name in read.dtype.names}
 run = numpy.genfromtxt(sys.argv[2], delimiter=",", skip_header=1)
 t, x = run[:, 0], run[:, 1]
 for name, filter in (("wk", filters(12.5, True)), ("wd", filters(2, False))):
