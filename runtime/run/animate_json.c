@@ -233,6 +233,12 @@ static void write_drive_gg(void *context, Text *out, int indent)
     part(context, "drive_gg.js.in", out);
 }
 
+static void write_drive_pace(void *context, Text *out, int indent)
+{
+    (void)indent;
+    part(context, "drive_pace.js.in", out);
+}
+
 static void write_drive_page(void *context, Text *out, int indent)
 {
     (void)indent;
@@ -262,6 +268,7 @@ static const Insertion part_point[] = {{"style", write_style},
                                        {"drive_input", write_drive_input},
                                        {"drive_curves", write_drive_curves},
                                        {"drive_gg", write_drive_gg},
+                                       {"drive_pace", write_drive_pace},
                                        {"drive_page", write_drive_page},
                                        {"worker", write_worker},
                                        {NULL, NULL}};
