@@ -216,10 +216,11 @@ static void write_code(void *context, Text *out, int indent)
 }
 
 static const Insertion page_point[] = {{"data", write_data}, {"code", write_code}, {NULL, NULL}};
-static const Insertions page_points = {
-    (const char *const[]){"drive.html.in", "drive_motion.js.in", "drive_ground.js.in", "drive_input.js.in",
-                          "drive_curves.js.in", "drive_gg.js.in", "drive_pace.js.in", "drive_page.js.in", "drive_worker.js.in", NULL},
-    page_point, &animate_parts};
+static const Insertions page_points = {(const char *const[]){"drive.html.in", "drive_motion.js.in",
+                                                             "drive_ground.js.in", "drive_input.js.in",
+                                                             "drive_curves.js.in", "drive_gg.js.in", "drive_pace.js.in",
+                                                             "drive_page.js.in", "drive_worker.js.in", NULL},
+                                       page_point, &animate_parts};
 
 /* Size and lowest point at the scene's start. */
 static void measure(DrivePage *p, Pool *pool, const Engine *engine)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 # browser.py PROFILE DRIVE.html RECORDING.csv DRIVER.html HANDED.csv [SCENE.html RESULTS.csv DIGITS]...: drives in a page of `gicrun --drive` in
-# chromium by real keys, saves the recording; takes over from a driver and hands back in another one; and steps the vehicles of the other pages through their scenes, whose results
+# chromium by real keys and fingers, counts what a picture takes, saves the recording; takes over from a driver and hands back in another one; and steps the vehicles of the other pages through their scenes, whose results
 # must be those of gicrun to DIGITS of the largest value of each column. Prints `good NAME` or `bad NAME: why` for each check.
 import json
 import math
@@ -200,6 +200,94 @@ def hand_back(browser, path, recording, profile):
     save(browser, profile, recording)
 
 
+def touch(browser, path):
+    """Fingers: one on a pad, a second one that steers meanwhile, and both away."""
+    def shows(name, condition):
+        note(name, browser.wait(condition, 60), browser.ask('JSON.stringify([driving.pads, target])'))
+
+    def send(kind, **fingers):
+        points = []
+        for number, (name, share) in enumerate(fingers.items()):
+            box = browser.ask('(() => {const r = document.getElementById("%s").getBoundingClientRect();'
+                              'return [r.left + %g * r.width, r.top + r.height / 2]})()' % (name, share))
+            points.append({'x': box[0], 'y': box[1], 'id': 10 + number})
+        browser.call('Input.dispatchTouchEvent', type=kind, touchPoints=points)
+
+    browser.call('Emulation.setTouchEmulationEnabled', enabled=True, maxTouchPoints=2)
+    browser.open(path)
+    send('touchStart', faster=.9)
+    shows('a finger accelerates', 'driving.hold && Math.abs(target[role.accelerator] - .9) < .02')
+    send('touchMove', faster=.5)
+    shows('it moves', 'Math.abs(target[role.accelerator] - .5) < .02')
+    send('touchStart', faster=.5, wheel=.2)
+    shows('another one steers meanwhile',
+          'Math.abs(driving.steer - .6) < .02 && Math.abs(target[role.accelerator] - .5) < .02')
+    shows('and the vehicle goes there', 'live.speed > 1 && live.signals[run.signals.length - run.inputs + '
+          'hands[role.steering].input] * Math.sign(run.left) > 0')
+    send('touchEnd')
+    shows('no finger, no pedal', 'target[role.accelerator] === 0 && driving.pads.wheel === undefined')
+    azimuth = browser.ask('camera.azimuth')
+    for kind, x in (('touchStart', 300), ('touchMove', 340)):
+        browser.call('Input.dispatchTouchEvent', type=kind, touchPoints=[{'x': x, 'y': 200}])
+    browser.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
+    shows('a finger turns the view', 'Math.abs(camera.azimuth - %r) > .1' % azimuth)
+    browser.call('Emulation.setTouchEmulationEnabled', enabled=False)
+
+
+# What a picture of a quality asks of the graphics card: calls, corners, pixels a pixel of the page.
+COST = """(async () => {
+    const P = WebGL2RenderingContext.prototype, old = [P.drawElements, P.drawArrays];
+    const view = document.getElementById("view");
+    let calls = 0, corners = 0, pictures = 0;
+    judge_picture = () => 0;
+    const frame = () => new Promise((done) => requestAnimationFrame(done));
+    set_quality(%d);
+    for (let k = 0; k < 6; ++k)
+        await frame();
+    P.drawElements = function (...a) { ++calls; corners += a[1]; old[0].apply(this, a); };
+    P.drawArrays = function (...a) { ++calls; corners += a[2]; old[1].apply(this, a); };
+    const one = draw_in_time;
+    draw_in_time = (...a) => (++pictures, one(...a));
+    while (pictures < 5)
+        await frame();
+    [[P.drawElements, P.drawArrays], draw_in_time] = [old, one];
+    return [calls / pictures, corners / pictures, view.width * view.height / view.clientWidth / view.clientHeight];
+})()"""
+
+
+def light(browser, path):
+    """What makes pictures come in time, as counts, which no load of the computer changes."""
+    browser.open(path)
+    browser.wait('live.time > 0.2', 60)
+    costs = [browser.ask(COST % quality) for quality in range(browser.ask('qualities.length'))]
+    text = '; '.join('%.0f calls, %.0f corners, %.2f pixels' % tuple(cost) for cost in costs)
+    note('a picture takes few calls', all(cost[0] <= 16 for cost in costs), text)
+    note('simple pictures have few corners', all(cost[1] < .5 * costs[0][1] and cost[1] < 60000 for cost in costs[1:]),
+         text)
+    note('and fewer pixels', all(b[2] < .4 * a[2] for a, b in zip(costs[1:], costs[2:])) and costs[0][2] == 1, text)
+    browser.open(path)
+    fed = browser.ask("""(() => {
+        const feed = (ms, count) => { for (let k = 0; k < count; ++k) judge_picture(ms); return pace.quality; };
+        const real = judge_picture;
+        set_quality(0);
+        return [feed(5, 100), feed(30, 5), feed(30, 5), feed(5, 100), feed(1, 30), feed(30, 5), feed(1, 30), feed(1, 30),
+            feed(30, 100)];
+    })()""")
+    note('slow pictures are made simpler, and quick ones better, at first soon',
+         fed == [0, 1, 2, 2, 1, 2, 2, 1, 3], str(fed))
+    done = browser.ask("""(() => {
+        const count = [0, 0, 0], chores = count.map((_, k) => () => ++count[k]), most = [];
+        for (let k = 0; k < 60; ++k) {
+            const before = count[0] + count[1] + count[2];
+            do_chores(chores, 1 / 60);
+            most.push(count[0] + count[1] + count[2] - before);
+        }
+        return [Math.min(...count), Math.max(...count), Math.max(...most)];
+    })()""")
+    note('chores are done ten times a second, one a picture',
+         done[0] >= 9 and done[1] <= 11 and done[2] == 1, str(done))
+
+
 # Visible things that hold text or are used: [what, left, top, right, bottom].
 SEEN = """[...document.querySelectorAll(`h1, #subtitle, #clock, #facts, #velocity, .pad, #controls button, #controls select,
     #side .row`)].flatMap((e) => {
@@ -232,6 +320,8 @@ def main():
     browser = Browser(profile)
     use(browser, drive, recording, profile)
     hand_back(browser, driver, handed, profile)
+    touch(browser, drive)
+    light(browser, drive)
     narrow(browser, drive)
     scenes(browser, pages)
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
