@@ -93,6 +93,57 @@ check 'it took the pedals over and gave them back' says 'taken over           1 
 check 'nothing of it was dropped' says ' 0 dropped'
 check 'it replays' again "$vehicle" "$lane"
 
+# a joystick: its device is a pipe here, with the bytes that Linux's has
+cat >stick.py <<'END'
+import struct, sys, time
+with open(sys.argv[1], 'wb', buffering=0) as stick:
+    def tell(value, kind, number):
+        stick.write(struct.pack('<IhBB', 0, value, kind, number))
+    for number, value in ((0, 0), (2, -32767), (5, -32767), (7, 12345)):
+        tell(value, 0x82, number)
+    tell(0, 0x81, 0)
+    tell(1, 0x40, 0)  # no such kind
+    time.sleep(.5)
+    tell(16384, 2, 5)
+    stick.write(struct.pack('<IhBB', 0, -32767, 2, 0)[:3])
+    time.sleep(.3)
+    stick.write(struct.pack('<IhBB', 0, -32767, 2, 0)[3:])
+    tell(1, 1, 0)
+    time.sleep(.7)
+END
+mkfifo stick
+begin "$vehicle" "$lane" --seconds 6 -o live.csv --record inputs.csv
+/usr/bin/python3 stick.py stick &
+/usr/bin/python3 -B "$root/runtime/examples/live_joystick.py" "$port" stick rack=axis0:0.03:-0.03 accelerator=axis5:0:1 \
+    brake=axis2:0:1 selector=button0:0:1 >out2 2>said
+[ $? -eq 1 ] && grep -q 'stick is gone; the scene has the inputs again' said
+verdict $? 'a joystick that is unplugged says so'
+end
+check 'it took the inputs over and gave them back' says 'taken over           1 times, given back 1 times'
+check 'nothing of it was dropped' says ' 0 dropped'
+check 'the recording says so' hands '0 1 0'
+# held FIRST..LAST, by name: axes and buttons are mapped to the ends
+held() { /usr/bin/python3 -B - "$@" <<'END'
+import csv, sys
+rows = [r for r in csv.DictReader(open('inputs.csv')) if r['hands [1]'] == '1']
+name = next(k for k in rows[0] if k.startswith('held.' + sys.argv[1] + ' '))
+seen = [float(r[name]) for r in rows]
+sys.exit(not all(abs(a - float(b)) < 1e-9 for a, b in zip((seen[0], seen[-1]), sys.argv[2:])))
+END
+}
+check 'an axis in the middle, then at its end' held rack 0 0.03
+check 'an axis at its end, then over the middle' held accelerator 0 0.75000762962
+check 'a pedal that is not pressed' held brake 0 0
+check 'a button' held selector 0 1
+check 'it replays' again "$vehicle" "$lane"
+for wrong in rack=axis0:1 rack=axle0:0:1 rack=axis0:a:1; do
+    begin "$vehicle" "$lane" --seconds 2
+    /usr/bin/python3 -B "$root/runtime/examples/live_joystick.py" "$port" stick $wrong >out2 2>said
+    [ $? -eq 1 ] && grep -q "instead of '$wrong'" said
+    verdict $? "no mapping: $wrong"
+    end
+done
+
 # ---- packets that are wrong
 
 begin "$vehicle" "$lane" --seconds 6 -o live.csv --record inputs.csv

@@ -275,6 +275,15 @@ def light(browser, path):
     })()""")
     note('slow pictures are made simpler, and quick ones better, at first soon',
          fed == [0, 1, 2, 2, 1, 2, 2, 1, 3], str(fed))
+    told = browser.ask("""(() => {
+        const place = document.createElement("div");
+        Object.assign(run.units, {m: ["mm", 1000]});
+        for (const unit of ["m", "N/m", "1"])
+            slider(place, "<b>x</b>", unit, 0, 1, .25, () => 0);
+        return [place.textContent, place.querySelectorAll("b").length];
+    })()""")
+    note('sliders have units, those of the scene first, and names are text',
+         told == ['<b>x</b>250 mm<b>x</b>0.25 N/m<b>x</b>0.25', 0], str(told))
     done = browser.ask("""(() => {
         const count = [0, 0, 0], chores = count.map((_, k) => () => ++count[k]), most = [];
         for (let k = 0; k < 60; ++k) {
