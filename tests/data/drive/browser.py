@@ -140,6 +140,7 @@ def use(browser, path, recording, profile):
     shows('a pad accelerates', 'target[role.accelerator] > 0.8')
     browser.mouse('mouseReleased', *box, button='left', clickCount=1)
     shows('and lets go', 'target[role.accelerator] === 0')
+    browser.press('p', 'p')
     shows('a panel of inputs', 'document.querySelectorAll("#inputs input").length === hands.length && '
           '!document.getElementById("side").hidden')
     browser.press('p', 'p')
@@ -309,7 +310,7 @@ SEEN = """[...document.querySelectorAll(`h1, #subtitle, #clock, #facts, #velocit
 
 def narrow(browser, path):
     """Nothing overlaps or leaves the screen, from a telephone's to a desktop's."""
-    for width, tall in ((390, 844), (1280, 800)):
+    for width, tall in ((390, 844), (640, 480), (1280, 800)):
         browser.call('Emulation.setDeviceMetricsOverride', width=width, height=tall, deviceScaleFactor=1, mobile=False)
         browser.open(path)
         size, bad = '%d by %d' % (width, tall), []
@@ -320,6 +321,10 @@ def narrow(browser, path):
             for other, x0, y0, x1, y1 in seen[:i]:
                 if min(right, x1) - max(left, x0) > 1 and min(bottom, y1) - max(top, y0) > 1:
                     bad.append('%s on %s' % (what, other))
+        # what is solid stands free: the middle of the picture above the panel below
+        free = browser.ask('(() => {const foot = document.querySelector("footer").getBoundingClientRect().top; return '
+                           '[foot / innerHeight, document.elementFromPoint(innerWidth / 2, foot / 2).id]})()')
+        note('%s: panels leave the vehicle free' % size, free[0] > .5 and free[1] == 'view', str(free))
         note('%s: nothing overlaps' % size, len(seen) > 20 and not bad, '%d things; %s' % (len(seen), '; '.join(bad[:4])))
     browser.call('Emulation.setDeviceMetricsOverride', width=WIDTH, height=TALL, deviceScaleFactor=1, mobile=False)
 
